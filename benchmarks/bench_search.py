@@ -35,7 +35,7 @@ from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.generators.genetic import Genetic
 from roadgpt.campaign.generators.quality_diversity import QualityDiversity
 from roadgpt.campaign.generators.random_ import Random
-from roadgpt.campaign.single_test import Task, execute, result_of
+from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
 from roadgpt.road import Road, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
@@ -188,7 +188,7 @@ def walked(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
     out = []
     for number, road in enumerate(itertools.islice(walks(job.seed), job.tests), 1):
         run = prove(road, job.seed, cell.request.world, cell.request.setup, number)
-        out.append((result_of(run, cell, Task(number, 0, None)), road))
+        out.append((result_of(run, Task(number, 0, None), features_in(run)), road))
     return out
 
 

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from roadgpt.campaign import campaign
 from roadgpt.cli.summary import show
 from roadgpt.report import drawing
-from roadgpt.run import Setup, campaign, perform, read_run
+from roadgpt.run import Setup, perform, read_run
 
 WORDS = "an uphill road with 3 turns"
 ON_THE_CLOCK = {"seconds.json", "generation_stats.csv"}

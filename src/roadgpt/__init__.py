@@ -38,7 +38,7 @@ _ROOMS = {
     "Verdict": "verdict",
     "judge": "verdict",
     "Run": "run",
-    "campaign": "run",
+    "campaign": "campaign",
     "perform": "run",
     "prove": "run",
     "draw": "report",
@@ -64,7 +64,7 @@ _PICTURES = (
     ("roadgpt.road.road", "Road"),
     ("roadgpt.road.design", "Design"),
     ("roadgpt.run.model", "Run"),
-    ("roadgpt.run.campaign_runs", "Campaign"),
+    ("roadgpt.campaign.folder_campaign", "Campaign"),
 )
 
 

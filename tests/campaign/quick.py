@@ -19,6 +19,7 @@ from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE
 from roadgpt.campaign.single_test import FinishedTest, Task
+from roadgpt.campaign.store import Store
 from roadgpt.road import Design, Segment
 
 OUTCOMES = ("PASS", "FAIL", "INVALID", "ERROR", "VALID")
@@ -157,7 +158,7 @@ def main() -> None:
     folder, tests, workers = Path(sys.argv[1]), int(sys.argv[2]), int(sys.argv[3])
     seconds = float(sys.argv[4]) if len(sys.argv) > 4 else 0.0
     put_on_shelves(setattr, seconds)
-    scheduler.GROUP_SECONDS = 0.05  # so that kills fall into the keeping of results, too
+    Store.group_seconds = 0.05  # so that kills fall into the keeping of results, too
     if not (folder / STORE).exists():
         lifecycle.begin(plan(tests, seconds=seconds), folder)
     for progress in lifecycle.work(folder, workers):

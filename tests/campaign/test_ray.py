@@ -78,7 +78,7 @@ def test_a_node_is_killed_in_the_middle_and_the_table_is_that_of_processes(
     cluster: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     quick.put_on_shelves(monkeypatch.setattr, seconds=0.05)
-    monkeypatch.setattr("roadgpt.campaign.scheduler.GROUP_SECONDS", 0.2)
+    monkeypatch.setattr("roadgpt.campaign.store.Store.group_seconds", 0.2)
     tables = []
     for executor in ("processes", "ray"):
         folder = tmp_path / executor

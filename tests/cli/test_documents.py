@@ -102,6 +102,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from openai import _constants
 
     from roadgpt.brief.readers.grammar import MOST_CHARACTERS
+    from roadgpt.campaign.batch_scheduler import GIVE_UP
     from roadgpt.chat import conversation, response_limits, strict_json
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive.drive import UNPACKED
@@ -112,7 +113,6 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from roadgpt.road.road import MOST_POINTS, STEEPEST
     from roadgpt.road.source import LARGEST
     from roadgpt.run import MOST_ROUNDS
-    from roadgpt.run.campaign_runs import GIVE_UP
     from roadgpt.run.lost_drives import MOST
 
     cli_app = importlib.import_module("roadgpt.cli.app")

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt import run as run_room
+from roadgpt.campaign import single_test
 from roadgpt.cli import app
 from roadgpt.cli.run_job import RunJob
 from roadgpt.road import World
@@ -67,7 +67,7 @@ def test_control_c_stops_the_roads_and_not_the_conversation(monkeypatch: pytest.
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr(run_room, "perform", stopped)
+        patched.setattr(single_test, "perform", stopped)
         result = say("a road", "3", "exit")
     assert result.exit_code == 0
     assert "roadgpt: stopped; 0 of 3 roads are finished" in result.stderr

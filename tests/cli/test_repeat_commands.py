@@ -16,6 +16,7 @@ from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.summary import show
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
+from run.doubles import folder_of
 
 WORDS = "a road with 'quotes', $money & 3 turns"
 PLACE = Path("x/runs/0004")
@@ -108,13 +109,13 @@ def test_the_defaults_of_the_options_are_those_of_world_and_setup() -> None:
     assert {flag.field for flag in CHAT} == set(ChatSettings.model_fields)
 
 
-def test_a_campaign_tells_of_roads_that_cannot_be_read(tmp_path: Path) -> None:
-    from roadgpt.run.campaign_runs import Campaign
-
+def test_a_campaign_tells_of_roads_that_cannot_be_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def one(index: int, earlier: object) -> Run:
         return replace(a_run(Request(seed=1), index), seed=index)
 
-    list(Campaign.opened(Request(seed=1), 3, tmp_path, one, None))
+    list(folder_of(Request(seed=1), 3, tmp_path, one, patch=monkeypatch.setattr))
     (tmp_path / "runs" / "0002" / "run.json").write_text("{")
     (tmp_path / "runs" / "0003" / "run.json").unlink()
     (tmp_path / "test.0003.json").unlink()

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt import run as run_room
+from roadgpt.campaign import single_test
 from roadgpt.cli import app
 from roadgpt.errors import DesignError
 
@@ -127,7 +127,7 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
     def cannot(*_: object, **__: object) -> None:
         raise DesignError("no road fits; ask for less")
 
-    monkeypatch.setattr(run_room, "perform", cannot)
+    monkeypatch.setattr(single_test, "perform", cannot)
     result = invoke(WORDS, "-n", "5", "--no-plot", "--out", "here")
     assert result.exit_code == 3
     assert "roadgpt: no road fits; ask for less" in result.stderr
@@ -138,14 +138,14 @@ def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPa
 def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    honest = run_room.perform
+    honest = single_test.perform
 
     def sometimes(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
         if index == 2:
             raise DesignError("no road fits; ask for less")
         return honest(words, seed, world, setup, index, *rest)
 
-    monkeypatch.setattr(run_room, "perform", sometimes)
+    monkeypatch.setattr(single_test, "perform", sometimes)
     result = invoke(WORDS, "-n", "3", "--no-plot", "--no-drive", "--json")
     assert result.exit_code == 0
     outcomes = [json.loads(line)["test_outcome"] for line in result.stdout.splitlines()]
@@ -155,7 +155,7 @@ def test_one_road_that_could_not_be_designed_does_not_stop_the_others(
 def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    honest = run_room.perform
+    honest = single_test.perform
 
     def stopped(words, seed, world, setup, index, *rest):  # type: ignore[no-untyped-def]
         if index == 3:
@@ -164,7 +164,7 @@ def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
 
     words = (WORDS, "-n", "4", "--seed", "3", "--no-drive", "--no-plot", "--out", "here")
     with monkeypatch.context() as patched:
-        patched.setattr(run_room, "perform", stopped)
+        patched.setattr(single_test, "perform", stopped)
         result = invoke(*words)
     assert result.exit_code == 130
     assert "roadgpt: stopped; 2 of 4 roads are finished and complete" in result.stderr
@@ -205,7 +205,7 @@ def test_without_a_seed_an_interrupted_campaign_goes_on_with_its_own(monkeypatch
 
     words = (WORDS, "-n", "2", "--no-drive", "--no-plot", "--out", "here")
     with monkeypatch.context() as patched:
-        patched.setattr(run_room, "perform", stopped)
+        patched.setattr(single_test, "perform", stopped)
         first = invoke(*words)
     assert first.exit_code == 130
     again = invoke(*words)

@@ -11,9 +11,10 @@ import pytest
 
 from chat.stub_server import Scene, Stub, drops, fails, floods, says, serving
 from roadgpt.brief.readers.grammar import GrammarReader
+from roadgpt.campaign import campaign
 from roadgpt.chat import ChatSettings, server_quirks
 from roadgpt.errors import RoadGPTError
-from roadgpt.run import Setup, campaign, perform
+from roadgpt.run import Setup, perform
 
 BRIEF = GrammarReader().read("a road with 3 turns")
 SEGMENTS = [(40, 0), (40, 50), (20, 0), (40, -60), (20, 0), (40, 40)]

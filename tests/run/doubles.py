@@ -1,14 +1,21 @@
 """Small stand-ins for parts: designers that can be told what to do, and roads that cost nothing."""
 
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import pytest
 
 from roadgpt import design, plugins
 from roadgpt.brief.model import Brief
+from roadgpt.campaign import Campaign, run_folder
+from roadgpt.campaign.model import Cell
+from roadgpt.campaign.run_folder import RunFolder
+from roadgpt.campaign.single_test import Task
+from roadgpt.chat import Meter
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Segment, World
+from roadgpt.run import Draw, Request, Run
 
 STRAIGHT = Segment(distance=50, direction="straight", incline=2)
 
@@ -64,6 +71,25 @@ class Unable(Designer):
         return super().draft(brief, world, notes, earlier, seed)
 
 
+def folder_of(
+    request: Request,
+    roads: int,
+    out: Path,
+    one: Callable[[int, Sequence[Design]], Run],
+    draw: Draw | None = None,
+    patch: Callable[[str, object], None] | None = None,
+) -> Campaign:
+    """A campaign whose Runs ``one`` makes, of a road's number and the designs before it."""
+
+    def run_test(task: Task, cell: Cell, earlier: Sequence[Sequence[Design]], meter: Meter) -> Run:
+        return one(task.number, [design for block in earlier for design in block])
+
+    (patch or (lambda name, value: setattr(run_folder, name.rpartition(".")[2], value)))(
+        "roadgpt.campaign.run_folder.run_test", run_test
+    )
+    return Campaign(RunFolder.opened(request, roads, out), Brief(words=request.words), draw)
+
+
 def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
     """Let these designers (one object each) be found and asked besides what is installed."""
     installed = plugins.find
@@ -76,3 +102,4 @@ def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:
 
     monkeypatch.setattr(plugins, "find", find)
     monkeypatch.setattr("roadgpt.run.designer_of", designer_of)
+    monkeypatch.setattr("roadgpt.campaign.folder_campaign.designer_of", designer_of)

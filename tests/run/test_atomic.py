@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.run.atomic import held, json_text, sweep, whole_folder, write_whole
+from roadgpt.errors import UsageError
+from roadgpt.run.atomic import LOCK, alone_in, json_text, sweep, whole_folder, write_whole
 
 
 def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
@@ -82,12 +83,11 @@ def test_numbers_that_are_not_finite_become_null() -> None:
 def test_a_lock_that_is_let_go_is_taken_by_one_only(tmp_path: Path) -> None:
     """One opens the file, the holder lets go, a third comes: it must meet the same file."""
     fcntl = pytest.importorskip("fcntl", reason="no locks on this platform")
-    lock = tmp_path / "lock"
-    with held(lock):
-        waiting = lock.open("w")
+    with alone_in(tmp_path):
+        waiting = (tmp_path / LOCK).open("w")
     with waiting:
         fcntl.flock(waiting, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        with pytest.raises(BlockingIOError), held(lock):
+        with pytest.raises(UsageError, match="another process is at work"), alone_in(tmp_path):
             pass
 
 
@@ -98,7 +98,7 @@ def test_a_failure_under_the_lock_is_what_is_told(tmp_path: Path, monkeypatch: p
         raise PermissionError(32, "the file is being used")
 
     monkeypatch.setattr(Path, "unlink", refuse)
-    with pytest.raises(ZeroDivisionError), held(tmp_path / "lock"):
+    with pytest.raises(ZeroDivisionError), alone_in(tmp_path):
         _ = 1 / 0
-    with held(tmp_path / "lock"):
+    with alone_in(tmp_path):
         pass

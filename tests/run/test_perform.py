@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 
 from roadgpt.brief.model import Brief
+from roadgpt.campaign import campaign
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import Road, World
-from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, campaign, perform, prove, read_run, seed_of
+from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of
 from run.doubles import TOO_STEEP, Designer, Learner, Stubborn, Unable, a_design, put_on_shelf
 
 BRIEF = Brief(words="two straights and a turn")

@@ -13,7 +13,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
 from roadgpt.run import Request, Run, Setup, prove, read_run, write_run
 from roadgpt.run.sbft_json import test_of as as_test
-from roadgpt.run.tables import Tally, write_description
+from roadgpt.run.tables import Tally, TallyEntry, write_description
 from run.doubles import TOO_STEEP, a_design
 
 NEVER = """
@@ -127,7 +127,7 @@ def test_what_was_not_driven_has_no_outcome_of_a_drive(runs: dict[str, Run]) -> 
 def test_tables_have_the_competition_s_columns_and_count(runs: dict[str, Run], tmp_path: Path) -> None:
     tally = Tally()
     for run in (*runs.values(), runs["FAIL"]):
-        tally.add(run)
+        tally.add(TallyEntry.of(run))
     tally.write(tmp_path)
     write_description(runs["PASS"].request, 6, tmp_path)
     (generation,) = csv.DictReader((tmp_path / "generation_stats.csv").open())

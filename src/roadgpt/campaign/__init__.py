@@ -18,6 +18,7 @@ from typing import Any
 # Each is imported when it is first used: a worker that starts wants none of it yet.
 _MODULES = {
     "Budget": "model",
+    "Campaign": "folder_campaign",
     "Cell": "model",
     "Generator": "model",
     "Goal": "model",
@@ -27,6 +28,7 @@ _MODULES = {
     "Plan": "plan",
     "Record": "record",
     "begin": "lifecycle",
+    "campaign": "folder_campaign",
     "read_plan": "plan_file",
     "kept_run": "rerun",
     "read_trace": "rerun",
@@ -49,8 +51,8 @@ class _Room(ModuleType):
     function."""
 
     def __call__(self, *values: Any, **named: Any) -> Any:
-        """``roadgpt.run.campaign``: once this room is imported, ``roadgpt.campaign`` names the room."""
-        return import_module("roadgpt.run").campaign(*values, **named)
+        """Calls ``roadgpt.campaign.campaign``: once imported, ``roadgpt.campaign`` names the room."""
+        return self.campaign(*values, **named)
 
 
 sys.modules[__name__].__class__ = _Room

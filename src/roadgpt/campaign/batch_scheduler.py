@@ -15,13 +15,15 @@ from roadgpt.road import Design
 REMEMBERED = 2048  # designs that a draft is not to repeat, 50 MB in each worker; older ones are forgotten
 STRIDE = 512  # of them at a time, so that what designers remember of the others stays of use
 LAG = 2  # batches: number k knows results up to k - 2
+GIVE_UP = 3  # roads that cannot be designed, before any that could
 
 
 class BatchScheduler:
     """Requests batches of tests from the generator of one cell.
 
     Batch k is requested once all tests of batch k - 2 have ended. The generator has then received the results
-    of batches 0 to k - 2, and no later ones.
+    of batches 0 to k - 2, and no later ones. In a cell whose tests run one after another, a batch is one
+    test, which is requested once all earlier tests have ended.
     """
 
     def __init__(self, cell: Cell, store: Store) -> None:
@@ -32,7 +34,9 @@ class BatchScheduler:
             "SELECT seconds, closed FROM cells WHERE name = ?", (cell.name,)
         )
         self._generator: Generator | None = None
-        self._batches_told = 0
+        self._lag = 1 if cell.in_sequence else LAG
+        self._unfinished = {batch.number for batch in self.batches if batch.left}
+        self._batches_told = self._tests_told = 0
         self._has_road = False
 
     @property
@@ -50,12 +54,13 @@ class BatchScheduler:
     @property
     def is_done(self) -> bool:
         """True if all tests of the cell have ended and no further ones will be requested."""
-        return self.is_closed and not any(batch.left for batch in self.batches[-LAG:])
+        return self.is_closed and not self._unfinished
 
     @property
     def may_ask(self) -> bool:
         """True if the next batch may be requested now."""
-        return not self.is_closed and not any(batch.left for batch in self.batches[: 1 - LAG][-1:])
+        last = len(self.batches) - self._lag
+        return not self.is_closed and not any(number <= last for number in self._unfinished)
 
     @property
     def is_late(self) -> bool:
@@ -66,6 +71,8 @@ class BatchScheduler:
     def ended(self, batch: int) -> None:
         """Counts one more test of a batch as ended."""
         self.batches[batch].left -= 1
+        if not self.batches[batch].left:
+            self._unfinished.remove(batch)
 
     def close(self, why: str) -> None:
         """Closes the cell for a reason, which is stored: no further batch is requested."""
@@ -83,11 +90,12 @@ class BatchScheduler:
                 without a description.
         """
         batch, first = len(self.batches), self.asked + 1
-        generator = self._taught(batch - LAG)
-        if batch >= LAG and not self._has_road:
+        generator = self._taught(batch - self._lag)
+        if self._tests_told >= GIVE_UP and not self._has_road:
             self.close(f"no road could be designed: {self._last.description}")
             return []
-        n = min(generator.batch_size, self.cell.budget.most - self.asked)
+        most = 1 if self.cell.in_sequence else generator.batch_size
+        n = min(most, self.cell.budget.most - self.asked)
         proposals = generator.ask(batch, first, n, pool)
         if len(proposals) > n:
             raise RoadGPTError(
@@ -104,6 +112,7 @@ class BatchScheduler:
             return []
         self._store.add_batch(self.cell.name, batch, first, proposals)
         self.batches.append(Batch(batch, first, len(proposals), len(proposals)))
+        self._unfinished.add(batch)
         return [*enumerate(proposals, first)]
 
     def _taught(self, last: int) -> Generator:
@@ -117,6 +126,7 @@ class BatchScheduler:
             self._last = results[-1]
             generator.tell(results)
             self._batches_told += 1
+            self._tests_told += len(results)
         return generator
 
     def _results(self, batch: Batch) -> list[Result]:
@@ -125,9 +135,9 @@ class BatchScheduler:
 
     def known(self, batch: int) -> range:
         """Returns the numbers of the batches whose designs a draft of this batch has to differ from."""
-        last = batch - LAG
-        if last < 0:
-            return range(0)
+        last = batch - self._lag
+        if last < 0 or self.cell.in_sequence:
+            return range(last + 1)
         last_known = self.batches[last].first + self.batches[last].n - 1
         oldest = max(0, -(-(last_known - REMEMBERED) // STRIDE) * STRIDE)
         begin = bisect(self.batches, oldest, key=lambda one: one.first + one.n - 1)

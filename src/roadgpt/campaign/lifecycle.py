@@ -6,7 +6,7 @@ work      runs the tests that have not ended; interruptions do not change the re
 
 import sqlite3
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from roadgpt import plugins
@@ -27,10 +27,9 @@ from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup, brief_of
-from roadgpt.run.atomic import held, refuse_links, sweep
+from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
 from roadgpt.run.versions import versions_of
 
-LOCK = "campaign.lock"
 LOG = "workers.log"
 USER_NAMES = {
     "prompts": "descriptions",
@@ -57,7 +56,7 @@ def begin(plan: Plan, folder: Path) -> bool:
     plan.check()
     _admit(plan)
     _is_free(folder)
-    with _lone(folder), _without_trace(folder):
+    with alone_in(folder), _without_trace(folder):
         if (folder / STORE).is_file():
             _same(plan, folder)
             return True
@@ -144,22 +143,6 @@ def plan_of(record: Record) -> Plan:
         return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
 
 
-@contextmanager
-def _lone(folder: Path) -> Iterator[None]:
-    """Makes this process the only one that works in a folder, which is made where there is none."""
-    with ExitStack() as stack:
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            stack.enter_context(held(folder / LOCK))
-        except BlockingIOError as error:
-            raise UsageError(
-                f"another process is at work in {folder}; wait for it or name another folder"
-            ) from error
-        except OSError as error:
-            raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
-        yield
-
-
 def work(
     folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
 ) -> Iterator[Progress]:
@@ -183,7 +166,7 @@ def work(
     kind: type[Executor] = plugins.find("executors", executor)
     if not (folder / STORE).is_file():
         raise no_campaign(folder)
-    with _lone(folder), Store.opened(folder) as store:
+    with alone_in(folder), Store.opened(folder) as store:
         if plan is not None:
             store.set_plan(plan.model_dump_json())
         else:
@@ -195,7 +178,7 @@ def work(
                 staff = WorkerConfig(
                     workers, WorkerSetup(_setups(plan)), plan.patience, folder / LOG, address
                 )
-                yield from _worked(kind, staff, plan, store)
+                yield from Scheduler(store, staff, kind, plan.budget.tests, plan.chat).run()
             except (OSError, sqlite3.Error) as error:
                 raise refused(folder, error) from error
         if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
@@ -204,17 +187,6 @@ def work(
 
 def _setups(plan: Plan) -> tuple[Setup, ...]:
     return tuple(dict.fromkeys(request.setup for request, _ in plan.requests()))
-
-
-def _worked(kind: type[Executor], config: WorkerConfig, plan: Plan, store: Store) -> Iterator[Progress]:
-    scheduler = Scheduler(plan, store, config, kind)
-    try:
-        yield from scheduler.run()
-    except BaseException:
-        scheduler.leave()
-        raise
-    finally:
-        scheduler.executor.stop()
 
 
 def _conclude(folder: Path, store: Store) -> None:
@@ -237,4 +209,4 @@ def _sweep(folder: Path, store: Store) -> None:
                 path.unlink()
 
 
-__all__: Sequence[str] = ("LOCK", "LOG", "begin", "plan_of", "work")
+__all__: Sequence[str] = ("LOG", "begin", "plan_of", "work")

@@ -112,6 +112,10 @@ class Cell:
     settings: Mapping[str, Any] = field(default_factory=dict)
     """The generator's settings, which its own documentation describes."""
     budget: Budget = UNLIMITED
+    in_sequence: bool = False
+    """True if each test is proposed only after the one before has ended, so that every draft differs from all
+    earlier ones, as in ``roadgpt run``.
+    """
 
 
 class Pool(Protocol):

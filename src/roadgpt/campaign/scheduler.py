@@ -4,23 +4,32 @@ further tests.
 
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from roadgpt.campaign.batch_scheduler import BatchScheduler
 from roadgpt.campaign.budget_allocator import BudgetAllocator
 from roadgpt.campaign.executors import Executor, FinishedJob, Job, RunningJob, WorkerConfig
 from roadgpt.campaign.model import Cell
-from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.single_test import FinishedTest, OutOfAllowance, Task, execute, failed
+from roadgpt.campaign.single_test import (
+    FinishedTest,
+    OutOfAllowance,
+    Task,
+    execute,
+    failed_run,
+    result_of,
+)
 from roadgpt.campaign.store import Store
-from roadgpt.campaign.traces import Trace, write_traces
+from roadgpt.chat import ChatSettings
 from roadgpt.errors import BudgetError, RoadGPTError
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.stopping import look
 
+if TYPE_CHECKING:
+    from roadgpt.campaign.traces import Trace
+
 WAIT = 0.25  # s for results, before looking round
-GROUP_SECONDS = 1.0  # that a result waits to be kept: so much work is lost at most when the process is killed
 GROUP = 128  # results that are kept together, at most: 10 MB of drives
 PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
 
@@ -51,17 +60,44 @@ class _Out:
     task: Task
 
 
+def _lost(out: _Out, why: str) -> FinishedTest:
+    """Returns the end of a test whose workers died."""
+    run = failed_run(out.task, out.schedule.cell, why)
+    return FinishedTest(result_of(run, out.task, {}))
+
+
 class Scheduler:
     """Runs one session of a campaign in the process that writes the store, with its workers."""
 
-    def __init__(self, plan: Plan, store: Store, staff: WorkerConfig, kind: type[Executor]) -> None:
+    def __init__(
+        self,
+        store: Store,
+        staff: WorkerConfig,
+        kind: type[Executor],
+        tests: int | None = None,
+        chat: ChatSettings | None = None,
+        run_test: Callable[..., FinishedTest | OutOfAllowance] | None = None,
+    ) -> None:
+        """Prepares the session.
+
+        Args:
+            store: the campaign's store.
+            staff: the workers to request.
+            kind: the executor.
+            tests: number of tests of each cell; None if only time limits them.
+            chat: this session's settings of the language model, whose limits the tests share; None: those of
+                each cell, without limits here.
+            run_test: runs a test on a worker, given its Task, its Cell and blocks of earlier designs; None:
+                ``single_test.execute``.
+        """
         self._store = store
         self._staff = staff
         self._names = [name for (name,) in store.query("SELECT name FROM cells ORDER BY name")]
-        self._allocator = BudgetAllocator(plan.chat, *store.spent())
-        self._chat = plan.chat
+        self._allocator = BudgetAllocator(chat, *store.spent())
+        self._chat = chat
+        self._run_test = run_test or execute
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
-        total = plan.budget.tests and plan.budget.tests * len(self._names)
+        total = tests and tests * len(self._names)
         self.progress = Progress(total, Counter(dict(counts)), of_cells=len(self._names))
         self._next = 0
         self._schedules: list[BatchScheduler] = []
@@ -77,8 +113,20 @@ class Scheduler:
         self._has_news = False
         self.executor = kind(staff)
 
-    def run(self) -> Iterator[Progress]:
-        """Runs tests until none is left; yields the progress after every group of results."""
+    def run(self) -> Generator[Progress, None, None]:
+        """Runs tests until none is left; yields the progress after every group of results.
+
+        However it ends, the results so far are stored and the workers are ended.
+        """
+        try:
+            yield from self._run()
+        except BaseException:
+            self._leave()
+            raise
+        finally:
+            self.executor.stop()
+
+    def _run(self) -> Iterator[Progress]:
         self._store.begin_session(self._staff.workers)
         while self._error is None:
             look()
@@ -96,8 +144,7 @@ class Scheduler:
         self._keep()
         yield self.progress
 
-    def leave(self) -> None:
-        """Stores the results so far when the session ends early."""
+    def _leave(self) -> None:
         self.executor.stop()
         if self._may_write and self._error is None:
             try:
@@ -151,7 +198,7 @@ class Scheduler:
 
     def _with_chat(self, cell: Cell) -> Cell:
         """Returns the cell with this session's settings of the language model: its limits may differ."""
-        if cell.request.setup.chat is None:
+        if self._chat is None or cell.request.setup.chat is None:
             return cell
         setup = cell.request.setup.model_copy(update={"chat": self._chat})
         return replace(cell, request=cell.request.model_copy(update={"setup": setup}))
@@ -166,7 +213,7 @@ class Scheduler:
             self._out[self._keys] = _Out(schedule, test)
             self._allocator.give(self._keys, test.allowance)
             needs = (schedule.cell.name, *self._earlier(schedule, test))
-            jobs.append(Job(self._keys, execute, test, needs))
+            jobs.append(Job(self._keys, self._run_test, test, needs))
         self.executor.submit(jobs)
 
     def _earlier(self, schedule: BatchScheduler, test: Task) -> list[str]:
@@ -183,7 +230,8 @@ class Scheduler:
                 self.executor.share(f"{name}/{batch}", schedule.designs(batch))
                 shared.add(batch)
         # tests of the batch before may still wait for what this one needs no more
-        for batch in [batch for batch in shared if batch < schedule.known(max(test.batch - 1, 0)).start]:
+        oldest = schedule.known(max(test.batch - 1, 0)).start
+        for batch in [batch for batch in shared if batch < oldest]:
             self.executor.forget(f"{name}/{batch}")
             shared.remove(batch)
         return [f"{name}/{batch}" for batch in wanted]
@@ -202,7 +250,7 @@ class Scheduler:
         self._out[self._keys] = _Out(one.schedule, task)
         self._allocator.give(self._keys, everything)
         needs = (one.schedule.cell.name, *self._earlier(one.schedule, task))
-        self.executor.submit([Job(self._keys, execute, task, needs)])
+        self.executor.submit([Job(self._keys, self._run_test, task, needs)])
 
     # Taking in
 
@@ -212,9 +260,7 @@ class Scheduler:
             if done.error is not None:
                 self._error = self._error or done.error
                 continue
-            value: FinishedTest | OutOfAllowance = (
-                FinishedTest(failed(out.task, done.lost)) if done.lost else done.value
-            )
+            value: FinishedTest | OutOfAllowance = _lost(out, done.lost) if done.lost else done.value
             self._allocator.back(done.key, value.spent)
             if isinstance(value, OutOfAllowance):
                 self._store.spend(value.spent)
@@ -232,17 +278,16 @@ class Scheduler:
         session."""
         if not self._losses.count(out, ended.is_lost) or self._error is not None:
             return
-        folder = self._store.folder
         self._keep()
         for lost in self._losses.lost:
             self._store.reopen(lost.schedule.cell.name, lost.task.number, lost.task.batch)
         self.progress.outcomes["ERROR"] -= len(self._losses.lost)
         reason = ended.result.description
-        self._error = self._losses.given_up(reason, f"fix it and continue with: roadgpt resume {folder}")
+        self._error = self._losses.given_up(reason, f"fix it and {self._store.how_to_continue}")
 
     def _is_due(self) -> bool:
         waited = time.monotonic() - (self._oldest if self._pending else self._looked)
-        return waited >= GROUP_SECONDS or len(self._pending) >= GROUP
+        return waited >= self._store.group_seconds or len(self._pending) >= GROUP
 
     def _keep(self) -> None:
         """Stores what has ended: the drives first, so that every stored result has its drive."""
@@ -262,7 +307,9 @@ class Scheduler:
         for schedule in [*self._schedules]:
             self._drop_if_done(schedule)
 
-    def _kept_drives(self, drives: Sequence[tuple[str, int, Trace]]) -> tuple[int, str]:
+    def _kept_drives(self, drives: "Sequence[tuple[str, int, Trace]]") -> tuple[int, str]:
+        from roadgpt.campaign.traces import write_traces
+
         number = self._store.next_trace()
         return number, write_traces(self._store.folder, number, drives)
 

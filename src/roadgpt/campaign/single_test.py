@@ -1,20 +1,19 @@
 """Runs one test of a cell on a worker: from its proposal to its result."""
 
 import traceback
-from dataclasses import dataclass
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, NamedTuple
 
-from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.campaign.model import Cell, Proposal, Result
-from roadgpt.campaign.traces import Trace, trace_of
 from roadgpt.chat import ChatError, Meter, ReplyError, Spent
 from roadgpt.errors import BudgetError, DesignError, PartError, RoadGPTError, UsageError
 from roadgpt.provenance import join, known
 from roadgpt.road import Design
 from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_of
-from roadgpt.run.execution import records_of
-from roadgpt.run.features import features_of
-from roadgpt.run.sbft_json import PER_POINT
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.traces import Trace
 
 CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be blamed for
 
@@ -45,7 +44,7 @@ class FinishedTest:
     """A test that has ended: its result, and data that may differ if it is run again, such as times."""
 
     result: Result
-    trace: Trace | None = None
+    trace: "Trace | None" = None
     seconds: Seconds = NO_TIME
     spent: Spent | None = None
     error: str = ""
@@ -83,7 +82,7 @@ class WorkerSetup:
 
 
 def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTest | OutOfAllowance:
-    """Runs one test.
+    """Runs one test of a campaign whose results go into a store.
 
     Args:
         task: the test to run.
@@ -93,25 +92,41 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     Raises:
         PartError, UsageError, ChatError: an error that every other test would meet as well.
     """
+    from roadgpt.campaign.traces import trace_of
+
     meter = Meter(task.allowance.tokens, task.allowance.cost)
     try:
-        run = run_of(cell, task.number, task.proposal, earlier, meter)
-        trace = trace_of(run.drive) if run.drive is not None else None
-        return FinishedTest(result_of(run, cell, task), trace, run.seconds, run.spent, run.trace, run.is_lost)
-    except (DesignError, ReplyError) as error:
-        return FinishedTest(failed(task, str(error)), spent=meter.spent if meter.spent.calls else None)
+        run = run_test(task, cell, earlier, meter)
     except BudgetError as error:
         return OutOfAllowance(meter.spent, str(error))
     except CONCERNS_ALL:
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
         sentence = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
-        return FinishedTest(failed(task, sentence), error=traceback.format_exc())
+        run = failed_run(task, cell, sentence, traceback.format_exc())
+    trace = trace_of(run.drive) if run.drive is not None else None
+    result = result_of(run, task, features_in(run))
+    return FinishedTest(result, trace, run.seconds, run.spent, run.trace, run.is_lost)
 
 
-def failed(task: Task, sentence: str) -> Result:
-    """Returns the result of a test that ended without a road or a drive."""
-    return Result(task.number, task.batch, task.proposal, "ERROR", sentence, task.proposal.design)
+def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
+    """Returns the Run of a test; one with the outcome ERROR if no road can be designed.
+
+    It raises all other errors that ``run.perform`` and ``run.prove`` raise.
+    """
+    before = meter.spent
+    try:
+        return run_of(cell, task.number, task.proposal, earlier, meter)
+    except (DesignError, ReplyError) as error:
+        spent = meter.spent.since(before)
+        return replace(failed_run(task, cell, str(error)), spent=spent if spent.calls else None)
+
+
+def failed_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
+    """Returns the Run of a test that ended without a road or a drive, for a reason given in a sentence."""
+    number, proposal = task.number, task.proposal
+    seed = seed_of_driver(number, proposal)
+    return Run(cell.request, number, seed, "ERROR", sentence, design=proposal.design, trace=trace)
 
 
 def run_of(
@@ -137,13 +152,22 @@ def seed_of_driver(number: int, proposal: Proposal) -> int:
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 
 
-def result_of(run: Run, cell: Cell, task: Task) -> Result:
+def features_in(run: Run) -> dict[str, float]:
+    """Returns the features of a valid road and its drive by name; empty for an invalid road."""
+    from roadgpt.campaign.behaviour import behaviour_of
+    from roadgpt.run.execution import records_of
+    from roadgpt.run.features import features_of
+    from roadgpt.run.sbft_json import PER_POINT
+
+    if not run.is_valid or run.road is None:
+        return {}
+    records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
+    return features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, run.brief)
+
+
+def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:
     """Returns the part of a Run that a campaign stores as the test's result."""
     verdict = run.verdict
-    features: dict[str, float] = {}
-    if run.is_valid and run.road is not None:
-        records = records_of(run.road, run.drive, run.world) if run.drive is not None else []
-        features = features_of(run.road.centreline(PER_POINT), records) | behaviour_of(run.road, cell.brief)
     return Result(
         number=task.number,
         batch=task.batch,

@@ -64,6 +64,11 @@ CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 class Store(Record):
     """A campaign's store, open for writing; the docstring of this module describes its tables."""
 
+    group_seconds = 1.0
+    """Longest time that a result waits to be stored, seconds: the work that is lost when the process is
+    killed.
+    """
+
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         super().__init__(path, db)
         self._features: set[str] = set()
@@ -132,6 +137,11 @@ class Store(Record):
             raise UsageError(f"{store.path} cannot be written ({error}); name another folder") from error
         store._features = {*store.feature_names()}
         return store
+
+    @property
+    def how_to_continue(self) -> str:
+        """How to continue the campaign, as the end of a sentence."""
+        return f"continue with: roadgpt resume {self.folder}"
 
     @contextmanager
     def _whole(self) -> Iterator[sqlite3.Connection]:

@@ -68,9 +68,8 @@ def _suites(folder: Path) -> Iterator["Suite"]:
 def _of_runs(folder: Path) -> "Suite":
     from roadgpt.report.junit import Suite
     from roadgpt.run import read_run
-    from roadgpt.run.campaign_runs import finished
     from roadgpt.run.card import read_card
-    from roadgpt.run.folder import run_folder
+    from roadgpt.run.folder import finished, run_folder
     from roadgpt.run.sbft_json import test_name
 
     request = read_card(folder).request

@@ -119,9 +119,8 @@ def of_runs(folder: Path) -> WithoutFailure | None:
     """Returns the results of a folder of runs for suggestions; None if a road failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
-    from roadgpt.run.campaign_runs import finished
     from roadgpt.run.card import read_card
-    from roadgpt.run.folder import run_folder
+    from roadgpt.run.folder import finished, run_folder
 
     card = read_card(folder)
     rows = [row_of(read_run(run_folder(folder, index)), "") for index in finished(folder)]

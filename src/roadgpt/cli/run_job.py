@@ -20,9 +20,10 @@ from roadgpt.cli.streams import apart
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
+    from roadgpt.campaign import Campaign
     from roadgpt.report import Format, Scale
     from roadgpt.road import World
-    from roadgpt.run import Campaign, Setup
+    from roadgpt.run import Setup
     from roadgpt.run.folder import Draw
 
 SURE = 0.6  # confidence under which a reading is right less often than two times in three
@@ -55,8 +56,9 @@ def carry_out(job: RunJob, screen: Screen) -> None:
         RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
         KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
     """
+    from roadgpt.campaign import campaign
     from roadgpt.chat import Meter
-    from roadgpt.run import brief_of, campaign
+    from roadgpt.run import brief_of
 
     beside = _beside(job)
     meter = Meter.of(job.setup.chat)

@@ -16,9 +16,8 @@ from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.result_row import WIDEST, metres, row_of, spending
 from roadgpt.cli.road_names import NamedRoad, roads_named
 from roadgpt.errors import UsageError
-from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import read_card
-from roadgpt.run.folder import read_run, run_folder
+from roadgpt.run.folder import finished, read_run, run_folder
 from roadgpt.run.model import Run
 from roadgpt.verdict import Verdict
 from roadgpt.verdict.severity import percent

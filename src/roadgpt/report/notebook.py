@@ -4,13 +4,14 @@ from typing import Any
 
 from matplotlib.figure import Figure
 
+from roadgpt.campaign import Campaign
 from roadgpt.errors import RoadGPTError
 from roadgpt.report.birds_eye import birds_eye
 from roadgpt.report.canvas import encoded, in_our_style
 from roadgpt.report.overview import pages
 from roadgpt.report.plotting import plot
 from roadgpt.road import Design, Road
-from roadgpt.run import Campaign, Run
+from roadgpt.run import Run
 
 SIDE = 5.0  # inches
 

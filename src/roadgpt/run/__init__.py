@@ -1,11 +1,10 @@
-"""The whole pipeline from words to verdict. Main functions: ``perform``, ``prove`` and ``campaign``.
+"""The whole pipeline from words to verdict. Main functions: ``perform`` and ``prove``.
 
     words --read--> Brief --draft--> Design --build--> Road --inspect--> Findings --simulate--> Drive
                                ^                                  |        (none)                 |
                                '----------- their sentences ------'                  Verdict <--judge
 
-``perform`` makes a Run from words, ``prove`` makes a Run from an existing Design or Road, and ``campaign``
-makes a folder of Runs.
+``perform`` makes a Run from words, and ``prove`` makes a Run from an existing Design or Road.
 """
 
 import time
@@ -13,7 +12,6 @@ import traceback
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt import plugins
@@ -28,7 +26,6 @@ from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
-from roadgpt.run.campaign_runs import Campaign
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
@@ -39,7 +36,6 @@ from roadgpt.stopping import look
 from roadgpt.verdict import judge
 
 __all__ = [
-    "Campaign",
     "Draw",
     "Outcome",
     "Request",
@@ -47,7 +43,6 @@ __all__ = [
     "Seconds",
     "Setup",
     "brief_of",
-    "campaign",
     "check_parts",
     "perform",
     "prove",
@@ -165,49 +160,6 @@ def prove(
     checking = time.perf_counter() - begun
     run = Run(request, index, seed, brief=brief, design=design, road=road, findings=findings)
     return _driven(replace(run, versions=versions_of(setup), seconds=Seconds(checking)), despite_findings)
-
-
-def campaign(
-    words: str | Brief,
-    n: int,
-    seed: int = 0,
-    world: World = USUAL,
-    setup: Setup = PLAIN,
-    out: Path | str | None = None,
-    draw: Draw | None = None,
-    meter: Meter | None = None,
-) -> Campaign:
-    """Makes many Runs of one description, and writes each Run into one folder as soon as it is finished.
-
-    The roads are made while you iterate over the returned Campaign. Iterate over ``.all_runs()`` instead to
-    receive also the Runs that an earlier session made. ``.folder`` is the campaign's folder. If a driver or a
-    simulator fails, only the Run in which it failed is lost.
-
-    Args:
-        words: a description, or the Brief that was read from it.
-        n: number of roads.
-        seed: seed of the campaign; each road's own seed is derived from this seed and the road's index.
-        world: map, limits of the rules, surface.
-        setup: the reader, designer, rules, simulator and driver.
-        out: the folder. If it holds an interrupted campaign of the same request, that campaign is continued;
-            a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.
-        draw: writes pictures into the folders, as ``report.drawing()`` does; None: no pictures.
-        meter: as for ``perform``; the cost of earlier roads in the folder is added to it.
-
-    Raises:
-        BriefError: the words cannot be read.
-        UsageError: the folder holds something other than this campaign, or a plug-in is not installed.
-    """
-    meter = meter or Meter.of(setup.chat)
-    brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
-    designer_of(setup.designer, setup.chat)
-    check_parts(setup, world)
-
-    def one(index: int, earlier: Sequence[Design]) -> Run:
-        return perform(brief, seed, world, setup, index, earlier, meter)
-
-    return Campaign.opened(request, n, out, one, draw, meter)
 
 
 @cache

@@ -5,7 +5,7 @@ import math
 import os
 import shutil
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +16,7 @@ try:
 except ImportError:  # Windows has no such locks, and does without
     fcntl = None  # type: ignore[assignment]
 
+LOCK = "campaign.lock"
 PART = ".part"  # end of the name of what is not yet whole
 
 
@@ -50,20 +51,30 @@ def refuse_links(*paths: Path) -> None:
 
 
 @contextmanager
-def held(path: Path) -> Iterator[None]:
-    """Holds a lock file while the block runs; the system releases it when the process is killed.
+def alone_in(folder: Path) -> Iterator[None]:
+    """Makes this process the only one that works in a folder while the block runs; makes the folder if it
+    does not exist.
 
-    The lock file is not deleted afterwards: another process that had just opened it would hold a lock on a
-    deleted file, and Windows cannot delete open files.
+    It holds the folder's lock file, which the system releases when the process is killed. The file is not
+    deleted afterwards: another process that had just opened it would hold a lock on a deleted file, and
+    Windows cannot delete open files.
 
     Raises:
-        BlockingIOError: another process holds the lock.
-        UsageError: the path is not a regular file.
+        UsageError: another process works in the folder, or the folder cannot be used.
     """
-    refuse_links(path)
-    with path.open("a") as file:
-        if fcntl is not None:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    with ExitStack() as stack:
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            refuse_links(folder / LOCK)
+            file = stack.enter_context((folder / LOCK).open("a"))
+            if fcntl is not None:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise UsageError(
+                f"another process is at work in {folder}; wait for it or name another folder"
+            ) from error
+        except OSError as error:
+            raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder") from error
         yield
 
 

@@ -63,6 +63,14 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
         test: the content of the file ``test.NNNN.json``; None: the content that ``sbft_json.test_text``
             gives.
     """
+    folder = write_run_folder(run, campaign, draw)
+    write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)
+    return folder
+
+
+def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
+    """Writes the Run's own folder, but no test file, so that the Run does not count as finished yet; returns
+    the folder."""
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
     with whole_folder(folder) as draft:
@@ -70,7 +78,6 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
             (draft / name).write_bytes(content)
         if draw is not None:
             draw.of_run(run, draft)
-    write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)
     return folder
 
 
@@ -114,6 +121,17 @@ def _card(run: Run) -> dict[str, Any]:
         "versions": dict(run.versions),
         **{name: value.model_dump(mode="json") for name, value in asked.items() if value is not None},
     }
+
+
+def finished(campaign: Path) -> list[int]:
+    """Returns the numbers of the finished Runs in a campaign's folder, in ascending order."""
+    numbers = (path.name.split(".")[1] for path in campaign.glob("test.*.json"))
+    indices = sorted({int(number) for number in numbers if number.isdecimal()})
+    return [
+        index
+        for index in indices
+        if (campaign / test_name(index)).is_file() and run_folder(campaign, index).is_dir()
+    ]
 
 
 def is_run(path: Path) -> bool:

@@ -10,11 +10,12 @@ import io
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from roadgpt.run.atomic import write_whole
 from roadgpt.run.execution import records_of
-from roadgpt.run.model import Request, Run
-from roadgpt.run.sparseness import Sparseness, departure
+from roadgpt.run.model import Outcome, Request, Run, Seconds
+from roadgpt.run.sparseness import Departure, Sparseness, departure
 
 TABLES = ("generation_stats.csv", "oob_stats.csv")
 DESCRIPTION = "experiment_description.csv"
@@ -26,8 +27,32 @@ SETTINGS = (
 ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none where nobody is asked
 
 
+class TallyEntry(NamedTuple):
+    """The values of one Run that the tables of its folder count."""
+
+    number: int
+    """Number of the road, from 1."""
+    outcome: Outcome
+    is_valid: bool
+    has_road: bool
+    seconds: Seconds
+    simulated: float
+    """Duration of the drive, seconds of simulated time; 0 if the road was not driven."""
+    departure: Departure | None
+    """The place where the car left its lane; None if the test did not fail or the car did not leave it."""
+
+    @classmethod
+    def of(cls, run: Run) -> "TallyEntry":
+        """Returns the entry of a Run."""
+        found = None
+        if run.outcome == "FAIL" and run.road is not None and run.drive is not None:
+            found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
+        simulated = run.drive.duration if run.drive is not None else 0.0
+        return cls(run.index, run.outcome, run.is_valid, run.road is not None, run.seconds, simulated, found)
+
+
 class Tally:
-    """Counts of a campaign so far."""
+    """Counts the Runs of a folder."""
 
     def __init__(self) -> None:
         self.outcomes: Counter[str] = Counter()
@@ -37,29 +62,25 @@ class Tally:
         self.designing = self.driving = self.simulated = 0.0
         self.spread = Sparseness()
 
-    def add(self, run: Run) -> None:
+    def add(self, entry: TallyEntry) -> None:
         """Adds a Run to the counts."""
-        self._count(run, 1)
-        self.simulated += run.drive.duration if run.drive is not None else 0.0
-        if run.outcome != "FAIL" or run.road is None or run.drive is None:
-            return
-        found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
-        if found is None:
-            return
-        self.sides[found.side] += 1
-        if found.segment is not None:
-            self.spread.add(run.index, found.segment)
+        self._count(entry, 1)
+        self.simulated += entry.simulated
+        if entry.departure is not None:
+            self.sides[entry.departure.side] += 1
+            if entry.departure.segment is not None:
+                self.spread.add(entry.number, entry.departure.segment)
 
-    def take_back(self, run: Run) -> None:
+    def take_back(self, entry: TallyEntry) -> None:
         """Removes a Run from the counts; the Run must not have a drive."""
-        self._count(run, -1)
+        self._count(entry, -1)
 
-    def _count(self, run: Run, times: int) -> None:
-        self.outcomes[run.outcome] += times
-        self.valid += times * run.is_valid
-        self.with_road += times * (run.road is not None)
-        self.designing += times * run.seconds.design
-        self.driving += times * run.seconds.drive
+    def _count(self, entry: TallyEntry, times: int) -> None:
+        self.outcomes[entry.outcome] += times
+        self.valid += times * entry.is_valid
+        self.with_road += times * entry.has_road
+        self.designing += times * entry.seconds.design
+        self.driving += times * entry.seconds.drive
 
     def write(self, folder: Path) -> None:
         """Writes the two tables that change with each road: generation_stats.csv and oob_stats.csv."""

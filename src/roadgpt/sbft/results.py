@@ -21,7 +21,7 @@ from roadgpt.run.execution import records_of
 from roadgpt.run.features import features_of
 from roadgpt.run.folder import RUNS, Draw, write_run
 from roadgpt.run.model import Request
-from roadgpt.run.tables import DESCRIPTION, SETTINGS, TABLES, Tally, write_settings
+from roadgpt.run.tables import DESCRIPTION, SETTINGS, TABLES, Tally, TallyEntry, write_settings
 from roadgpt.sbft.experiment import Experiment
 
 HOME = Path("results")
@@ -73,7 +73,7 @@ class Results:
         """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
         test = test_of(run)
         write_run(run, self.folder, self._draw, json_text(test, indent=None))
-        self._tally.add(run)
+        self._tally.add(TallyEntry.of(run))
         self.numbers.add(run.index)
         self._tally.write(self.folder)
         return test

@@ -12,11 +12,10 @@ from multiprocessing.context import SpawnProcess
 from pathlib import Path
 from typing import NamedTuple
 
+from roadgpt.campaign import campaign
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import BriefError, DesignError, GivenUpError, RoadGPTError
-from roadgpt.run import campaign
-from roadgpt.run.campaign_runs import finished
-from roadgpt.run.folder import Draw
+from roadgpt.run.folder import Draw, finished
 from roadgpt.stopping import look, shielded
 from roadgpt.study.plan import StudyPart, StudyPlan
 

@@ -16,8 +16,7 @@ from roadgpt.reading import read_json
 from roadgpt.report.canvas import FORMATS
 from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
-from roadgpt.run.campaign_runs import finished
-from roadgpt.run.folder import run_folder
+from roadgpt.run.folder import finished, run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
 from roadgpt.study.plan import StudyPart

@@ -12,13 +12,13 @@ from click.testing import CliRunner
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from misbehaving import write
-from roadgpt.campaign import Budget, Plan, begin, status_of, work
+from roadgpt.campaign import Budget, Plan, begin, campaign, status_of, work
 from roadgpt.campaign.faults.stability import once
 from roadgpt.cli import app
 from roadgpt.drive.simulators.beamng.session import leave_all
 from roadgpt.errors import GivenUpError, RoadGPTError
 from roadgpt.road import Road, World
-from roadgpt.run import Request, Setup, campaign, prove
+from roadgpt.run import Request, Setup, prove
 from roadgpt.sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION

@@ -12,7 +12,7 @@ from beamngpy.connection import Connection
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from exported import HILLY
-from roadgpt.campaign import Budget, Plan, begin
+from roadgpt.campaign import Budget, Plan, begin, campaign
 from roadgpt.drive import Camera, Command, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
@@ -23,7 +23,7 @@ from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
 from roadgpt.export.exporters.beamng.files import items
 from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.run import Setup, campaign, prove
+from roadgpt.run import Setup, prove
 from roadgpt.verdict import judge
 
 OURS = Connection.PROTOCOL_VERSION

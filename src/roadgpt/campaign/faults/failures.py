@@ -15,9 +15,8 @@ from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Road, World, build
 from roadgpt.run import Run, Setup, read_run
-from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import CARD, read_card
-from roadgpt.run.folder import is_run, run_folder
+from roadgpt.run.folder import finished, is_run, run_folder
 from roadgpt.verdict.verdict import Verdict
 
 AT_ONCE = 500  # tests that a store is asked for

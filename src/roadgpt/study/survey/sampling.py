@@ -6,9 +6,8 @@ import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.run import Run, read_run
-from roadgpt.run.campaign_runs import finished
 from roadgpt.run.card import CARD
-from roadgpt.run.folder import run_folder
+from roadgpt.run.folder import finished, run_folder
 from roadgpt.run.seeds import seed_of
 from roadgpt.study.survey.item_criteria import criteria_of
 from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan

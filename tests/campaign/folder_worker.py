@@ -8,8 +8,7 @@ from pathlib import Path
 
 from roadgpt.road import Design
 from roadgpt.run import Request, Run, Setup, prove, seed_of
-from roadgpt.run.campaign_runs import Campaign
-from run.doubles import a_design
+from run.doubles import a_design, folder_of
 
 PICTURE = bytes(range(256)) * 4000  # a megabyte, so that many kills fall into the writing of files
 REQUEST = Request(words="a road to be interrupted", seed=7, setup=Setup(drives=False))
@@ -34,7 +33,7 @@ def perform(index: int, earlier: Sequence[Design]) -> Run:
 
 def main() -> None:
     """Say each road as it is done."""
-    campaign = Campaign.opened(REQUEST, int(sys.argv[2]), sys.argv[1], perform, Drawing())
+    campaign = folder_of(REQUEST, int(sys.argv[2]), Path(sys.argv[1]), perform, Drawing())
     for run in campaign.all_runs() if "--all" in sys.argv else campaign:
         print(run.index, flush=True)
         time.sleep(0.02 * ("--slow" in sys.argv))

@@ -1,0 +1,245 @@
+"""A folder of runs as the store of one cell: the files in it are the only record of its tests.
+
+``roadgpt run`` and each part of a study have such a folder, in the shape of the SBFT competition. A test has
+ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
+"""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from roadgpt.campaign.model import Cell, Proposal
+from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
+from roadgpt.chat import Meter, Spent
+from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.road import Design
+from roadgpt.run import Request, Run, read_run
+from roadgpt.run.atomic import LOCK, PART, json_text, missing, refuse_links, sweep, take_away, write_whole
+from roadgpt.run.card import CARD, Card, read_card
+from roadgpt.run.folder import RUNS, Draw, finished, remove_run, run_folder, write_run_folder
+from roadgpt.run.folder_names import HOME, new_folder
+from roadgpt.run.sbft_json import test_name, test_text
+from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
+
+
+@dataclass(frozen=True)
+class FinishedRun(FinishedTest):
+    """A test that has ended, whose Run is in a folder of runs."""
+
+    test_file: str = ""
+    """Content of ``test.NNNN.json``; empty if the file exists."""
+    entry: TallyEntry | None = None
+    """The values that the folder's tables count."""
+    run: Run | None = None
+    """The Run, if it was made in this process."""
+
+
+@dataclass(frozen=True)
+class RunWriter:
+    """Runs tests and writes their Runs into folders; workers receive it with each test."""
+
+    folders: Mapping[str, Path]
+    """The folder of each cell."""
+    draw: Draw | None = None
+    """Draws pictures into the folders of Runs; None: no pictures."""
+    meter: Meter | None = None
+    """Counts the use of language models in this process; None on workers, which ask none and return no
+    Run."""
+
+    def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedRun:
+        """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``.
+
+        Raises:
+            PartError, UsageError, ChatError: an error that every other test would meet as well.
+            RoadGPTError: a file cannot be written.
+        """
+        return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
+
+    def written(self, run: Run, task: Task, cell: str) -> FinishedRun:
+        """Writes the folder of a Run; returns the end of its test."""
+        with writing(self.folders[cell]):
+            write_run_folder(run, self.folders[cell], self.draw)
+        result, entry = result_of(run, task, {}), TallyEntry.of(run)
+        own = run if self.meter is not None else None
+        lost = run.is_lost
+        return FinishedRun(result, None, run.seconds, run.spent, run.trace, lost, test_text(run), entry, own)
+
+
+@contextmanager
+def writing(folder: Path) -> Iterator[None]:
+    """Turns an error of the system while writing into a folder into one clear sentence."""
+    try:
+        yield
+    except OSError as error:
+        raise RoadGPTError(
+            f"cannot write into {folder}: {error.strerror or error}; make room there and continue "
+            "with the same command and --out"
+        ) from error
+
+
+@dataclass
+class RunFolder:
+    """A folder of Runs of one request, new or from an earlier session."""
+
+    path: Path
+    request: Request
+    roads: int
+    """Number of roads requested."""
+    made: tuple[Path, ...] = ()
+    """Folders that were created for this one, the innermost first; removed if no road can be designed."""
+    tests: dict[int, FinishedRun] = field(default_factory=dict)
+    """The tests that have ended, by number."""
+    spent: Spent = field(default_factory=Spent)
+    """What language models cost for the tests of earlier sessions."""
+    failure: str = ""
+    """Why no road could be designed; empty if one could, or if none was tried."""
+    _tally: Tally = field(default_factory=Tally)
+    _held_back: list[FinishedRun] = field(default_factory=list)
+
+    @classmethod
+    def opened(cls, request: Request, roads: int, out: Path | str | None) -> "RunFolder":
+        """Opens a folder: a new one, or one that holds tests of the same request.
+
+        Raises:
+            UsageError: the folder holds something else, or cannot be created.
+        """
+        if roads < 1:
+            raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
+        if out is None:
+            made = missing(HOME)
+            path = new_folder(request.words, request.seed)
+            return cls(path, request, roads, (path, *made))
+        path = Path(out)
+        try:
+            made = missing(path)
+            path.mkdir(parents=True, exist_ok=True)
+            is_new = all(_may_lie_in_a_new_folder(each) for each in path.iterdir())
+        except OSError as error:
+            raise UsageError(f"cannot use {path}: {error.strerror}; name another folder") from error
+        folder = cls(path, request, roads, made)
+        if not is_new:
+            folder.take_up()
+        return folder
+
+    @property
+    def is_complete(self) -> bool:
+        """True if all tests have ended."""
+        return len(self.tests) >= self.roads
+
+    def take_up(self) -> Card:
+        """Reads the tests that are in the folder and not known yet; a Run that cannot be read does not count.
+
+        Raises:
+            UsageError: the folder holds Runs of another request, or more than were requested.
+        """
+        card = read_card(self.path)
+        there_was = card.request.essence()
+        other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
+        if other:
+            raise UsageError(
+                f"{self.path} holds other roads (different {' and '.join(other)}); name another folder"
+            )
+        there = finished(self.path)
+        if there and there[-1] > self.roads:
+            raise UsageError(
+                f"{self.path} holds road {there[-1]} already; ask for at least so many "
+                "roads or name another folder"
+            )
+        for index in there:
+            if index not in self.tests:
+                self._read(index)
+        return card
+
+    def _read(self, index: int) -> None:
+        try:
+            run = read_run(run_folder(self.path, index))
+        except UsageError:
+            return
+        if run.index == index:
+            task = Task(index, index - 1, Proposal(None, self.request.seed, "draft"))
+            result = result_of(run, task, {})
+            self._count(FinishedRun(result, None, run.seconds, run.spent, entry=TallyEntry.of(run)))
+            self.spent += run.spent or Spent()
+
+    def begin(self) -> bool:
+        """Prepares the folder for a session; returns True, and changes nothing, if all tests have ended.
+
+        Another process may have worked in the folder since it was opened.
+        """
+        if (self.path / CARD).is_file() and self.take_up().is_finished and self.is_complete:
+            return True
+        with writing(self.path):
+            refuse_links(self.path / RUNS)
+            sweep(self.path)
+            self._write_card(is_finished=False)
+            (self.path / RUNS).mkdir(exist_ok=True)
+            sweep(self.path / RUNS)
+            write_description(self.request, self.roads, self.path)
+        return False
+
+    def add(self, ended: FinishedRun) -> list[FinishedRun]:
+        """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
+
+        Tests without a road are held back until a road could be designed: a description that no road can meet
+        leaves no tests behind.
+        """
+        self._held_back.append(ended)
+        if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
+            return []
+        written, self._held_back = self._held_back, []
+        with writing(self.path):
+            for one in written:
+                write_whole(self.path / test_name(one.result.number), one.test_file)
+                self._count(one)
+                self._tally.write(self.path)
+        return written
+
+    def remove(self, number: int) -> None:
+        """Removes a test that has no drive, so that it is run when the campaign continues."""
+        ended = self.tests.pop(number, None)
+        with writing(self.path):
+            remove_run(number, self.path)
+            if ended is not None and ended.entry is not None:
+                self._tally.take_back(ended.entry)
+            self._tally.write(self.path)
+
+    def write_tables(self) -> None:
+        """Writes the tables, which count all tests in the folder."""
+        with writing(self.path):
+            self._tally.write(self.path)
+
+    def close(self, draw: Draw | None = None) -> None:
+        """Writes the tables, draws the picture of all roads, and marks the campaign as finished."""
+        with writing(self.path):
+            self._tally.write(self.path)
+            if draw is not None:
+                draw.of_campaign(self.path)
+            self._write_card(is_finished=True)
+
+    def drop_held_back(self) -> None:
+        """Removes the tests for which no road could be designed, and the folder if it then holds no test."""
+        with writing(self.path):
+            for one in self._held_back:
+                remove_run(one.result.number, self.path)
+                self.failure = one.result.description
+            self._held_back = []
+            if self.tests:
+                self._tally.write(self.path)
+            else:
+                names = (CARD, DESCRIPTION, *TABLES, LOCK)
+                take_away((self.path / name for name in names), (self.path / RUNS, *self.made))
+
+    def _count(self, ended: FinishedRun) -> None:
+        self.tests[ended.result.number] = replace(ended, test_file="", run=None)
+        if ended.entry is not None:
+            self._tally.add(ended.entry)
+
+    def _write_card(self, is_finished: bool) -> None:
+        card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
+        write_whole(self.path / CARD, json_text(card.model_dump(mode="json")))
+
+
+def _may_lie_in_a_new_folder(path: Path) -> bool:
+    """Checks for a file of a campaign that was stopped before it had a card."""
+    return path.name == LOCK or (path.name.startswith(CARD) and path.name.endswith(PART))
