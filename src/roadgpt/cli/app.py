@@ -13,9 +13,9 @@ from typing import Any
 import click
 
 from roadgpt import __version__, stopping
-from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, MISSING, renamed
+from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, renamed
 from roadgpt.cli.crash import report_crash
-from roadgpt.cli.leading_dash import dash_advice
+from roadgpt.cli.option_groups import dash_advice
 from roadgpt.cli.streams import OutputError, drop_output, is_coloured
 from roadgpt.errors import RoadGPTError
 from roadgpt.provenance import USER
@@ -166,9 +166,9 @@ def _module(name: str) -> str:
 
 def _with_advice(error: click.ClickException) -> click.ClickException:
     """Adds what to type to the message about a missing argument."""
-    if not isinstance(error, click.MissingParameter) or not error.param:
+    if not isinstance(error, click.MissingParameter):
         return error
-    advice = MISSING.get(error.param.human_readable_name, "")
+    advice = getattr(error.param, "advice", "")
     return click.UsageError(f"{error.format_message()} {advice}".strip(), error.ctx)
 
 

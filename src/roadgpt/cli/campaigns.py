@@ -1,6 +1,5 @@
 """Prints the progress of a running campaign, and its results."""
 
-import sys
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -8,8 +7,8 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.next_steps import lines, of_status
+from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, metres
-from roadgpt.cli.screen import new_bar
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults import Faults
@@ -26,11 +25,9 @@ LONGEST = 60  # letters of a description, in a line of a table
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     try:
-        if quiet or not sys.stderr.isatty():
-            for _ in steps:
-                pass
-        else:
-            _with_bar(steps)
+        with progress("tests", None, quiet, has_lines=False) as tell:
+            for step in steps:
+                tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
     except KeyboardInterrupt:
         click.echo(
             f"roadgpt: stopped; finished tests are kept; continue with: roadgpt resume {folder}", err=True
@@ -70,15 +67,6 @@ def as_line(status: "Status", found: "Faults | None") -> str:
 
     counts = found and {"faults": len(found.them), "failures": found.failures, "compared": found.compared}
     return json.dumps({**status.to_json(), "distinct": counts})
-
-
-def _with_bar(steps: "Iterator[Progress]") -> None:
-    bar = new_bar()
-    task = bar.add_task("tests", total=None, rate="")
-    with bar:
-        for progress in steps:
-            rate = outcomes_line(progress.outcomes)
-            bar.update(task, completed=progress.done, total=progress.total, rate=rate)
 
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
@@ -155,15 +143,3 @@ def one_line(text: str, most: int = 300) -> str:
     from roadgpt.chat.strict_json import plain
 
     return plain(text, most)
-
-
-def duration(seconds: float) -> str:
-    """Returns a duration as text: '42 s', '3 min 20 s', '2 h 05 min'."""
-    whole_seconds = round(seconds)
-    if whole_seconds < 60:
-        return f"{seconds:.1f} s" if seconds < 10 else f"{whole_seconds} s"
-    minutes, rest = divmod(whole_seconds, 60)
-    if minutes < 60:
-        return f"{minutes} min {rest:02d} s"
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes:02d} min"

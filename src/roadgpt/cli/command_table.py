@@ -70,23 +70,6 @@ EARLIER = {
 EARLIER_OPTIONS = {"--verge": "--shoulder"}
 EARLIER_VALUES = {"--view bonnet": "--view hood"}
 
-MISSING = {
-    "DESCRIPTION": 'Say what road you want: roadgpt run "an uphill road with 3 turns"',
-    "ROAD...": "Name one or more road files, or folders of runs.",
-    "RUN...": "Name the folder of a run, a folder of runs, or a campaign.",
-    "RUN|ROAD...": "Name one or more folders of runs, or road files.",
-    "ROAD|RUN...": "Name a road file or the folder of a run, or two to see them side by side.",
-    "RUN [RUN]": "Name the folder of a run, or two to see them side by side.",
-    "FILE.xodr": "Name an OpenDRIVE file.",
-    "formats": "Name a format: --to opendrive; 'roadgpt config plugins' lists them.",
-    "RUN": "Name the folder of a run, or the file of a design.",
-    "CHANGE": 'Say what to change: roadgpt edit RUN "make the second turn sharper"',
-    "DESCRIPTION|FILE.toml": 'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200',
-    "CAMPAIGN": "Name the folder of a campaign, as 'roadgpt campaign' printed it.",
-    "OUT": "Name the folder to write into.",
-}
-"""The advice for each missing argument, by the argument's name in the help."""
-
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:
     """Returns the arguments with the command's present name, and a sentence for the user if they had an

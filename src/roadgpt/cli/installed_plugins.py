@@ -9,8 +9,8 @@ from typing import Any
 import click
 
 from roadgpt import plugins
+from roadgpt.cli import options
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import json_option
 from roadgpt.errors import PartError
 
 
@@ -45,7 +45,7 @@ def _first_sentence(part: Any) -> str:
     return re.split(r"(?<=[.;:]) ", paragraph)[0].rstrip(".;:")
 
 
-@click.command("plugins", cls=GroupedCommand, params=[json_option("Print one JSON list.")])
+@click.command("plugins", cls=GroupedCommand, params=[options.json_option("Print one JSON list.")])
 def plugins_command(as_json: bool) -> None:
     """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
 

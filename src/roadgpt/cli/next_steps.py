@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from roadgpt.cli.options import WORLD
+from roadgpt.cli import options
 
 if TYPE_CHECKING:
     from roadgpt.campaign.status import Status
@@ -42,7 +42,7 @@ class WithoutFailure:
         """Whether enough tests were driven for suggestions, and command-line options can express the whole
         request.
         """
-        named = {flag.field for flag in WORLD}
+        named = {flag.field for flag in options.WORLD}
         usual = type(self.request.world)().model_dump(exclude=named)
         is_usual = self.request.world.model_dump(exclude=named) == usual
         return self.passed >= FEWEST and bool(self.request.words) and is_usual

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import copy
+from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -14,11 +15,23 @@ from roadgpt.errors import UsageError
 if TYPE_CHECKING:
     from roadgpt.chat.config import Layer, Setting
 
-FIRST, DESIGN, SITE, DRIVE = "Options", "Design and check", "World", "Drive and verdict"
-AGAIN, FILES, FAILURES, WORKERS = "Tests of a campaign", "Files", "Failures", "Workers"
-MODEL, BEAMNG, OUTPUT = "Language model", "BeamNG", "Output and help"
-HEADINGS = (FIRST, DESIGN, SITE, DRIVE, AGAIN, FILES, FAILURES, WORKERS, MODEL, BEAMNG, OUTPUT)
-"""The headings of a command's help, in their order."""
+
+class Heading(StrEnum):
+    """The headings of a command's help, in their order."""
+
+    FIRST = "Options"
+    DESIGN = "Design and check"
+    SITE = "World"
+    DRIVE = "Drive and verdict"
+    AGAIN = "Tests of a campaign"
+    FILES = "Files"
+    FAILURES = "Failures"
+    WORKERS = "Workers"
+    MODEL = "Language model"
+    BEAMNG = "BeamNG"
+    OUTPUT = "Output and help"
+
+
 FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
 
 
@@ -32,7 +45,7 @@ class Option(click.Option):
         sentence: The option's text in the help.
         kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
         default: The value without the option; the help shows it unless ``sentence`` does.
-        heading: The heading in the help, one of ``HEADINGS``.
+        heading: The heading in the help.
         is_rare: Whether only --help-all lists the option if its command has many options.
         table: The table of configuration files in which the option can be set; empty if it cannot be set.
             A switch that can be set also gets a name with --no-.
@@ -40,12 +53,14 @@ class Option(click.Option):
         guard: A function that refuses values which a configuration file must not set.
         unit: The factor from the unit of the field that the option sets to the option's own unit, such as 3.6
             for m/s and km/h.
+        advice: A sentence that says what to type where a required option is missing.
     """
 
     def __init__(
-        self, names: str, sentence: str, kind: Any = None, default: Any = None, *, heading: str = FIRST,
-        is_rare: bool = False, table: str = "", key: str = "", guard: Guard | None = None, unit: float = 1.0,
-        **rest: Any,
+        self, names: str, sentence: str, kind: Any = None, default: Any = None, *,
+        heading: Heading = Heading.FIRST, is_rare: bool = False, table: str = "", key: str = "",
+        guard: Guard | None = None, unit: float = 1.0,
+        advice: str = "", **rest: Any,
     ) -> None:  # fmt: skip
         first, *others = names.split()
         if kind is bool:
@@ -57,8 +72,9 @@ class Option(click.Option):
         self.flag = next((name for name in self.opts if name.startswith("--")), first)
         self.heading, self.is_rare, self.table = heading, is_rare, table
         self.key, self.guard, self.unit = key or self.flag[2:].replace("-", "_"), guard, unit
+        self.advice = advice
 
-    def under(self, heading: str) -> "Option":
+    def under(self, heading: Heading) -> "Option":
         """Returns the same option as one that every help lists, under another heading."""
         twin = copy(self)
         twin.heading, twin.is_rare = heading, False
@@ -179,6 +195,26 @@ class Option(click.Option):
         except click.BadParameter as error:
             why = error.message.rstrip(".")
             raise UsageError(f"the setting '{self.key}' from {origin} cannot be used: {why}") from None
+
+
+class Argument(click.Argument):
+    """An argument of a command, with the advice that is given where it is missing.
+
+    Args:
+        name: The name of the function's argument; with "..." behind it, the argument takes several values.
+        metavar: What the help calls it.
+        advice: A sentence that says what to type; empty if click's own message is enough.
+        kind: A type as click takes it, or a function that converts the text.
+        required: Whether it must be given.
+    """
+
+    def __init__(
+        self, name: str, metavar: str, advice: str = "", kind: Any = None, required: bool = True
+    ) -> None:
+        own = name.removesuffix("...")
+        many = -1 if own != name else 1
+        super().__init__([own], nargs=many, required=required, metavar=metavar, type=kind)
+        self.advice = advice
 
 
 def named(options: Sequence[Option], *fields: str) -> list[Option]:

@@ -1,13 +1,44 @@
 """Help with options in named groups: ``--help`` lists common options, ``--help-all`` lists every option."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 import click
 
 from roadgpt.cli.command_table import renamed_options
-from roadgpt.cli.leading_dash import dash_advice
-from roadgpt.cli.option import FROM_FILES, HEADINGS, OUTPUT, Option
+from roadgpt.cli.option import FROM_FILES, Heading, Option
+
+
+@contextmanager
+def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
+    """Turns click's error into advice if one of the words is a description with a leading dash."""
+    given = list(args)  # click takes them out of its list
+    try:
+        yield
+    except click.UsageError as error:
+        words = _description(given)
+        if words is None:
+            raise
+        raise click.UsageError(
+            f'put a description that begins with a dash last, after two dashes: roadgpt run -- "{words}"', ctx
+        ) from error
+
+
+def _description(args: Sequence[str]) -> str | None:
+    """Returns the first word that looks like a description rather than an option or its value; else None."""
+    before = ""
+    for word in args:
+        if word == "--":
+            break
+        if re.match(r"-+\s*[\w.,]+.*\s", word) and not word.startswith("--"):
+            return word
+        if re.match(r"-\d", word) and not before.startswith("-"):
+            return f"{word} ..."
+        before = word
+    return None
+
 
 WHOLE = 20  # a command with at most this many options lists all of them under --help
 ALL = "roadgpt.help_all"  # key of click's Context.meta while --help-all is answered
@@ -23,8 +54,8 @@ def _help_all(ctx: click.Context, parameter: click.Parameter, is_asked: bool) ->
 
 
 HELP_ALL = Option(
-    "--help-all", "Show every option and exit.", bool, heading=OUTPUT, is_eager=True, expose_value=False,
-    callback=_help_all,
+    "--help-all", "Show every option and exit.", bool, heading=Heading.OUTPUT, is_eager=True,
+    expose_value=False, callback=_help_all,
 )  # fmt: skip
 
 
@@ -54,7 +85,7 @@ class GroupedCommand(click.Command):
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Writes the options under their headings."""
         shown = [*self._shown(ctx)]
-        for heading in HEADINGS:
+        for heading in Heading:
             records = [record for its, record in shown if its == heading]
             if records:
                 with formatter.section(heading):
@@ -86,7 +117,7 @@ class GroupedCommand(click.Command):
             if record is not None and (is_all or option not in left_out):
                 names = record[0] if is_all else record[0].partition(" / ")[0]
                 # only click's own option --help is no Option
-                yield option.heading if isinstance(option, Option) else OUTPUT, (names, record[1])
+                yield option.heading if isinstance(option, Option) else Heading.OUTPUT, (names, record[1])
 
 
 class CommandGroup(click.Group):

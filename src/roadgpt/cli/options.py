@@ -12,18 +12,7 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli.configuration import designer_guard, driver_guard, path_guard, place_guard, reader_guard
-from roadgpt.cli.option import (
-    AGAIN,
-    BEAMNG,
-    DESIGN,
-    DRIVE,
-    FILES,
-    MODEL,
-    OUTPUT,
-    SITE,
-    WORKERS,
-    Option,
-)  # fmt: skip
+from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_types import (
     SEED,
     driver,
@@ -44,21 +33,21 @@ if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
     from roadgpt.road import World
 
-_world = partial(Option, heading=SITE, table="world")
-_run = partial(Option, heading=DESIGN, table="run")
-_chat = partial(Option, heading=MODEL)
-_rare = partial(Option, heading=MODEL, is_rare=True)
-_files = partial(Option, heading=FILES)
-_again = partial(Option, heading=AGAIN)
+_world = partial(Option, heading=Heading.SITE, table="world")
+_judged = partial(_world, heading=Heading.DRIVE)
+_run = partial(Option, heading=Heading.DESIGN, table="run")
+_chat = partial(Option, heading=Heading.MODEL)
+_rare = partial(Option, heading=Heading.MODEL, is_rare=True)
+_files = partial(Option, heading=Heading.FILES)
 
 # fmt: off
 WORLD = (
     _world("--map-size", "Side of the square map, m.", measure(50, 10_000, "metres"), 250),
-    _world("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6, heading=DRIVE,
-           key="speed_limit_kmh"),
-    _world("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
-           0.95, heading=DRIVE),
-    _world("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool, heading=DRIVE),
+    _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
+            key="speed_limit_kmh"),
+    _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
+            0.95),
+    _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
     _world("--lane-width", "Width of each of the two lanes, m.", measure(2, 10, "metres"), 4),
     _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
@@ -70,10 +59,10 @@ SETUP = (
     _run("--reader", "What reads descriptions: model, grammar or chat.", str, "model", guard=reader_guard),
     _run("--designer", "What designs roads: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
-    _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=DRIVE,
+    _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
-    _run("--simulator", "What simulates the car.", str, "mujoco", heading=DRIVE),
-    _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=DRIVE),
+    _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
+    _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
     _run("--geometry",
          "How a design becomes a road: lines, arcs and clothoids (arcs), or the thesis' spline.",
          click.Choice(["arcs", "spline"]), "arcs", is_rare=True),
@@ -129,11 +118,13 @@ def _whole_folder(value: str) -> "Path":
 
 
 _whole_folder.__name__ = "folder"  # click shows it in the help
-_beamng = partial(Option, heading=BEAMNG, table="beamng", is_rare=True, expose_value=False, callback=_keep)
+_beamng = partial(
+    Option, heading=Heading.BEAMNG, table="beamng", is_rare=True, expose_value=False, callback=_keep
+)
 _place = partial(_beamng, guard=place_guard)
 
 # fmt: off
-BEAMNG_OPTIONS = (
+BEAMNG = (
     _beamng("--beamng-home", "Start the BeamNG.tech in this folder (for --simulator beamng).", _whole_folder,
             key="home", guard=path_guard),
     _beamng("--beamng-user", "BeamNG's user folder; other workers get folders next to it.", _whole_folder,
@@ -159,32 +150,38 @@ FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.
                 metavar="FORMAT,...", table="run")
 NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
 JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
-NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=DRIVE)
+NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 DRIVER_AGAIN = Option(
     "--driver", "The driver's file. Give it again if the run used a driver from a file: for safety, code "
-    "that only a folder names is never run.", driver_again, metavar="FILE.py:CLASS", heading=DRIVE,
+    "that only a folder names is never run.", driver_again, metavar="FILE.py:CLASS", heading=Heading.DRIVE,
 )
 
-QUIET = Option("--quiet -q", "Print errors only.", bool, heading=OUTPUT)
-VERBOSE = Option("--verbose -v", "Print details: requirements, versions, times.", bool, heading=OUTPUT)
-SCREEN = (Option("--json as_json", "Print one JSON line per road.", bool, heading=OUTPUT), QUIET, VERBOSE)
+_output = partial(Option, kind=bool, heading=Heading.OUTPUT)
+QUIET = _output("--quiet -q", "Print errors only.")
+SCREEN = (
+    _output("--json as_json", "Print one JSON line per road."),
+    QUIET,
+    _output("--verbose -v", "Print details: requirements, versions, times."),
+)
 
 CHOICES = (
     Option("--failures", "From a folder, use only the roads on which the car failed.", bool),
     Option("--faults", "Use only one typical failure of each distinct fault in a folder.", bool),
     Option("--worst", "From a folder, use only the road with the smallest margin to failure.", bool),
 )
-WORKER_OPTIONS = (
-    Option("-j --workers", "Number of tests run in parallel; use one per core.",
-           whole(1, 4096, "the number of workers"), 1, heading=WORKERS),
-    Option("--executor", "Where workers run: processes of this machine, or ray.", str, "processes",
-           heading=WORKERS),
-    Option("--address", "Address of a Ray cluster. [default: this machine]", str, "", heading=WORKERS),
+_work = partial(Option, heading=Heading.WORKERS)
+WORKERS = (
+    _work("-j --workers", "Number of tests run in parallel; use one per core.",
+          whole(1, 4096, "the number of workers"), 1),
+    _work("--executor", "Where workers run: processes of this machine, or ray.", str, "processes"),
+    _work("--address", "Address of a Ray cluster. [default: this machine]", str, ""),
 )
 # fmt: on
 OPEN = Option("--open opens", "Open the page in the browser.", bool)
-WORDS = click.Argument(["words"], nargs=-1, required=True, metavar="DESCRIPTION")
-ROADS_ARGUMENT = click.Argument(["files"], nargs=-1, required=True, metavar="ROAD...")
+WORDS = Argument(
+    "words...", "DESCRIPTION", 'Say what road you want: roadgpt run "an uphill road with 3 turns"'
+)
+ROADS = Argument("files...", "ROAD...", "Name one or more road files, or folders of runs.")
 
 
 def seed(sentence: str, default: int | None = None) -> Option:

@@ -2,52 +2,86 @@
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 import click
-
-from roadgpt.cli.campaigns import duration
-from roadgpt.cli.screen import new_bar
 
 T = TypeVar("T")
 EVERY = 10.0  # s between two lines where there is no terminal
 
 
-def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
-    """Yields the steps, and shows on standard error how many are done and how long the rest will take.
+@contextmanager
+def progress(
+    what: str, total: int | None, quiet: bool = False, has_lines: bool = True
+) -> Iterator[Callable[..., None]]:
+    """Shows on standard error how many steps are done and how long the rest will take, until the block ends.
+
+    Yields a function, to be called with the number of steps that are done. For the bar it also takes a new
+    ``total``, and ``rate``, a text to show behind the numbers.
 
     Args:
-        steps: The steps; each is done when it is yielded.
-        total: Number of steps.
         what: Name of the steps in the plural, such as 'faults'.
+        total: Number of steps; None if it is unknown.
         quiet: Whether to show nothing.
+        has_lines: Whether to print lines if standard error is no terminal.
     """
-    if quiet:
-        yield from steps
-    elif sys.stderr.isatty():
-        yield from _with_bar(steps, total, what)
+    if quiet or not (has_lines or sys.stderr.isatty()):
+        yield lambda *_, **__: None
+    elif not sys.stderr.isatty():
+        yield _Lines(what, total or 0)
     else:
-        yield from _with_lines(steps, total, what)
+        from rich.console import Console
+        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+        texts = TextColumn("{task.description}"), TextColumn("{task.fields[rate]}"), TextColumn("ETA")
+        bar = Progress(
+            *(texts[0], BarColumn(), MofNCompleteColumn(), *texts[1:], TimeRemainingColumn()),
+            console=Console(stderr=True),
+            # lines on standard output pass above the bar only if both are the terminal; a file must get them
+            redirect_stdout=sys.stdout.isatty(),
+            transient=True,
+        )
+        task = bar.add_task(what, total=total, rate="")
+        with bar:
+            yield lambda done, **more: bar.update(task, completed=done, **more)
 
 
-def _with_bar(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
-    bar = new_bar()
-    task = bar.add_task(what, total=total, rate="")
-    with bar:
-        for step in steps:
-            bar.advance(task)
+class _Lines:
+    """Prints a line every ten seconds."""
+
+    def __init__(self, what: str, total: int) -> None:
+        self._what, self._total = what, total
+        self._first: tuple[float, int] | None = None
+        self._told = time.monotonic()
+
+    def __call__(self, done: int, **_: object) -> None:
+        now = time.monotonic()
+        if self._first is None:
+            self._first = now, done  # the first waits for all to start, and tells nothing of the others
+        elif now - self._told >= EVERY and self._first[1] < done < self._total:
+            left = (now - self._first[0]) / (done - self._first[1]) * (self._total - done)
+            steps = f"{done:,} of {self._total:,} {self._what}"
+            click.echo(f"roadgpt: {steps}, about {duration(left)} to go", err=True)
+            self._told = now
+
+
+def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
+    """Yields the steps, each when it is done, and shows their progress as ``progress`` does."""
+    with progress(what, total, quiet) as tell:
+        for done, step in enumerate(steps, 1):
+            tell(done)
             yield step
 
 
-def _with_lines(steps: Iterable[T], total: int, what: str) -> Iterator[T]:
-    first = told = time.monotonic()
-    for done, step in enumerate(steps, 1):
-        now = time.monotonic()
-        if done == 1:
-            first = now  # the first waits for all to start, and tells nothing of the others
-        elif now - told >= EVERY and done < total:
-            left = (now - first) / (done - 1) * (total - done)
-            click.echo(f"roadgpt: {done:,} of {total:,} {what}, about {duration(left)} to go", err=True)
-            told = now
-        yield step
+def duration(seconds: float) -> str:
+    """Returns a duration as text: '42 s', '3 min 20 s', '2 h 05 min'."""
+    whole_seconds = round(seconds)
+    if whole_seconds < 60:
+        return f"{seconds:.1f} s" if seconds < 10 else f"{whole_seconds} s"
+    minutes, rest = divmod(whole_seconds, 60)
+    if minutes < 60:
+        return f"{minutes} min {rest:02d} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes:02d} min"

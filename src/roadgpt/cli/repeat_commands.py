@@ -6,13 +6,13 @@ import shlex
 from collections.abc import Sequence
 from pathlib import Path
 
+from roadgpt.cli import options
 from roadgpt.cli.configuration import keys_set
 from roadgpt.cli.option import Option, named, words_of
-from roadgpt.cli.options import CHAT, SETUP, WORLD
 from roadgpt.run.model import Request, Run
 
 # What the command that drives a road which exists takes; the road's file says what its geometry is.
-OF_DRIVES = named(SETUP, "driver", "simulator", "keep_driving", "rules")
+OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "rules")
 
 
 def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
@@ -29,7 +29,14 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 def request_words(request: Request, roads: int) -> list[str]:
     """Returns the arguments after ``roadgpt run`` that make this many roads of a request."""
-    rest = ["-n", str(roads), "--seed", str(request.seed), *_written(request, SETUP), *_asked(request)]
+    rest = [
+        "-n",
+        str(roads),
+        "--seed",
+        str(request.seed),
+        *_written(request, options.SETUP),
+        *_asked(request),
+    ]
     if not request.setup.drives:
         rest.append("--no-drive")
     # words that begin with a dash would pass for an option
@@ -39,13 +46,13 @@ def request_words(request: Request, roads: int) -> list[str]:
 def _asked(request: Request) -> list[str]:
     """Returns the options of the language model that differ from their defaults."""
     chat = request.setup.chat
-    return words_of(CHAT, chat, chat and type(chat)())
+    return words_of(options.CHAT, chat, chat and type(chat)())
 
 
-def _written(request: Request, options: Sequence[Option]) -> list[str]:
+def _written(request: Request, of_setup: Sequence[Option]) -> list[str]:
     """Returns the options that differ from their defaults, or that a file of settings would change."""
     told = keys_set()
     return [
-        *words_of(options, request.setup, told=told),
-        *words_of(WORLD, request.world, told=told),
+        *words_of(of_setup, request.setup, told=told),
+        *words_of(options.WORLD, request.world, told=told),
     ]

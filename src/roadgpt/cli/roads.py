@@ -1,21 +1,143 @@
-"""Reads roads from files; a file that cannot be read does not stop the reading of others."""
+"""Finds and reads the roads that a user names: files, runs, folders of runs, campaigns and tests."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from roadgpt.cli.result_row import Row, unreadable
-from roadgpt.cli.road_names import NamedRoad, roads_named
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.selection import Choice
+    from roadgpt.campaign.selection import Choice, Selection
     from roadgpt.road import Design, Geometry, Road, World
     from roadgpt.run import Run
+
+ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
+NONE = {"failures": "no road failed in {}", "faults": "no road failed in {}", "worst": "nobody drove in {}"}
+
+
+@dataclass(frozen=True)
+class NamedRoad:
+    """A road that the user named."""
+
+    said: str
+    """The road's name in a form that can be typed again."""
+    stem: str
+    """The first part of the names of files that are made from the road."""
+    key: object
+    """A value that is equal for two names of the same road."""
+    run: "Callable[[], Run] | None"
+    """A function that reads the road's Run; None for a road file, which each command reads in its own way."""
+
+
+def roads_named(
+    files: Sequence[str],
+    choice: "Choice | None",
+    takes_all: bool = False,
+    complain: "Callable[[UsageError], None] | None" = None,
+) -> Iterator[NamedRoad]:
+    """Yields the roads that the names refer to, each road once.
+
+    Args:
+        files: The names, as the user typed them.
+        choice: Which roads of a folder to yield; None: no choice.
+        takes_all: Whether a folder without a choice means all its roads; otherwise it must hold one road.
+        complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
+
+    Raises:
+        UsageError: A name is wrong, or the folder has no road that matches the choice.
+    """
+    seen = set()
+    for file in files:
+        try:
+            found = [*_named(file, choice, takes_all)]
+        except UsageError as error:
+            if complain is None:
+                raise
+            complain(error)
+            continue
+        for each in found:
+            if each.key not in seen:
+                seen.add(each.key)
+                yield each
+
+
+def _named(file: str, choice: "Choice | None", takes_all: bool) -> Iterator[NamedRoad]:
+    from roadgpt.campaign.selection import chosen, selection_of
+
+    place = selection_of(file)
+    if place is None or place.number is not None:
+        if choice is not None and (place is not None or Path(file).exists()):
+            raise UsageError(f"--{choice} selects roads of a campaign or a folder of runs; {file} is neither")
+        yield _single(file) if place is None else _test(place)
+        return
+    found = chosen(place, choice)
+    if choice is not None and not found:
+        raise UsageError(NONE[choice].format(file))
+    if choice is None and not takes_all and len(found) != 1:
+        raise UsageError(_too_many(place, found))
+    yield from map(_test, found)
+
+
+def _too_many(place: "Selection", found: "Sequence[Selection]") -> str:
+    if not found:
+        return f"{place.said} holds no road yet"
+    return (
+        f"{place.said} holds {len(found):,} roads; name one, as {found[0].said}, or say --worst, --faults or "
+        "--failures"
+    )
+
+
+def _test(place: "Selection") -> NamedRoad:
+    if place.is_campaign:
+        return NamedRoad(
+            place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run
+        )
+    from roadgpt.run.folder import run_folder
+
+    assert place.number is not None
+    return _run(run_folder(place.folder, place.number), place.said)
+
+
+def _run(folder: Path, said: str) -> NamedRoad:
+    from roadgpt.run import read_run
+    from roadgpt.run.card import CARD
+    from roadgpt.run.folder import RUNS
+
+    whole = Path(os.path.realpath(folder))
+    campaign = whole.parent.parent
+    is_one_of_many = whole.parent.name == RUNS and (campaign / CARD).is_file()
+    stem = f"{campaign.name}-{whole.name}" if is_one_of_many else whole.name
+    return NamedRoad(said, stem, whole, lambda: read_run(folder))
+
+
+def _single(file: str) -> NamedRoad:
+    """Returns a run or a road file.
+
+    Raises:
+        UsageError: There is nothing of that name.
+    """
+    from roadgpt.campaign.selection import near
+    from roadgpt.run.folder import is_run, run_of_test
+
+    path = Path(file)
+    if is_run(path):
+        return _run(path, file)
+    stem = Path(os.path.realpath(path)).name
+    for ending in ENDINGS:
+        stem = stem.removesuffix(ending)
+    if (folder := run_of_test(path)) is not None:
+        return replace(_run(folder, file), stem=stem)
+    if not path.exists() and not path.is_symlink() and (others := near(file)):
+        raise UsageError(
+            f"cannot read {file}: there is nothing of that name; did you mean {' or '.join(others)}?"
+        )
+    return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
 def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:

@@ -10,12 +10,11 @@ from typing import TYPE_CHECKING, Self
 
 import click
 
+from roadgpt.cli.progress import progress
 from roadgpt.cli.result_row import WIDEST, Row, colour_of, summary
 from roadgpt.cli.streams import is_coloured
 
 if TYPE_CHECKING:
-    from rich.progress import Progress, TaskID
-
     from roadgpt.cli.junit import Junit
 
 
@@ -40,22 +39,17 @@ class Screen:
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)
         self._begun = time.perf_counter()
-        self._bar: Progress | None = None
-        self._task: TaskID | None = None
+        self._progress = progress("roads", total or None, quiet, has_lines=False)
 
     def __enter__(self) -> Self:
         self._begun = time.perf_counter()
-        if not self.quiet and sys.stderr.isatty():
-            self._bar = new_bar()
-            self._task = self._bar.add_task("roads", total=self.total or None, rate="")
-            self._bar.start()
+        self._tell = self._progress.__enter__()
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
+        self._progress.__exit__(None, None, None)
         if isinstance(error, KeyboardInterrupt):
             finished = f"{self._number()} roads are finished and complete"
             _show(f"roadgpt: stopped; {finished}", on_stderr=True)
@@ -84,9 +78,7 @@ class Screen:
             count = len(self.rows)
             done = f"{count:>{len(str(self.total))}}/{self.total}" if self.total else f"{count:>4}"
             _show(f"{done}  {_coloured(row)}")
-        if self._bar is not None and self._task is not None:
-            rate = f"{len(self.rows) / max(self.seconds, 1e-9):.1f} roads/s"
-            self._bar.update(self._task, completed=len(self.rows), rate=rate)
+        self._tell(len(self.rows), rate=f"{self._rate():.1f} roads/s")
 
     def close(self) -> None:
         """Prints the table of outcomes, and writes the JUnit file if one was requested."""
@@ -102,8 +94,10 @@ class Screen:
         despite = sum(bool(row.findings) for row in self.rows if row.test_outcome in ("PASS", "FAIL"))
         if despite:
             _show(f"driven despite findings of the rules: {despite} (-v tells all of them)")
-        rate = len(self.rows) / max(self.seconds, 1e-9)
-        _show(f"{self._number()} roads in {self.seconds:.1f} s ({rate:.1f} roads/s)")
+        _show(f"{self._number()} roads in {self.seconds:.1f} s ({self._rate():.1f} roads/s)")
+
+    def _rate(self) -> float:
+        return len(self.rows) / max(self.seconds, 1e-9)
 
     def _number(self) -> str:
         return f"{len(self.rows)} of {self.total}" if self.total else f"{len(self.rows)}"
@@ -119,23 +113,3 @@ def _coloured(row: Row) -> str:
     line = row.to_line()
     head = len(row.told)
     return click.style(line[:head], fg=row.colour, bold=True) + line[head:]
-
-
-def new_bar() -> "Progress":
-    """Returns a progress bar on standard error, with a rate and the remaining time."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    # Lines on standard output pass above the bar only if both are the terminal; a file must get its lines.
-    return Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TextColumn("{task.fields[rate]}"),
-        TextColumn("ETA"),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        redirect_stdout=sys.stdout.isatty(),
-        redirect_stderr=True,
-        transient=True,
-    )

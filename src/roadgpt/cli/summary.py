@@ -14,7 +14,7 @@ from roadgpt.chat import Spent
 from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, told
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.result_row import WIDEST, metres, row_of, spending
-from roadgpt.cli.road_names import NamedRoad, roads_named
+from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.errors import UsageError
 from roadgpt.run.card import read_card
 from roadgpt.run.folder import finished, read_run, run_folder

@@ -5,7 +5,8 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.cli.campaigns import HEAD, cell_columns, duration, outcomes_line
+from roadgpt.cli.campaigns import HEAD, cell_columns, outcomes_line
+from roadgpt.cli.progress import duration
 
 if TYPE_CHECKING:
     from rich.console import RenderableType

@@ -8,28 +8,14 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from roadgpt.cli import options
 from roadgpt.cli.campaigns import watch
+from roadgpt.cli.commands.faults import FAULT_OPTIONS, analyse_failures, analysis_options
 from roadgpt.cli.configuration import driver_guard
-from roadgpt.cli.fault_analysis import FAULT_OPTIONS, analyse_failures, analysis_options
 from roadgpt.cli.junit import write_folder
-from roadgpt.cli.option import DRIVE, OUTPUT, Option, named
+from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver, driver_again, measure, whole
-from roadgpt.cli.options import (
-    BEAMNG_OPTIONS,
-    CHAT,
-    JUNIT,
-    NO_DRIVE,
-    QUIET,
-    SETUP,
-    WORKER_OPTIONS,
-    WORLD,
-    chat_of,
-    json_option,
-    out,
-    seed,
-    world_of,
-)  # fmt: skip
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -43,24 +29,25 @@ BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "j
 
 # fmt: off
 PARAMETERS = (
-    click.Argument(["words"], nargs=-1, required=True, metavar="DESCRIPTION|FILE.toml"),
+    Argument("words...", "DESCRIPTION|FILE.toml",
+             'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200'),
     Option("-n --tests", "Number of tests.", TESTS),
     Option("--goal", "What to search for. [default: no search; the designer makes the roads]",
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
     Option("--generator", "Test generator. [default: quality_diversity, or 'words' if no --goal is given]"),
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
-    seed("The same seed gives the same table.", 0),
-    out("Folder for the campaign. [default: a new one]"),
-    *WORKER_OPTIONS,
-    *named(SETUP, "reader", "designer"),
+    options.seed("The same seed gives the same table.", 0),
+    options.out("Folder for the campaign. [default: a new one]"),
+    *options.WORKERS,
+    *named(options.SETUP, "reader", "designer"),
     Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With "
            "FILE.toml: permits running the code of a driver that FILE.toml names.", driver, ("beamng_like",),
-           multiple=True, heading=DRIVE, table="run", guard=driver_guard),
-    *named(SETUP, "simulator", "keep_driving"),
-    *WORLD,
-    *named(SETUP, "geometry", "rules"),
-    *(NO_DRIVE, *CHAT, *BEAMNG_OPTIONS, *FAULT_OPTIONS, JUNIT),
-    *(json_option("Print one JSON object at the end.", heading=OUTPUT), QUIET),
+           multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
+    *named(options.SETUP, "simulator", "keep_driving"),
+    *options.WORLD,
+    *named(options.SETUP, "geometry", "rules"),
+    *(options.NO_DRIVE, *options.CHAT, *options.BEAMNG, *FAULT_OPTIONS, options.JUNIT),
+    *(options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT), options.QUIET),
 )
 # fmt: on
 
@@ -122,7 +109,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     from roadgpt.chat.config import Layer, configured
     from roadgpt.drive.permission import check_named_driver
 
-    chat = {flag.field for flag in CHAT}
+    chat = {flag.field for flag in options.CHAT}
     for parameter in ctx.command.params:
         name = parameter.name or ""
         is_given = ctx.get_parameter_source(name) is ParameterSource.COMMANDLINE
@@ -131,7 +118,9 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
     if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
         rest["drivers"] = [driver_again(one) for one in rest["drivers"]]
     written = read_plan(path)
-    told = {flag.field: flag.read(rest[flag.field]) for flag in CHAT if rest.get(flag.field) is not None}
+    told = {
+        flag.field: flag.read(rest[flag.field]) for flag in options.CHAT if rest.get(flag.field) is not None
+    }
     if ctx.get_parameter_source("drivers") is ParameterSource.COMMANDLINE:
         for one in rest["drivers"]:
             check_named_driver(one, {*written.plan.drivers}, path)
@@ -146,8 +135,8 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
     from roadgpt.drive.loading import absolute_spec
 
     goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]
-    world = world_of(rest)
-    chat = chat_of(rest, rest["reader"], rest["designer"])
+    world = options.world_of(rest)
+    chat = options.chat_of(rest, rest["reader"], rest["designer"])
     return Plan(
         prompts=(text,),
         designers=(rest["designer"],),

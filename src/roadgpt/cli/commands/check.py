@@ -5,9 +5,9 @@ from typing import Any
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.option import named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import ROADS_ARGUMENT, SCREEN, SETUP, WORLD, world_of
 from roadgpt.cli.result_row import Row
 from roadgpt.cli.roads import blueprint_of, each_road
 from roadgpt.cli.screen import Screen
@@ -16,10 +16,15 @@ INVALID = 1  # exit status, so that a script can ask
 UNREADABLE = 2
 
 
-OPTIONS = (*named(SETUP, "rules"), *named(WORLD, "map_size"), *named(SETUP, "geometry"), *SCREEN)
+OPTIONS = (
+    *named(options.SETUP, "rules"),
+    *named(options.WORLD, "map_size"),
+    *named(options.SETUP, "geometry"),
+    *options.SCREEN,
+)
 
 
-@click.command(cls=GroupedCommand, params=[ROADS_ARGUMENT, *OPTIONS])
+@click.command(cls=GroupedCommand, params=[options.ROADS, *OPTIONS])
 def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **rest: Any) -> int:
     """Check roads against the rules.
 
@@ -27,7 +32,7 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
     points (.csv) or OpenDRIVE (.xodr). The exit status is 0 if all roads are valid, 1 if one is not, 2 if one
     cannot be read.
     """
-    world = world_of(rest)
+    world = options.world_of(rest)
     screen = Screen(len(files), rest["as_json"], rest["quiet"], verbose)
     each_road(files, screen, lambda file: _checked(screen, file, rules, geometry, world))
     outcomes = {row.test_outcome for row in screen.rows}

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.option import Option, named
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.options import AXES, SETUP, WORLD, json_option, world_of
 from roadgpt.cli.roads import shown_run
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -34,16 +34,16 @@ OPTIONS = (
            metavar="FILE.png"),
     Option("--no-plot", "Draw no picture.", bool),
     Option("--mirror", "Treat a road and its mirror image as alike.", bool),
-    json_option(),
-    AXES,
-    *named(WORLD, "map_size"),
-    *named(SETUP, "geometry"),
+    options.json_option(),
+    options.AXES,
+    *named(options.WORLD, "map_size"),
+    *named(options.SETUP, "geometry"),
 )  # fmt: skip
 
 
 @click.command(
     cls=GroupedCommand,
-    params=[click.Argument(["one"], metavar="A"), click.Argument(["other"], metavar="B"), *OPTIONS],
+    params=[Argument("one", "A"), Argument("other", "B"), *OPTIONS],
 )
 def command(
     one: str, other: str, out: Path, no_plot: bool, mirror: bool, as_json: bool, axes: Any, **rest: Any
@@ -62,7 +62,7 @@ def command(
 
     if not no_plot:
         format_of(out)
-    world = world_of(rest)
+    world = options.world_of(rest)
     runs = [shown_run(file, world, rest["geometry"]) for file in (one, other)]
     roads = [run.road for run in runs if run.road is not None]
     if len(roads) < 2:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.configuration import TABLES, layers_of, settable_options
 from roadgpt.cli.installed_plugins import plugins_command
 from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.options import CHAT, json_option
 
 if TYPE_CHECKING:
     from roadgpt.chat.config import Layer
@@ -35,8 +35,8 @@ class ShownSetting(NamedTuple):
 
 OPTIONS = (
     Option("--origin with_origin", "With --json: also print where each setting comes from.", bool),
-    json_option(),
-    *CHAT,
+    options.json_option(),
+    *options.CHAT,
 )
 
 
@@ -108,7 +108,7 @@ def _plain(value: Any) -> Any:
 def _of_chat(values: dict[str, Any]) -> list[ShownSetting]:
     from roadgpt.chat.config import key_for, settings_from, settings_with_origin
 
-    found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in CHAT})
+    found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in options.CHAT})
     settings = settings_from(found)
     key = key_for(settings.base_url)
     shown = [

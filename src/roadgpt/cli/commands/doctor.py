@@ -1,4 +1,4 @@
-"""``roadgpt doctor``: checks this installation, and says what to do if something is wrong."""
+"""``roadgpt doctor``: checks this installation, or an installed BeamNG, and says how to mend problems."""
 
 import json
 import platform
@@ -10,14 +10,54 @@ from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from roadgpt import __version__
-from roadgpt.cli.beamng_selftest import beamng_command
-from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.options import json_option
+from roadgpt.cli import options
+from roadgpt.cli.option import Option
+from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
+from roadgpt.cli.option_types import folder, whole
 from roadgpt.errors import RoadGPTError
+
+if TYPE_CHECKING:
+    from roadgpt.drive.simulators.beamng.selftest import Check
+
+OPTIONS = (
+    Option("--out", "Folder for the report and pictures.", folder, Path(), show_default="this folder"),
+    Option("--repeats", "Runs of the same road, to measure how much they differ.",
+           whole(2, 1000, "a number of runs"), 5),
+    *options.BEAMNG,
+)  # fmt: skip
+
+
+@click.command("beamng", cls=GroupedCommand, params=[*OPTIONS])
+def beamng_command(out: Path, repeats: int) -> None:
+    """Test RoadGPT with an installed BeamNG.tech, and write a report.
+
+    The test covers the connection, the level, BeamNG's AI on flat, floating and steep roads, how much
+    repeated runs differ, one of RoadGPT's drivers, a picture of the road, and a level folder. It takes some
+    minutes. The exit status is 0 if no check finds a problem.
+
+    \b
+    roadgpt doctor beamng --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user
+    """
+    from roadgpt.drive.simulators.beamng import BeamngSettings
+    from roadgpt.drive.simulators.beamng.selftest import REPORT, run
+
+    out.mkdir(parents=True, exist_ok=True)
+    checks = run(BeamngSettings.of(), out, repeats, _tell)
+    click.echo(f"report: {out / f'{REPORT}.md'} and .json; please send it to RoadGPT's makers")
+    problems = sum(not check.is_fine for check in checks)
+    if problems:
+        raise RoadGPTError(f"{problems} of {len(checks)} checks found a problem; see the report")
+
+
+def _tell(check: "Check") -> None:
+    mark = click.style("ok     ", fg="green") if check.is_fine else click.style("PROBLEM", fg="red")
+    click.echo(f"{mark}  {check.about}: {check.said}")
+
 
 LIBRARIES = ("numpy", "scipy", "numba", "mujoco-core", "matplotlib", "shapely", "pydantic", "click", "rich")
 TEST_ROAD = [[40.0, 100.0], [60.0, 100.0], [80.0, 100.0]]  # m; a straight, driven in a few seconds
@@ -43,8 +83,8 @@ def examined() -> Iterator[CheckResult]:
     yield _model()
     yield _tried("numba", _numba)
     yield _tried("test drive", _drive)
-    for folder in (Path.cwd(), Path(tempfile.gettempdir())):
-        yield _tried(f"folder {folder}", partial(_writable, folder))
+    for place in (Path.cwd(), Path(tempfile.gettempdir())):
+        yield _tried(f"folder {place}", partial(_writable, place))
 
 
 def _library(name: str) -> CheckResult:
@@ -116,7 +156,9 @@ def _writable(folder: Path) -> str:
         return "can be written to"
 
 
-@click.group(cls=CommandGroup, invoke_without_command=True, params=[json_option("Print one JSON list.")])
+@click.group(
+    cls=CommandGroup, invoke_without_command=True, params=[options.json_option("Print one JSON list.")]
+)
 @click.pass_context
 def command(ctx: click.Context, /, as_json: bool) -> None:
     """Check this installation: versions, plug-ins, compiler, a test drive, folders.

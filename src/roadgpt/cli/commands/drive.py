@@ -8,27 +8,12 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
+from roadgpt.cli import options
 from roadgpt.cli.drive_again import drive_again
 from roadgpt.cli.junit import Junit
-from roadgpt.cli.option import AGAIN, Option, named
+from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver_again, folder
-from roadgpt.cli.options import (
-    AXES,
-    BEAMNG_OPTIONS,
-    CHOICES,
-    FORMAT,
-    JUNIT,
-    NO_PLOT,
-    ROADS_ARGUMENT,
-    SCREEN,
-    SETUP,
-    WORLD,
-    choice_of,
-    pictures_of,
-    seed,
-    world_of,
-)  # fmt: skip
 from roadgpt.cli.result_row import Row, row_of
 from roadgpt.cli.roads import blueprint_of, each_road
 from roadgpt.cli.screen import Screen
@@ -42,23 +27,23 @@ if TYPE_CHECKING:
 UNREADABLE = 2  # exit status
 OF_AGAIN = (
     Option("--out", "Folder for the runs. [default: CAMPAIGN/again]", folder),
-    *CHOICES,
-    *(NO_PLOT, AXES, FORMAT),
+    *options.CHOICES,
+    *(options.NO_PLOT, options.AXES, options.FORMAT),
 )
 OPTIONS = (
-    seed("Seed for the driver.", 1),
-    *WORLD,
-    *named(SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
-    *BEAMNG_OPTIONS,
-    Option("--again", "Drive tests of a campaign again.", bool, heading=AGAIN),
-    *(each.under(AGAIN) for each in OF_AGAIN),
-    *(JUNIT, *SCREEN),
+    options.seed("Seed for the driver.", 1),
+    *options.WORLD,
+    *named(options.SETUP, "driver", "simulator", "keep_driving", "geometry", "rules"),
+    *options.BEAMNG,
+    Option("--again", "Drive tests of a campaign again.", bool, heading=Heading.AGAIN),
+    *(each.under(Heading.AGAIN) for each in OF_AGAIN),
+    *(options.JUNIT, *options.SCREEN),
 )
 ONLY_AGAIN = {each.field for each in OF_AGAIN}
 BOTH = {"files", "again", "driver"}
 
 
-@click.command(cls=GroupedCommand, params=[ROADS_ARGUMENT, *OPTIONS])
+@click.command(cls=GroupedCommand, params=[options.ROADS, *OPTIONS])
 @click.pass_context
 def command(
     ctx: click.Context, /, files: tuple[str, ...], seed: int, again: bool, out: Path | None, axes: Any,
@@ -83,7 +68,7 @@ def command(
     roadgpt drive --again roadgpt-runs/an-uphill-road-with-3-turns-7 17
     """
     _refuse_mixture(ctx, again)
-    choice, pictures = choice_of(rest), pictures_of(rest)
+    choice, pictures = options.choice_of(rest), options.pictures_of(rest)
     if again:
         is_named = ctx.get_parameter_source("driver") is ParameterSource.COMMANDLINE
         driver = driver_again(rest["driver"]) if is_named else None
@@ -92,7 +77,7 @@ def command(
     from roadgpt.run import Request, Setup, check_parts
     from roadgpt.run.lost_drives import LostDrives
 
-    world = world_of(rest)
+    world = options.world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):
         check_parts(setup, world)  # a driver that does not exist is told of before any road is looked at

@@ -4,36 +4,23 @@ from typing import Any
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.edit_job import EditJob, edit_road
-from roadgpt.cli.option import OUTPUT, Option, named
+from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import (
-    CHAT_WITHOUT_DRAFTS,
-    DRIVER_AGAIN,
-    FORMAT,
-    NO_DRIVE,
-    NO_PLOT,
-    QUIET,
-    WORLD,
-    chat_of,
-    json_option,
-    out,
-    pictures_of,
-    world_of,
-)  # fmt: skip
 from roadgpt.cli.screen import Screen
 
 PARAMETERS = (
-    click.Argument(["run"], metavar="RUN"),
-    click.Argument(["words"], nargs=-1, required=True, metavar="CHANGE"),
-    out("Folder for the changed road. [default: a new one]"),
+    Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
+    Argument("words...", "CHANGE", 'Say what to change: roadgpt edit RUN "make the second turn sharper"'),
+    options.out("Folder for the changed road. [default: a new one]"),
     Option(
         "--designer", "What changes the road: planner (by rules) or chat (a language model).", str, "planner"
     ),
-    *CHAT_WITHOUT_DRAFTS,
-    *named(WORLD, "map_size"),
-    *(DRIVER_AGAIN, NO_DRIVE, NO_PLOT, FORMAT),
-    *(json_option("Print one JSON line.", heading=OUTPUT), QUIET),
+    *options.CHAT_WITHOUT_DRAFTS,
+    *named(options.WORLD, "map_size"),
+    *(options.DRIVER_AGAIN, options.NO_DRIVE, options.NO_PLOT, options.FORMAT),
+    *(options.json_option("Print one JSON line.", heading=Heading.OUTPUT), options.QUIET),
 )
 
 
@@ -55,9 +42,9 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
     job = EditJob(
         run,
         " ".join(words),
-        world=world_of(rest),
-        chat=chat_of(rest, designer=rest["designer"]),
-        pictures=pictures_of(rest),
+        world=options.world_of(rest),
+        chat=options.chat_of(rest, designer=rest["designer"]),
+        pictures=options.pictures_of(rest),
         drives=not rest.pop("no_drive"),
         **rest,
     )

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.option import named
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import CHOICES, QUIET, SETUP, WORLD, choice_of, formats_option, out, world_of
-from roadgpt.cli.road_names import NamedRoad, roads_named
-from roadgpt.cli.roads import blueprint_of
+from roadgpt.cli.roads import NamedRoad, blueprint_of, roads_named
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
 if TYPE_CHECKING:
@@ -23,20 +22,19 @@ UNREADABLE = 2
 OPENDRIVE = ".xodr"
 
 
+TO = "Name a format: --to opendrive; 'roadgpt config plugins' lists them."
+ADVICE = "Name one or more folders of runs, or road files."
 FORMATS = "Formats to write: opendrive, csv, ...; 'roadgpt config plugins' lists them."
 OPTIONS = (
-    formats_option("--to formats", FORMATS, required=True),
-    *CHOICES,
-    out("Folder for the files.", default=Path("exports")),
-    *named(WORLD, "speed_limit", "lane_width", "verge", "friction"),
-    *(*named(SETUP, "geometry"), QUIET),
+    options.formats_option("--to formats", FORMATS, required=True, advice=TO),
+    *options.CHOICES,
+    options.out("Folder for the files.", default=Path("exports")),
+    *named(options.WORLD, "speed_limit", "lane_width", "verge", "friction"),
+    *(*named(options.SETUP, "geometry"), options.QUIET),
 )
 
 
-@click.command(
-    cls=GroupedCommand,
-    params=[click.Argument(["files"], nargs=-1, required=True, metavar="RUN|ROAD..."), *OPTIONS],
-)
+@click.command(cls=GroupedCommand, params=[Argument("files...", "RUN|ROAD...", ADVICE), *OPTIONS])
 def command(
     files: tuple[str, ...], formats: tuple[str, ...], out: Path, geometry: Any, quiet: bool, **rest: Any
 ) -> int:
@@ -58,7 +56,7 @@ def command(
 
     for format_ in formats:
         exporter_of(format_)
-    choice, status = choice_of(rest), 0
+    choice, status = options.choice_of(rest), 0
     source, names = _source(rest, geometry, quiet), _Names()
 
     def complain(error: RoadGPTError) -> None:
@@ -121,7 +119,7 @@ class _Source:
     def _warn(self) -> None:
         """Says once that options do not change the lanes and limits of runs."""
         if self.said and not (self.has_warned or self.is_quiet):
-            flags = ", ".join(flag.flag for flag in WORLD if flag.field in self.said)
+            flags = ", ".join(flag.flag for flag in options.WORLD if flag.field in self.said)
             click.echo(f"roadgpt: runs keep their own lanes and limits; {flags} is for road files", err=True)
         self.has_warned = True
 
@@ -129,7 +127,7 @@ class _Source:
 def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Source:
     context = click.get_current_context()
     asked = [name for name in rest if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
-    world = world_of(rest)
+    world = options.world_of(rest)
     return _Source(world, {name: getattr(world, name) for name in asked}, geometry, is_quiet)
 
 

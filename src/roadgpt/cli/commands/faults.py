@@ -1,27 +1,159 @@
 """``roadgpt faults``: groups failures into distinct faults, and finds why each occurs."""
 
+import os
+import shlex
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from roadgpt.cli.fault_analysis import DRIVES, REPEAT, AnalysisOptions, analyse_failures
-from roadgpt.cli.option import Option
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
-from roadgpt.cli.options import DRIVER_AGAIN, FORMAT, NO_PLOT, QUIET, pictures_of
+from roadgpt.cli.pool import shared
+from roadgpt.cli.progress import watched
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.faults import FailureAnalysis, Faults
+    from roadgpt.campaign.faults.fault_log import FailureDrawing
+
+REPEAT = 10  # disturbed drives of each fault, where nobody says how many
+DRIVES = whole(1, 1000, "drives")
+
+FAULT_OPTIONS = (
+    Option("--faults", "At the end, analyse the failures as 'roadgpt faults' does.", bool,
+           heading=Heading.FAILURES),
+    Option("--minimise", "For each fault, also find the simplest road on which it still occurs; implies "
+           "--faults.", bool, heading=Heading.FAILURES),
+    Option("--repeat", "Number of slightly disturbed drives for each fault; implies --faults. "
+           f"[default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
+)  # fmt: skip
+
+
+class AnalysisOptions(NamedTuple):
+    """Options of an analysis of failures."""
+
+    repeat: int = REPEAT
+    minimise: bool = False
+    workers: int = 1
+    formats: tuple[str, ...] = ("png",)
+    """Formats of the pictures; empty: no pictures are drawn."""
+    is_quiet: bool = False
+    is_apart: bool = False
+    """Whether text is printed on standard error, because standard output is reserved for JSON."""
+
+    @property
+    def words(self) -> list[str]:
+        """The options of ``roadgpt faults`` that request the same analysis."""
+        asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
+        asked += ["--minimise"] if self.minimise else []
+        asked += ["-j", str(self.workers)] if self.workers > 1 else []
+        if self.formats != ("png",):
+            asked += ["--format", ",".join(self.formats)] if self.formats else ["--no-plot"]
+        return asked
+
+    def say(self, text: str, is_news: bool = False) -> None:
+        """Prints a text unless ``is_quiet``; news about the progress goes to standard error."""
+        if not self.is_quiet:
+            click.echo(text, err=is_news or self.is_apart)
+
+
+def analysis_options(
+    faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
+) -> AnalysisOptions | None:
+    """Returns the analysis that the ``FAULT_OPTIONS`` of a campaign request; None if they request none."""
+    if not faults and not minimise and repeat is None:
+        return None
+    # the campaign's workers may be on other machines
+    here = min(workers, os.cpu_count() or 1)
+    return AnalysisOptions(repeat or REPEAT, minimise, here, is_quiet=is_quiet, is_apart=is_apart)
+
+
+def analyse_failures(place: Path, look: AnalysisOptions) -> None:
+    """Finds and prints the distinct faults of a folder of runs or a campaign, with an analysis of each.
+
+    Raises:
+        UsageError: There are no roads, or a file cannot be read.
+        RoadGPTError: A file cannot be written.
+    """
+    from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
+    from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.drive.permission import require_permission
+
+    found = faults_in(place)
+    if not found.failures:
+        look.say("no road failed, so there is no fault to analyse")
+        return
+    for driver in sorted(drivers_of(place)):
+        require_permission(driver)  # here, where the user can be asked, and not in each of the workers
+    look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
+    draw = _draws(bool(look.formats))
+    tasks = [
+        fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
+        for each in found.them
+    ]
+    steps = shared(analyse, tasks, look.workers)
+    try:
+        looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
+    except KeyboardInterrupt:
+        go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
+        click.echo(f"roadgpt: stopped; finished work is kept; continue with: {go_on}", err=True)
+        raise
+    table = write_tables(found.them, looked, place)
+    look.say("\n".join(_summary(place, found, looked)))
+    look.say(f"tables: {table} and {table.with_name(fault_log.FAILURES)}")
+    if look.formats:
+        look.say(f"pictures: {_pictures(place, found, look.formats)}")
+
+
+def _draws(has_pictures: bool) -> "FailureDrawing | None":
+    if not has_pictures:
+        return None
+    from roadgpt.report.fault import draw_fault
+
+    return draw_fault
+
+
+def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
+    """Yields a row for each fault: its failures, how often it fails again, and why a typical test failed."""
+    from roadgpt.study.chapters.wording import plural
+
+    wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
+    yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
+    for fault in found.them:
+        its = looked[fault.number]
+        again = f"{its.stability.failed}/{len(its.stability.drives)}"
+        name = f"{its.name!s:<{wide}}"
+        yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
+        if its.simplest:
+            yield f"{'':>{wide + 26}}simplest: {its.simplest}"
+    stable = sum(its.stability.is_stable for its in looked.values())
+    yield found.headline
+    yield f"{stable:,} of {plural(len(found.them), 'fault')} fail again in at least half of the drives"
+    if looked:
+        yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
+
+
+def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
+    from roadgpt.campaign.faults.fault_log import FOLDER
+
+    cells = sorted({fault.typical[0].name.cell for fault in found.them})
+    return ", ".join(f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in formats)
+
 
 # fmt: off
 OPTIONS = (
     Option("--repeat", "Number of slightly disturbed drives for each fault.", DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
     Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
-    *(DRIVER_AGAIN, FORMAT, NO_PLOT, QUIET),
+    *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
 # fmt: on
 
 
-@click.command(cls=GroupedCommand, params=[click.Argument(["place"], type=folder, metavar="DIR"), *OPTIONS])
+@click.command(cls=GroupedCommand, params=[Argument("place", "DIR", kind=folder), *OPTIONS])
 def command(
     place: Path, repeat: int, minimise: bool, workers: int, driver: str | None, quiet: bool, **rest: Any
 ) -> None:
@@ -42,4 +174,4 @@ def command(
 
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
-    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, pictures_of(rest), quiet))
+    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, options.pictures_of(rest), quiet))

@@ -1,18 +1,16 @@
 """``roadgpt film``: films drives from behind the car, from its hood, or of two roads side by side."""
 
-import sys
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.option import Option, named
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.options import CHOICES, QUIET, SETUP, WORLD, choice_of, world_of
-from roadgpt.cli.road_names import roads_named
-from roadgpt.cli.roads import run_of, shown_runs
+from roadgpt.cli.progress import watched
+from roadgpt.cli.roads import roads_named, run_of, shown_runs
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -62,7 +60,7 @@ def _seconds(value: str) -> tuple[float, float | None]:
 
 # fmt: off
 PARAMETERS = (
-    click.Argument(["files"], nargs=-1, required=True, metavar="RUN [RUN]"),
+    Argument("files...", "RUN [RUN]", "Name the folder of a run, or two to see them side by side."),
     Option("--view", "Where the camera is: behind the car, on its hood, or both.", _view, "chase",
            metavar=f"[{'|'.join(VIEWS)}]"),
     Option("--out", f"The film, or the folder for several films. [default: {FILM}, {FILMS}]", PATH,
@@ -74,10 +72,10 @@ PARAMETERS = (
            _seconds, metavar="N|FROM:TO"),
     Option("--all is_all", "Film every road in a folder; the film of a run is saved in the run's own folder.",
            bool),
-    *CHOICES,
-    *named(WORLD, "map_size"),
-    *named(SETUP, "geometry"),
-    QUIET,
+    *options.CHOICES,
+    *named(options.WORLD, "map_size"),
+    *named(options.SETUP, "geometry"),
+    options.QUIET,
 )
 # fmt: on
 
@@ -104,11 +102,11 @@ def command(
 
     begin, length = seconds or (0.0, None)
     settings = Settings(*size, fps, begin, length)
-    choice = choice_of(rest)
+    choice = options.choice_of(rest)
     if is_all and choice is None and _is_of_runs(files):
         _film_all(files, view, out, settings, quiet)
         return
-    world = world_of(rest)
+    world = options.world_of(rest)
     if is_all or choice in ("failures", "faults"):
         place = out or FILMS
         if place.suffix.lower() in ENDINGS or place.is_file():
@@ -166,12 +164,6 @@ def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Se
 def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:
     from roadgpt.report.film import write
 
-    write(runs, out, MOUNTS.get(view, view), settings, None if quiet or not sys.stderr.isatty() else _watched)
+    write(runs, out, MOUNTS.get(view, view), settings, lambda them, n: watched(them, n, "frames", quiet))
     if not quiet:
         click.echo(str(out))
-
-
-def _watched(frames: Iterator[Any], count: int) -> Iterator[Any]:
-    """Shows a progress bar while frames are made."""
-    with click.progressbar(frames, length=count, label="frames", file=sys.stderr) as bar:
-        yield from bar

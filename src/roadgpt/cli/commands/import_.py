@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 import click
 
-from roadgpt.cli.option import Option, words_of
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.options import QUIET, WORLD
 from roadgpt.errors import RoadGPTError
 
 if TYPE_CHECKING:
@@ -26,12 +26,12 @@ OPTIONS = (
     Option("--out", "Road file to write. [default: named after FILE and the road]",
            click.Path(path_type=Path, dir_okay=False)),
     Option("--keep-place", "Keep the coordinates, even if the road is off the map.", bool),
-    QUIET,
+    options.QUIET,
 )  # fmt: skip
 
 
 @click.command(
-    cls=GroupedCommand, params=[click.Argument(["file"], metavar="FILE.xodr", type=PATH), *OPTIONS]
+    cls=GroupedCommand, params=[Argument("file", "FILE.xodr", "Name an OpenDRIVE file.", PATH), *OPTIONS]
 )
 def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, quiet: bool) -> None:
     """Read a road from an OpenDRIVE file, write it as a road file, and describe it in words.
@@ -93,7 +93,7 @@ def _drive(file: Path, world: "World") -> str:
     """Returns the command that drives the road with the lanes and limits of the OpenDRIVE file."""
     # as a sign shows it: files in m/s are no whole km/h to the last digit
     world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
-    return shlex.join(["roadgpt", "drive", str(file), *words_of(WORLD, world)])
+    return shlex.join(["roadgpt", "drive", str(file), *words_of(options.WORLD, world)])
 
 
 def _new(folder: Path, stem: str) -> Path:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from roadgpt.cli.option import Option
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.option_types import PATH, folder, whole
-from roadgpt.cli.options import seed
 from roadgpt.errors import LearnError
 
 if TYPE_CHECKING:
@@ -31,11 +31,12 @@ HAND = Option(
     "Folder with the hand-written training pairs: JSON lines in its folders train, validation and test.",
     folder, Path("data/descriptions"),
 )
-OUT, CHECKPOINT = (click.Argument([name], type=folder) for name in ("out", "checkpoint"))
+OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
+CHECKPOINT = Argument("checkpoint", "CHECKPOINT", kind=folder)
 OF_DATA = (
     *(OUT, HAND),
     Option("--number -n", "Number of pairs to generate.", COUNT, 100_000),
-    seed("The same seed gives the same pairs.", 1),
+    options.seed("The same seed gives the same pairs.", 1),
 )
 OF_TRAIN = (
     *(OUT, HAND),
@@ -45,17 +46,17 @@ OF_TRAIN = (
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
     Option("--own", "Folder with training pairs of your own, used in addition.", folder),
-    seed("The same seed gives the same pairs.", 1),
+    options.seed("The same seed gives the same pairs.", 1),
 )
 OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
-    seed("Seed of the generated pairs in which words are counted.", 1),
+    options.seed("Seed of the generated pairs in which words are counted.", 1),
 )
 OF_CHATS = (
     OUT,
     Option("--number -n", "Number of pairs.", COUNT, 1000),
-    seed("The same seed gives the same chats.", 1),
+    options.seed("The same seed gives the same chats.", 1),
 )
 OF_EVALUATE = (
     HAND,

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.option import Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import whole
-from roadgpt.cli.options import CHAT_WITHOUT_DRAFTS, SETUP, WORDS, WORLD, chat_of, json_option, world_of
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -22,16 +22,16 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 
 
 OPTIONS = (
-    *named(SETUP, "reader"),
-    *named(WORLD, "map_size"),
+    *named(options.SETUP, "reader"),
+    *named(options.WORLD, "map_size"),
     Option("--table as_table", "Print a row for each turn and straight.", bool),
-    json_option("Print the interpretation as JSON."),
+    options.json_option("Print the interpretation as JSON."),
     Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
-    *CHAT_WITHOUT_DRAFTS,
+    *options.CHAT_WITHOUT_DRAFTS,
 )
 
 
-@click.command(cls=GroupedCommand, params=[WORDS, *OPTIONS])
+@click.command(cls=GroupedCommand, params=[options.WORDS, *OPTIONS])
 def command(
     words: tuple[str, ...], reader: str, as_table: bool, as_json: bool, number: int, **rest: Any
 ) -> None:
@@ -44,8 +44,8 @@ def command(
     """
     from roadgpt.cli.run_job import understood
 
-    world = world_of(rest)
-    briefs = _readings(" ".join(words), reader, world, number, chat_of(rest, reader))
+    world = options.world_of(rest)
+    briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
         found = [_as_data(brief, world.map_size) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))

@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.junit import write_folder
 from roadgpt.cli.next_steps import next_steps, of_runs, of_status
+from roadgpt.cli.option import Argument
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.options import JUNIT, OPEN
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.run.card import Card
 
 
-@click.command(cls=GroupedCommand, params=[click.Argument(["folder"], metavar="DIR", type=PATH), OPEN, JUNIT])
+@click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
 def command(folder: Path, opens: bool, junit: Path | None) -> None:
     """Write a report on a folder of runs, a campaign or a study.
 

@@ -4,26 +4,28 @@ from pathlib import Path
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.campaigns import watch
-from roadgpt.cli.fault_analysis import FAULT_OPTIONS, analyse_failures, analysis_options
+from roadgpt.cli.commands.faults import FAULT_OPTIONS, analyse_failures, analysis_options
 from roadgpt.cli.junit import write_folder
-from roadgpt.cli.option import MODEL, OUTPUT, Option, named
+from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.options import CHAT, DRIVER_AGAIN, JUNIT, QUIET, WORKER_OPTIONS, json_option
 from roadgpt.errors import UsageError
 
+ADVICE = "Name the folder of a campaign, as 'roadgpt campaign' printed it."
 OPTIONS = (
-    *(*WORKER_OPTIONS, *named(CHAT, "max_tokens", "max_cost"), DRIVER_AGAIN),
+    *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
     Option("--base-url", "Address of the server. Give it again if the campaign used one: for safety, no API "
-           "key is sent to an address that only a folder names.", heading=MODEL),
-    *(*FAULT_OPTIONS, JUNIT, json_option("Print one JSON object at the end.", heading=OUTPUT), QUIET),
+           "key is sent to an address that only a folder names.", heading=Heading.MODEL),
+    *FAULT_OPTIONS,
+    options.JUNIT,
+    options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT),
+    options.QUIET,
 )  # fmt: skip
 
 
-@click.command(
-    cls=GroupedCommand, params=[click.Argument(["campaign"], metavar="CAMPAIGN", type=PATH), *OPTIONS]
-)
+@click.command(cls=GroupedCommand, params=[Argument("campaign", "CAMPAIGN", ADVICE, PATH), *OPTIONS])
 def command(
     campaign: Path,
     workers: int,

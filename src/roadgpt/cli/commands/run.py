@@ -4,47 +4,29 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.option import FILES, Option, named
+from roadgpt.cli import options
+from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import ROADS
-from roadgpt.cli.options import (
-    AXES,
-    BEAMNG_OPTIONS,
-    CHAT,
-    FORMAT,
-    JUNIT,
-    NO_DRIVE,
-    NO_PLOT,
-    SCREEN,
-    SETUP,
-    WORDS,
-    WORLD,
-    chat_of,
-    formats_option,
-    out,
-    pictures_of,
-    seed,
-    world_of,
-)  # fmt: skip
 from roadgpt.cli.run_job import RunJob, carry_out
 from roadgpt.cli.screen import Screen
 
 OPTIONS = (
     Option("-n --roads", "Number of roads.", ROADS, 1),
-    seed("The same seed gives the same roads. [default: random]"),
-    out("Folder for the runs. [default: a new one]"),
-    *named(SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
-    *WORLD,
-    *named(SETUP, "geometry", "rules"),
-    *(NO_DRIVE, NO_PLOT, AXES, FORMAT),
-    formats_option(
-        "--export formats", "Also write road files: opendrive, csv, ...", heading=FILES, table="run"
+    options.seed("The same seed gives the same roads. [default: random]"),
+    options.out("Folder for the runs. [default: a new one]"),
+    *named(options.SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
+    *options.WORLD,
+    *named(options.SETUP, "geometry", "rules"),
+    *(options.NO_DRIVE, options.NO_PLOT, options.AXES, options.FORMAT),
+    options.formats_option(
+        "--export formats", "Also write road files: opendrive, csv, ...", heading=Heading.FILES, table="run"
     ),
-    *(*CHAT, *BEAMNG_OPTIONS, JUNIT, *SCREEN),
+    *(*options.CHAT, *options.BEAMNG, options.JUNIT, *options.SCREEN),
 )
 
 
-@click.command(cls=GroupedCommand, params=[WORDS, *OPTIONS])
+@click.command(cls=GroupedCommand, params=[options.WORDS, *OPTIONS])
 def command(words: tuple[str, ...], as_json: bool, quiet: bool, verbose: bool, **rest: Any) -> None:
     """Make roads from a description: design, check, drive and judge them.
 
@@ -70,8 +52,8 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
     from roadgpt.run import Setup
 
     own = {name: given.pop(name) for name in ("roads", "seed", "out", "axes", "formats", "junit")}
-    world, pictures = world_of(given), pictures_of(given)
-    chat = chat_of(given, given["reader"], given["designer"])
+    world, pictures = options.world_of(given), options.pictures_of(given)
+    chat = options.chat_of(given, given["reader"], given["designer"])
     setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
     return RunJob(words=words, world=world, setup=setup, pictures=pictures, **own)
 

@@ -5,24 +5,22 @@ from typing import Any
 
 import click
 
-from roadgpt.cli.option import OUTPUT, Option
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.options import CHOICES, choice_of, json_option
 from roadgpt.errors import UsageError
 
+ADVICE = "Name the folder of a run, a folder of runs, or a campaign."
 OPTIONS = (
-    *CHOICES,
+    *options.CHOICES,
     Option("--watch", "Show the progress of a campaign until it ends.", bool),
-    json_option("Print one JSON object for each campaign or road.", heading=OUTPUT),
+    options.json_option("Print one JSON object for each campaign or road.", heading=Heading.OUTPUT),
     Option("--progress", "As the earlier command 'status'.", bool, hidden=True),
     Option("--once", "Show the progress once.", bool, hidden=True),
 )
 
 
-@click.command(
-    cls=GroupedCommand,
-    params=[click.Argument(["folders"], nargs=-1, required=True, metavar="RUN..."), *OPTIONS],
-)
+@click.command(cls=GroupedCommand, params=[Argument("folders...", "RUN...", ADVICE), *OPTIONS])
 def command(
     folders: tuple[str, ...], watch: bool, as_json: bool, progress: bool, once: bool, **rest: Any
 ) -> None:
@@ -39,7 +37,7 @@ def command(
     from roadgpt.cli.summary import json_lines, progress_lines, show
     from roadgpt.cli.watch_campaign import watch_campaign
 
-    choice = choice_of(rest)
+    choice = options.choice_of(rest)
     if (watch or progress) and choice is not None:
         raise UsageError(
             f"--{choice} selects roads, but --watch shows a whole campaign; leave one of them out"

@@ -4,25 +4,25 @@ from pathlib import Path
 
 import click
 
-from roadgpt.cli.option import Option
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.option_types import PATH, folder, measure, whole
-from roadgpt.cli.options import out, seed
 from roadgpt.errors import UsageError
 
 PORT = 8765
 FILE = "SURVEY.toml"
 ASK = "say who asks, which raters read first: --asks 'Jane Roe, University of X' --contact jane@x.example"
-DIRECTORY = click.Argument(["directory"], metavar="DIR", type=folder)
+DIRECTORY = Argument("directory", "DIR", kind=folder)
 # fmt: off
 OF_NEW = (
-    click.Argument(["file"], metavar="[SURVEY.toml]", required=False, type=PATH),
+    Argument("file", "[SURVEY.toml]", kind=PATH, required=False),
     Option("--from study", "Draw roads from its folders of runs.", folder, metavar="STUDY_DIR"),
-    out("The survey's folder.", required=True, metavar="DIR"),
+    options.out("The survey's folder.", required=True, metavar="DIR"),
     Option("--asks", "With --from: who conducts the survey; raters see it first.", str, ""),
     Option("--contact", "With --from: where raters can send questions.", str, ""),
     Option("--pairs", "With --from: number of pairs of roads to compare.", whole(0, 20, "a number"), 2),
-    seed("With --from: seed of the draw.", 0),
+    options.seed("With --from: seed of the draw.", 0),
     Option("--no-films", "Make no films, which take most of the time.", bool),
 )
 OF_SERVE = (
@@ -35,11 +35,11 @@ OF_SERVE = (
 )
 OF_ANALYSE = (
     DIRECTORY,
-    out("Folder for the report. [default: in the survey's]", metavar="DIR"),
+    options.out("Folder for the report. [default: in the survey's]", metavar="DIR"),
     Option("--synthetic", "Analyse answers of this many simulated raters instead.",
            whole(1, 10_000, "a number")),
     Option("--agreement", "With --synthetic: how often raters agree, 0 to 1.", measure(0, 1), 0.8),
-    seed("With --synthetic: seed of the raters.", 0),
+    options.seed("With --synthetic: seed of the raters.", 0),
 )
 # fmt: on
 

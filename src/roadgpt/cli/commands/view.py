@@ -1,41 +1,45 @@
 """``roadgpt view``: writes a page with the road in 3-D and a replay of its drive, or pictures."""
 
 import webbrowser
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.draw_pictures import PLOTS, draw_pictures
-from roadgpt.cli.option import FILES, Option, named
+from roadgpt.cli import options
+from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
-from roadgpt.cli.options import AXES, CHOICES, OPEN, QUIET, SETUP, WORLD, choice_of, world_of
-from roadgpt.cli.roads import shown_runs
+from roadgpt.cli.roads import roads_named, run_of, shown_runs
 from roadgpt.errors import UsageError
 
+if TYPE_CHECKING:
+    from roadgpt.campaign.selection import Choice
+    from roadgpt.report import Format, Scale
+    from roadgpt.road import Geometry, World
+
 MOST = 2  # roads side by side
-PAGE = Path("roadgpt-view.html")
+UNREADABLE = 2  # exit status
+PAGE, PLOTS = Path("roadgpt-view.html"), Path("plots")
 ENDINGS = (".html", ".htm")
 
 
+ADVICE = "Name a road file or the folder of a run, or two to see them side by side."
 OPTIONS = (
-    *CHOICES,
+    *options.CHOICES,
     Option("--out", f"The page, or the folder for pictures. [default: {PAGE}, {PLOTS}]", PATH, metavar="PATH",
-           heading=FILES),
-    OPEN.under(FILES),
+           heading=Heading.FILES),
+    options.OPEN.under(Heading.FILES),
     Option("--format formats", "Draw pictures instead of the page: png, svg, pdf.", picture_formats,
-           metavar="FORMAT,...", heading=FILES),
-    *(AXES, *named(WORLD, "map_size"), *named(SETUP, "geometry"), QUIET),
+           metavar="FORMAT,...", heading=Heading.FILES),
+    *(options.AXES, *named(options.WORLD, "map_size"), *named(options.SETUP, "geometry"), options.QUIET),
 )  # fmt: skip
 
 
-@click.command(
-    cls=GroupedCommand,
-    params=[click.Argument(["files"], nargs=-1, required=True, metavar="ROAD|RUN..."), *OPTIONS],
-)
+@click.command(cls=GroupedCommand, params=[Argument("files...", "ROAD|RUN...", ADVICE), *OPTIONS])
 @click.pass_context
 def command(
     ctx: click.Context, /, files: tuple[str, ...], out: Path | None, opens: bool, formats: Any, axes: Any,
@@ -54,12 +58,12 @@ def command(
     roadgpt view DIR/runs/0001 DIR/runs/0002 --out compared.html
     roadgpt view CAMPAIGN --worst --format pdf
     """
-    choice, world = choice_of(rest), world_of(rest)
+    choice, world = options.choice_of(rest), options.world_of(rest)
     if formats:
         if opens:
             raise UsageError("--open is for the page; leave out --format")
         place = folder_of(str(out)) if out is not None else PLOTS
-        return draw_pictures(files, choice, place, axes, formats, world, geometry, quiet) or None
+        return _draw_pictures(files, choice, place, axes, formats, world, geometry, quiet) or None
     if ctx.get_parameter_source("axes") is ParameterSource.COMMANDLINE:
         raise UsageError("--axes is for pictures; say --format png as well")
     out = out or PAGE
@@ -75,3 +79,65 @@ def command(
     if opens and not webbrowser.open(page.resolve().as_uri()):
         click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
     return None
+
+
+def _draw_pictures(
+    files: Sequence[str],
+    choice: "Choice | None",
+    out: Path,
+    axes: "Scale",
+    formats: "Sequence[Format]",
+    world: "World",
+    geometry: "Geometry",
+    quiet: bool,
+) -> int:
+    """Draws pictures of each road into a new folder named after the road, and prints their paths.
+
+    Args:
+        files, choice: As for ``roads_named``.
+        out: Folder in which the new folders are made.
+        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
+        formats: Formats of the pictures: png, svg or pdf.
+        world, geometry: World and geometry for road files, which do not contain them.
+        quiet: Whether to print errors only.
+
+    Returns:
+        The exit status: 2 if a name could not be used (the other roads are still drawn), else 0.
+    """
+    from roadgpt.report import draw
+
+    status = 0
+
+    def complain(error: UsageError) -> None:
+        nonlocal status
+        click.echo(f"roadgpt: {error}", err=True)
+        status = UNREADABLE
+
+    for each in roads_named(files, choice, complain=complain):
+        try:
+            run = run_of(each, world, geometry)
+            place = _place(out, each.stem)
+            pictures = draw(run, place, axes, tuple(formats))
+        except UsageError as error:
+            complain(error)
+            continue
+        if not quiet:
+            click.echo("\n".join(str(picture) for picture in pictures))
+    return status
+
+
+def _place(out: Path, name: str) -> Path:
+    """Makes and returns a new folder for one road's pictures."""
+    number = 1
+    while True:
+        place = out / (name if number == 1 else f"{name}-{number}")
+        try:
+            place.mkdir(parents=True)
+        except FileExistsError:
+            number += 1
+        except OSError as error:
+            raise UsageError(
+                f"cannot make a folder in {out}: {error.strerror}; give another one with --out"
+            ) from error
+        else:
+            return place
