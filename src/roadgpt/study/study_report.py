@@ -8,7 +8,6 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write
 from roadgpt.road import World
-from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
 from roadgpt.study.baseline import NAME
@@ -18,6 +17,7 @@ from roadgpt.study.chapters.diversity import diversity, spread_of
 from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
 from roadgpt.study.chapters.roads import Compared, coverage, every_road, overview
+from roadgpt.study.chapters.significance import Source
 from roadgpt.study.chapters.validity import (
     SBFT,
     STRICT,
@@ -74,32 +74,27 @@ def _problems(folder: Path) -> Mapping[str, str]:
 def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> Page:
     """Returns the page with the report of a study."""
     is_thesis = plan.kind == "thesis"
-    sections = [
-        validity(parts, plan.designers, is_thesis),
-        departures(parts, plan.designers, is_thesis),
-        alignment(parts, plan.designers),
-    ]
-    if not is_thesis:
-        sections = [sections[2], sections[0], *([sections[1]] if plan.setup.drives else [])]
-    first = overview(parts, found, plan.world.map_size)
-    sections = [*([first] if first else []), *sections, diversity(parts, found)]
-    sections += _pictures(parts, plan.world.map_size)
-    summary = [*_summary(plan, parts, found)]
+    valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
+    kept, first = alignment(parts, plan.designers), overview(parts, found, plan.world.map_size)
+    own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
-    lead += f", seed {plan.seed}" + (f", from {plan.source}" if plan.source else "")
-    card = card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts)
-    return Page(title, summary, sections, card, lead)
+    return Page(
+        title,
+        _summary(plan, parts, found),
+        [*([first] if first else []), *own, *_comparisons(parts, found, plan.world)],
+        card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts),
+        f"{lead}, seed {plan.seed}" + (f", from {plan.source}" if plan.source else ""),
+    )
 
 
-def _pictures(parts: Sequence[StudyPartRecord], size: float) -> list[Section]:
+def _comparisons(parts: Sequence[StudyPartRecord], found: Found, world: World) -> list[Section]:
     covered = coverage(parts)
-    return [*([covered] if covered else []), every_road(parts, size)]
+    return [diversity(parts, found), *([covered] if covered else []), every_road(parts, world.map_size)]
 
 
 def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> list[str]:
     """Returns the sentences of the summary, designer by designer."""
-    is_thesis = plan.kind == "thesis"
     lines = []
     for designer in plan.designers:
         own = [part for part in parts if part.designer == designer]
@@ -107,49 +102,50 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) ->
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
             continue
-        counted = of_thesis(own) if is_thesis else own
-        said = [*_valid_lines(designer, counted, is_thesis), *_left_lines(designer, counted, is_thesis)]
-        passed = passed_roads([road for part in own for road in part.roads])
-        said += [*outside_sentences(passed, plan.world), _kept_line(own)]
-        pairs = [(p, f) for p, f in zip(parts, found, strict=True) if p.designer == designer]
-        said.append(_different_line([f for _, f in pairs]))
+        compared = [each for part, each in zip(parts, found, strict=True) if part.designer == designer]
+        said = _sentences(own, compared, plan.world, plan.kind == "thesis")
         lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
 
 
-def _valid_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: bool) -> list[str]:
-    strict, sbft = (valid_source(designer, parts, kind) for kind in (STRICT, SBFT))
-    if not strict.total:
-        return []
-    text = (
-        f"{share_of(strict.hits, strict.total)} roads are valid by strict rules, words included, "
-        f"and {share_of(sbft.hits, sbft.total)} by the SBFT competition's"
-    )
-    if not is_thesis:
-        return [f"{text}."]
-    theirs = THESIS_VALID
-    return [f"{text}; {NAME} had {share_of(theirs.hits, theirs.total)} by its own checks."]
+def _sentences(
+    parts: Sequence[StudyPartRecord], found: Found, world: World, is_thesis: bool, near: Sequence[str] = ()
+) -> list[str]:
+    """Returns the sentences on one designer.
+
+    Args:
+        parts: the designer's roads.
+        found: the compared roads of each part, and how different they are.
+        world: the world of the roads.
+        is_thesis: whether the thesis' prompts alone are counted, with the thesis' counts beside them.
+        near: sentences on the drives that came nearest to failing.
+    """
+    designer = parts[0].designer
+    counted = of_thesis(parts) if is_thesis else parts
+    strict, sbft = (valid_source(designer, counted, kind) for kind in (STRICT, SBFT))
+    left, lines = left_source(designer, counted), []
+    if strict.total:
+        beside = f"; {NAME} had {_share(THESIS_VALID)} by its own checks" if is_thesis else ""
+        lines.append(
+            f"{_share(strict)} roads are valid by strict rules, words included, "
+            f"and {_share(sbft)} by the SBFT competition's{beside}."
+        )
+    if left.total:
+        beside = f"; in the thesis on {_share(THESIS_LEFT)}" if is_thesis else ""
+        lines.append(f"The car left its lane on {_share(left)} driven roads{beside}.")
+    lines += [*outside_sentences(passed_roads([road for part in parts for road in part.roads]), world), *near]
+    good, turns = ([kept for part in parts for kept in part.kept(name)] for name in ("general", "turns"))
+    if good:
+        right = f"; the number of turns is right on {percent(sum(turns) / len(turns))}" if turns else ""
+        lines.append(f"{share_of(sum(good), len(good))} roads keep every word{right}.")
+    return [*lines, _different(found)]
 
 
-def _left_lines(designer: str, parts: Sequence[StudyPartRecord], is_thesis: bool) -> list[str]:
-    ours = left_source(designer, parts)
-    if not ours.total:
-        return []
-    theirs = THESIS_LEFT
-    beside = f"; in the thesis on {share_of(theirs.hits, theirs.total)}" if is_thesis else ""
-    return [f"The car left its lane on {share_of(ours.hits, ours.total)} driven roads{beside}."]
+def _share(source: Source) -> str:
+    return share_of(source.hits, source.total)
 
 
-def _kept_line(parts: Sequence[StudyPartRecord]) -> str:
-    good = [value for part in parts for value in part.kept("general")]
-    counts = [value for part in parts for value in part.kept("turns")]
-    text = f"{share_of(sum(good), len(good))} roads keep every word"
-    return text + (
-        f"; the number of turns is right on {percent(sum(counts) / len(counts))}." if counts else "."
-    )
-
-
-def _different_line(found: Found) -> str:
+def _different(found: Found) -> str:
     nearest = [float(own.nearest.min()) for roads, own in found if len(roads) > 1]
     twins = sum(len(own.duplicates) for _, own in found)
     if not nearest:
@@ -175,44 +171,27 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     """
     card = read_card(folder)
     request, setup = card.request, card.request.setup
-    words = request.words or "roads that were given"
+    words, world = request.words or "roads that were given", request.world
     part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
-    found = [spread_of(part)]
-    first = overview([part], found, request.world.map_size)
-    failed = faults_in(folder)
+    parts, found, failed = [part], [spread_of(part)], faults_in(folder)
     summaries = fault_summaries(folder, failed)
-    opening = [each for each in (first, faults(folder, failed, summaries)) if each is not None]
-    sections = [*opening, *what_to_try(next_steps)]
-    sections.append(validity([part], [setup.designer], has_baseline=False))
-    if setup.drives:
-        sections.append(departures([part], [setup.designer], has_baseline=False))
-    if request.words:
-        sections.append(alignment([part], [setup.designer]))
-    sections += [diversity([part], found), *_pictures([part], request.world.map_size)]
+    opening = [overview(parts, found, world.map_size), faults(folder, failed, summaries)]
+    sections = [*filter(None, opening), *what_to_try(next_steps)]
+    sections += [validity(parts, [setup.designer])]
+    sections += [departures(parts, [setup.designer])] if setup.drives else []
+    sections += [alignment(parts, [setup.designer])] if request.words else []
+    far = _least(part.roads, "FAIL") if setup.keep_driving else None
+    sentences = _sentences(parts, found, world, False, near_and_far(_least(part.roads, "PASS"), far))
     page = Page(
         words,
-        [
-            *(headline(failed, summaries) if summaries else []),
-            *_campaign_summary(part, setup, request.world, found),
-        ],
-        sections,
-        card_of(command, card.roads, request.seed, setup, request.world, [part]),
+        [*(headline(failed, summaries) if summaries else []), *sentences],
+        [*sections, *_comparisons(parts, found, world)],
+        card_of(command, card.roads, request.seed, setup, world, parts),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
     )
     return write(page, folder)
-
-
-def _campaign_summary(part: StudyPartRecord, setup: Setup, world: World, found: Found) -> list[str]:
-    own = setup.designer
-    lines = [*_valid_lines(own, [part], is_thesis=False), *_left_lines(own, [part], is_thesis=False)]
-    near, far = (_least(part.roads, outcome) for outcome in ("PASS", "FAIL"))
-    lines += outside_sentences(passed_roads(part.roads), world)
-    lines += near_and_far(near, far if setup.keep_driving else None)
-    if any(road.kept for road in part.roads):
-        lines.append(_kept_line([part]))
-    return [*lines, _different_line(found)]
 
 
 def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:

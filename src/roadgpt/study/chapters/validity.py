@@ -80,7 +80,7 @@ THESIS_LEFT = Source(
 """The counts of lane departures on valid roads from the thesis."""
 
 
-def validity(parts: Parts, designers: Sequence[str], has_baseline: bool) -> Section:
+def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
     """Returns the section on validity by every set of rules, beside the thesis' counts if asked for."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
@@ -106,7 +106,7 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool) -> Sect
     return Section("Validity", [*blocks, *folded("Invalid roads", _named(parts, _why))])
 
 
-def departures(parts: Parts, designers: Sequence[str], has_baseline: bool) -> Section:
+def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
     """Returns the section on lane departures on valid roads."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]

@@ -22,17 +22,17 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, RedirectResponse, Response
-from starlette.routing import Route
+from starlette.routing import Mount, Route
+from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
 from roadgpt.study.survey.limits import FRAMES, RequestGuard, refusal
-from roadgpt.study.survey.pages import own_answers, questionnaire, render
+from roadgpt.study.survey.pages import render
 from roadgpt.study.survey.questions import clean
 from roadgpt.study.survey.store import MOST_RATERS, AnswerStore, Rater
 from roadgpt.study.survey.survey import MEDIA, QuestionPage, Survey
 
 STATIC = Path(__file__).parent / "static"
-STATIC_TYPES = {"survey.css": "text/css", "survey.js": "text/javascript"}
 MEDIA_TYPES = {"picture": "image/png", "film": "video/mp4", "view": "text/html"}
 JSON, FORM = "application/json", "application/x-www-form-urlencoded"
 MOST_FIELDS = 100  # of a form
@@ -77,7 +77,7 @@ class SurveyApp:
 
         own = "/r/{token}"
         routes = [
-            at("/static/{name}", self._static),
+            Mount("/static", StaticFiles(directory=STATIC)),
             at("/join/{token}", self._join, "GET", "POST"),
             at(own, self._door, "GET", "POST"),
             at(f"{own}/", self._door, "GET", "POST"),
@@ -98,12 +98,6 @@ class SurveyApp:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answers one request."""
         await self._app(scope, receive, send)
-
-    def _static(self, request: Request, _: bytes) -> Response:
-        name = request.path_params["name"]
-        if name not in STATIC_TYPES:
-            raise HTTPException(404)
-        return Response((STATIC / name).read_bytes(), media_type=STATIC_TYPES[name])
 
     def _join(self, request: Request, body: bytes) -> Response:
         token = request.path_params["token"].encode("utf-8", "replace")
@@ -149,7 +143,7 @@ class SurveyApp:
                 return RedirectResponse(base, 303)
             self.store.agree(rater)
             return RedirectResponse(f"{base}/1", 303)
-        given, own = self.store.answers_of(rater), self._pages(rater)
+        given, own = self.store.answers_of(rater), self.survey.pages_for(rater.digest)
         unfinished = [number for number, page in enumerate(own, 1) if _missing(page, given)]
         return RedirectResponse(f"{base}/{unfinished[0] if unfinished else len(own)}", 303)
 
@@ -186,11 +180,11 @@ class SurveyApp:
 
     def _numbered(self, request: Request, body: bytes) -> Response:
         rater, base = self._rater(request)
-        own, number = self._pages(rater), int(request.path_params["number"])
+        own, number = self.survey.pages_for(rater.digest), int(request.path_params["number"])
         if not 1 <= number <= len(own):
             raise HTTPException(404)
         if request.method != "POST":
-            return HTMLResponse(questionnaire(self.survey, own, number, base, self.store.answers_of(rater)))
+            return self._questionnaire(own, number, base, self.store.answers_of(rater))
         if _kind(request) != FORM:
             raise HTTPException(415)
         page, fields = own[number - 1], _fields(request, body)
@@ -205,7 +199,7 @@ class SurveyApp:
         if go == "back":
             return RedirectResponse(f"{base}/{max(1, number - 1)}", 303)
         if missing and go != "skip":
-            return HTMLResponse(questionnaire(self.survey, own, number, base, given, missing))
+            return self._questionnaire(own, number, base, given, missing)
         return RedirectResponse(f"{base}/{number + 1}" if number < len(own) else f"{base}/done", 303)
 
     def _done(self, request: Request, _: bytes) -> Response:
@@ -217,7 +211,7 @@ class SurveyApp:
     def _mine(self, request: Request, _: bytes) -> Response:
         rater, base = self._rater(request)
         given = self.store.answers_of(rater)
-        return HTMLResponse(own_answers(self.survey, base, given, rater.agreed_on or ""))
+        return self._page("mine.html", base=base, given=given, agreed_on=rater.agreed_on or "")
 
     def _withdraw(self, request: Request, body: bytes) -> Response:
         rater, base = self._rater(request)
@@ -226,8 +220,32 @@ class SurveyApp:
         self.store.withdraw(rater)
         return self._page("deleted.html")
 
-    def _pages(self, rater: Rater) -> Sequence[QuestionPage]:
-        return self.survey.pages_for(rater.digest)
+    def _questionnaire(
+        self,
+        own: Sequence[QuestionPage],
+        number: int,
+        base: str,
+        given: Mapping[str, str],
+        missing: Sequence[str] = (),
+    ) -> Response:
+        """Returns one page of a rater's questionnaire.
+
+        Args:
+            own: all pages in this rater's order.
+            number: number of the page, from 1.
+            base: the rater's address, ``/r/TOKEN``.
+            given: the answers so far, by question.
+            missing: ids of questions on this page without an answer, which the page lists at its top.
+        """
+        return self._page(
+            "questionnaire.html",
+            page=own[number - 1],
+            number=number,
+            total=len(own),
+            base=base,
+            given=given,
+            missing=missing,
+        )
 
     def _page(self, template: str, status: int = 200, **values: object) -> Response:
         return HTMLResponse(render(template, self.survey, **values), status)
@@ -242,8 +260,9 @@ class SurveyApp:
         if status == 410:
             return self._page("deleted.html", 410 if request.method == "POST" else 200)
         heading, sentence = NOTICES.get(status, (error.detail, error.detail))
-        text = render("notice.html", self.survey, heading=heading, sentence=sentence)
-        return HTMLResponse(text, status, headers)
+        page = self._page("notice.html", status, heading=heading, sentence=sentence)
+        page.headers.update(headers or {})
+        return page
 
     def _not_saved(self, request: Request, error: sqlite3.Error) -> Response:
         sys.stderr.write(f"roadgpt: an answer could not be saved ({error})\n")

@@ -1,15 +1,13 @@
 """Renders the pages that raters see. They work without scripts; with them each answer is saved at once."""
 
-from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from roadgpt.study.survey.questions import MOST_LETTERS
-from roadgpt.study.survey.survey import QuestionPage, Survey
+from roadgpt.study.survey.survey import Survey
 
-TEMPLATES = Path(__file__).parent / "templates"
 HEADINGS = {
     "about": "About you",
     "alignment": "Does the road match its description?",
@@ -17,15 +15,15 @@ HEADINGS = {
     "similarity": "How similar are the two roads?",
     "end": "Final remarks",
 }
-
-
+"""Heading of each part of a questionnaire."""
 ENVIRONMENT = Environment(
-    loader=FileSystemLoader(TEMPLATES),
+    loader=FileSystemLoader(Path(__file__).parent / "templates"),
     autoescape=True,  # every value, whatever its template is called
     undefined=StrictUndefined,
     trim_blocks=True,
     lstrip_blocks=True,
 )
+"""The templates, with ``headings`` and ``most_letters`` for all of them."""
 
 
 def _paragraphs(text: str) -> Markup:
@@ -35,6 +33,7 @@ def _paragraphs(text: str) -> Markup:
 
 
 ENVIRONMENT.filters["paragraphs"] = _paragraphs
+ENVIRONMENT.globals.update(headings=HEADINGS, most_letters=MOST_LETTERS)
 
 
 def render(template: str, survey: Survey, **values: object) -> str:
@@ -42,50 +41,7 @@ def render(template: str, survey: Survey, **values: object) -> str:
 
     Args:
         template: name of a file in ``templates``.
-        survey: the survey, for its title and texts.
+        survey: the survey, for its title, texts and pages.
         **values: what else the template names.
     """
     return ENVIRONMENT.get_template(template).render(survey=survey, **values)
-
-
-def questionnaire(
-    survey: Survey,
-    pages: Sequence[QuestionPage],
-    number: int,
-    base: str,
-    given: Mapping[str, str],
-    missing: Collection[str] = (),
-) -> str:
-    """Returns one page of a rater's questionnaire.
-
-    Args:
-        survey: the survey.
-        pages: all pages in this rater's order.
-        number: which page, from 1.
-        base: the rater's address, ``/r/TOKEN``.
-        given: the answers so far, by question.
-        missing: ids of questions on this page without an answer, which the page lists at its top.
-    """
-    return render(
-        "questionnaire.html",
-        survey,
-        headings=HEADINGS,
-        page=pages[number - 1],
-        number=number,
-        total=len(pages),
-        base=base,
-        given=given,
-        missing=missing,
-        most_letters=MOST_LETTERS,
-    )
-
-
-def own_answers(survey: Survey, base: str, given: Mapping[str, str], agreed_on: str) -> str:
-    """Returns the page that lists everything stored about a rater, with the button that deletes it."""
-    rows = [
-        (page.item.prompt if page.item else HEADINGS[page.part], question.text, given[question.id])
-        for page in survey.pages
-        for question in page.questions
-        if question.id in given
-    ]
-    return render("mine.html", survey, base=base, rows=rows, agreed_on=agreed_on)

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from roadgpt.errors import RoadGPTError
 
@@ -95,11 +95,8 @@ class AnswerStore:
     def rater_of(self, token: str) -> Rater | None:
         """Returns the rater of a token; None if there is none. Unknown tokens all take the same time."""
         digest = digest_of(token)
-        with self._lock:
-            row = self._file.execute(
-                "SELECT digest, state, agreed_on FROM raters WHERE digest = ?", (digest,)
-            ).fetchone()
-        rater = Rater(*row) if row else NOBODY
+        found = self._read("SELECT digest, state, agreed_on FROM raters WHERE digest = ?", digest)
+        rater = Rater(*found[0]) if found else NOBODY
         return rater if hmac.compare_digest(rater.digest, digest) else None
 
     def shared(self) -> str:
@@ -113,15 +110,11 @@ class AnswerStore:
 
     def links(self) -> int:
         """Returns the number of raters with a link of their own."""
-        with self._lock:
-            return int(self._file.execute("SELECT count(*) FROM raters WHERE NOT joined").fetchone()[0])
+        return int(self._read("SELECT count(*) FROM raters WHERE NOT joined")[0][0])
 
     def raters(self) -> list[Rater]:
         """Returns all invited raters."""
-        with self._lock:
-            rows = self._file.execute(
-                "SELECT digest, state, agreed_on FROM raters ORDER BY digest"
-            ).fetchall()
+        rows = self._read("SELECT digest, state, agreed_on FROM raters ORDER BY digest")
         return [Rater(*row) for row in rows]
 
     def agree(self, rater: Rater) -> None:
@@ -142,21 +135,14 @@ class AnswerStore:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
             if state != ("agreed",):
                 return False
-            file.executemany(
-                "INSERT INTO answers VALUES (?, ?, ?) ON CONFLICT DO UPDATE SET value = excluded.value",
-                [(rater.digest, question, value) for question, value in answers.items() if value],
-            )
-            file.executemany(
-                "DELETE FROM answers WHERE rater = ? AND question = ?",
-                [(rater.digest, question) for question, value in answers.items() if not value],
-            )
+            rows = [(rater.digest, question, value) for question, value in answers.items()]
+            file.executemany("INSERT OR REPLACE INTO answers VALUES (?, ?, ?)", rows)
+            file.execute("DELETE FROM answers WHERE rater = ? AND value = ''", (rater.digest,))
         return True
 
     def answers_of(self, rater: Rater) -> dict[str, str]:
         """Returns a rater's answers, by question."""
-        with self._lock:
-            rows = self._file.execute("SELECT question, value FROM answers WHERE rater = ?", (rater.digest,))
-            return dict(rows.fetchall())
+        return dict(self._read("SELECT question, value FROM answers WHERE rater = ?", rater.digest))
 
     def withdraw(self, rater: Rater) -> None:
         """Deletes all answers of a rater for good: their bytes are overwritten in file and journal."""
@@ -165,8 +151,11 @@ class AnswerStore:
             file.execute(
                 "UPDATE raters SET state = 'withdrawn', agreed_on = NULL WHERE digest = ?", (rater.digest,)
             )
+        self._read("PRAGMA wal_checkpoint(TRUNCATE)")
+
+    def _read(self, query: str, *values: str) -> list[Any]:
         with self._lock:
-            self._file.execute("PRAGMA wal_checkpoint(TRUNCATE)")
+            return self._file.execute(query, values).fetchall()
 
     @contextmanager
     def _writing(self) -> Iterator[sqlite3.Connection]:
