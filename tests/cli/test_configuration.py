@@ -32,7 +32,10 @@ export = ["csv", "opendrive"]
 
 [world]
 map_size = 400
+lanes = "2+1"
 lane_width = 3.25
+lane_width_end = 3.5
+bank = 5.0
 shoulder = 1
 friction = 0.6
 speed_limit_kmh = 50

@@ -87,15 +87,25 @@ def test_the_run_in_lies_on_the_clothoid_and_has_no_kink() -> None:
     assert np.abs(angles[(s < 30.0) | (s > 160.0)]).max() < 1e-12
 
 
-def test_a_jump_of_curvature_is_run_in_beside_it() -> None:
+def test_a_jump_of_curvature_is_run_in_on_both_sides_of_it() -> None:
     plan = PieceCurve(0.0, 0.0, 0.0, (Piece(60.0), Piece(60.0, 0.02, 0.02), Piece(60.0)))
     road = World(bank="auto").lay(Road(plan, GradeProfile(0.0, (0.0, 180.0), (0.0, 0.0))))
     assert road.profile is not None
     s = np.linspace(0.0, 180.0, 1801)
     angles = road.profile.superelevation(s)
-    assert np.abs(np.diff(angles)).max() < 0.1 * 0.07 / 10  # at most 7 % in 10 m
-    assert float(road.profile.superelevation(90.0)) == pytest.approx(-math.atan(0.07))
-    assert float(road.profile.superelevation(60.0)) == pytest.approx(-math.atan(0.07) / 2, abs=0.003)
+    # 7 % of a half carriageway of 4 m is 28 cm: 28 m at 1 %, half of them before the bend begins
+    assert angles[s <= 46.0] == pytest.approx(0.0, abs=1e-9)
+    assert angles[(s >= 74.1) & (s <= 105.9)] == pytest.approx(-math.atan(0.07))
+    assert float(road.profile.superelevation(60.0)) == pytest.approx(-math.atan(0.07) / 2)
+
+
+def test_a_short_clothoid_is_run_in_beside_it_too_as_far_as_there_is_room() -> None:
+    road = World(bank="auto").lay(bend(40.0, run_in=8.0, arc=10.0))
+    assert road.profile is not None
+    angles = road.profile.superelevation(np.array([19.9, 20.1, 43.0, 65.9, 66.1]))
+    # 28 m are needed: 8 on the clothoid and 10 before it, but only 5, the half of the arc, behind it
+    assert angles == pytest.approx([0.0, 0.0, -math.atan(0.07), 0.0, 0.0], abs=1e-4)
+    assert angles[1] < angles[0] == 0.0
 
 
 def test_a_spline_is_banked_too() -> None:

@@ -15,7 +15,7 @@ from roadgpt.drive.loading import absolute_spec
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
 from roadgpt.road import Geometry, World
-from roadgpt.road.world import NotNegative, Positive
+from roadgpt.road.world import LANES, NotNegative, Positive
 
 LARGEST = 4_000_000  # bytes of a file
 FOLDERS = ("record", "replay")  # keys of [chat] that name one
@@ -56,7 +56,11 @@ class WorldTable(_Strict):
     """The table ``[world]`` of a plan file, in the units of the command line."""
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
+    lanes: Annotated[str, Field(pattern=LANES.pattern)] = "1+1"
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
+    lane_width_end: Annotated[float, Field(ge=2, le=10)] | None = None
+    bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=12)] = "none"
+    """In percent, if it is a number."""
     verge: NotNegative = 3.0
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
@@ -68,7 +72,8 @@ class WorldTable(_Strict):
     def world(self) -> World:
         """Returns the World with these values."""
         values = self.model_dump()
-        return World(speed_limit=values.pop("speed_limit_kmh") / 3.6, **values)
+        bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
+        return World(speed_limit=values.pop("speed_limit_kmh") / 3.6, **{**values, "bank": bank})
 
 
 class PlanTable(_Strict):

@@ -56,7 +56,8 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
     """Returns the Run of a result that was read from an open Record, as ``kept_run`` does."""
     request, brief = cell.request, cell.brief
-    road = build(_design_of(record.folder, cell.name, result), request.setup.geometry)
+    design = _design_of(record.folder, cell.name, result)
+    road = request.world.lay(build(design, request.setup.geometry))
     drive = _kept_drive(record, cell.name, result.number) if has_drive else None
     is_invalid = result.outcome == "INVALID"
     with reading_store(record.path):

@@ -140,7 +140,7 @@ def placed(
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
     """Returns a design and its road if the road satisfies all requirements and rules; else None."""
     try:
-        road = build(design)
+        road = setting.world.lay(build(design))
         if check.inspect(road, setting.brief, setting.world):
             return None
         if (
@@ -164,7 +164,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
     """Returns a road that has been driven as a Candidate, with its features."""
     design, setting = known
-    return described(design, build(design), "", setting)
+    return described(design, setting.world.lay(build(design)), "", setting)
 
 
 def _place_between(one: Design, other: Design, share: float) -> MapPose:

@@ -61,7 +61,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         PartError: No rules are installed, or a rule of the set is missing. This ensures
             that no road passes because rules are missing.
     """
-    found: list[Finding] = []
+    road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)
         if any(finding.stops for finding in found):

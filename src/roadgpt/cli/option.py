@@ -87,7 +87,7 @@ class Option(click.Option):
 
     def read(self, given: Any) -> Any:
         """Returns the field's value for an option's value: the same, but in the field's unit."""
-        return given if given is None or self.unit == 1.0 else given / self.unit
+        return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
         """Returns the command-line arguments that give the field a value; empty if it is the default.

@@ -32,6 +32,27 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
     return number
 
 
+def lanes(value: str) -> str:
+    """Checks numbers of lanes, along the road and against it."""
+    from roadgpt.road.world import LANES
+
+    if not LANES.fullmatch(value.replace(" ", "")):
+        advice = "give 1 to 4 lanes along the road, a plus and 0 to 4 against it, such as 2+1"
+        raise click.BadParameter(f"'{value}' is not possible; {advice}")
+    return value.replace(" ", "")
+
+
+def bank(value: str) -> str | float:
+    """Converts a superelevation to a number in percent; "none" and "auto" stay."""
+    text = str(value).strip().removesuffix("%").strip()
+    if text in ("none", "auto"):
+        return text
+    try:
+        return measure(0, 12, "percent")(text)
+    except click.BadParameter as error:
+        raise click.BadParameter(f"{error.message}, or none, or auto") from None
+
+
 def whole(low: int, high: int, what: str) -> Callable[[str], int]:
     """Returns the type of an option that takes a whole number within bounds, which are included.
 

@@ -15,11 +15,13 @@ from roadgpt.cli.configuration import designer_guard, driver_guard, path_guard, 
 from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_types import (
     SEED,
+    bank,
     driver,
     driver_again,
     file,
     folder,
     formats,
+    lanes,
     measure,
     picture_formats,
     whole,
@@ -48,7 +50,11 @@ WORLD = (
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
             0.95),
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
-    _world("--lane-width", "Width of each of the two lanes, m.", measure(2, 10, "metres"), 4),
+    _world("--lanes", "Lanes along + against, such as 2+1.", lanes, "1+1"),
+    _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
+    _world("--lane-width-end", "Width to which lanes widen or narrow until the end, m. [default: the same]",
+           measure(2, 10, "metres"), is_rare=True),
+    _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
     _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
     _world("--friction", "Friction: dry 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0),
@@ -56,8 +62,8 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "What reads descriptions: model, grammar or chat.", str, "model", guard=reader_guard),
-    _run("--designer", "What designs roads: planner, chat or thesis.", str, "planner",
+    _run("--reader", "What reads words: model, grammar or chat.", str, "model", guard=reader_guard),
+    _run("--designer", "What designs: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),

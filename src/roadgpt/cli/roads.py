@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from roadgpt.cli.options import WORLD
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import PartError, UsageError
@@ -140,13 +141,23 @@ def _single(file: str) -> NamedRoad:
     return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
-def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
+LANES = ("lanes", "lane_width", "lane_width_end", "verge", "bank")
+"""Fields of the World that a road with a cross-section of its own does not take."""
+
+
+def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str, ...]]:
     """Returns the Design or the Road in a file, and remarks on assumptions made in reading it.
+
+    One remark names the options for lanes that have no effect, as the road has its own.
+
+    Args:
+        file: The road file, or the folder of a run.
+        world: The World that the options describe.
 
     Raises:
         UsageError: The file holds no road, or it is a folder that is no run.
     """
-    from roadgpt.road import read_blueprint
+    from roadgpt.road import Design, World, read_blueprint
     from roadgpt.run.card import CARD
 
     if Path(file, CARD).is_file():
@@ -156,7 +167,17 @@ def blueprint_of(file: str) -> tuple["Design | Road", tuple[str, ...]]:
             f"{file} is a folder without a road; give a road file, or the folder of a run such as "
             "DIR/runs/0001, which roadgpt drive --again makes from a test of a campaign"
         )
-    return read_blueprint(file)
+    blueprint, remarks = read_blueprint(file)
+    if isinstance(blueprint, Design) or blueprint.profile is None:
+        return blueprint, remarks
+    usual = World()
+    given = [each.flag for each in WORLD if each.field in LANES and _differs(world, usual, each.field)]
+    own = f"the road has lanes of its own; {', '.join(given)} has no effect on it"
+    return blueprint, (*remarks, own) if given else remarks
+
+
+def _differs(world: "World", usual: "World", field: str) -> bool:
+    return bool(getattr(world, field) != getattr(usual, field))
 
 
 def shown_runs(
@@ -206,7 +227,7 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
     if named.run is not None:
         return named.run()
-    blueprint, remarks = blueprint_of(named.said)
+    blueprint, remarks = blueprint_of(named.said, world)
     for remark in remarks:
         click.echo(f"roadgpt: {named.said}: {remark}", err=True)
     run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))

@@ -184,7 +184,7 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
     The road is moved no further than it must be. Where moving is not enough, it is also turned about its
     middle by the smallest angle, in hundredths of a degree, at which it fits.
     """
-    corners = _corners(build(design), world)
+    corners = _corners(world.lay(build(design)), world)
     room = world.map_size - 2 * LEAST_EDGE
     written = round(design.theta * HUNDREDTH) / HUNDREDTH - design.theta
     turn = _least_turn(corners, np.append(0.0, TURNS + written), room)

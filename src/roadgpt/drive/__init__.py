@@ -94,7 +94,7 @@ def simulate(
 
     Args:
         road: the road.
-        world: lane width, friction, speed limit and tolerances.
+        world: friction, speed limit and tolerances, and the lanes if the road has none of its own.
         driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
             file.
         seed: passed to the driver and recorded; the car's physics uses no random numbers.
@@ -115,7 +115,7 @@ def simulate(
     if isinstance(engine, type):
         engine = engine()
     refuse_ignored(engine, world)
-    drive: Drive = engine.simulate(road, world, made, seed, keep_driving)
+    drive: Drive = engine.simulate(world.lay(road), world, made, seed, keep_driving)
     check_motion(drive)
     return drive
 

@@ -41,7 +41,7 @@ class Exporter(Protocol):
             road: The road to export.
             path: The file to write. Further files in the same folder must have names that begin with its
                 stem.
-            world: Widths of lane and shoulder, friction, speed limit.
+            world: Friction, speed limit, and the lanes if the road has none of its own.
             poses: The motion of the car in a drive along the road; formats that cannot hold it ignore it.
 
         Raises:
@@ -77,7 +77,7 @@ def save(
         road: The road to export.
         folder: The folder, which is created if it does not exist.
         formats: Names of exporters, such as "opendrive". All are looked up before any file is written.
-        world: Widths of lane and shoulder, friction, speed limit.
+        world: Friction, speed limit, and the lanes if the road has none of its own.
         name: Name of the files without suffix.
         poses: The motion of the car in a drive along the road, for formats that can hold it.
 
@@ -89,7 +89,7 @@ def save(
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
-    folder = Path(folder)
+    road, folder = world.lay(road), Path(folder)
     written: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)

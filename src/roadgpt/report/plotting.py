@@ -59,9 +59,10 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")
         return what.road, world or what.world
     if isinstance(what, Design):
-        return build(what), world or World()
+        what = build(what)
     if isinstance(what, Road):
-        return what, world or World()
+        world = world or World()
+        return world.lay(what), world
     raise UsageError(f"a {type(what).__name__} cannot be plotted; give a Road, a Design or a Run")
 
 

@@ -2,8 +2,9 @@
 
 Source: National Highways, CD 109 Highway link design (earlier TD 9/93), section 3: at a design speed of V
 km/h, a bend of radius R metres has a superelevation of V^2 / (2.828 R) percent, and at most 7 % outside
-towns. It is run in over the transition curve, here from the value at its beginning to that at its end and
-without a kink.
+towns. It is run in over the transition curve. Where this is so short that the edge of the carriageway would
+climb or fall by more than 1 % against the centre line, the run-in begins earlier and ends later, but not
+beyond the middle of the straight or arc beside it.
 """
 
 import math
@@ -16,35 +17,65 @@ from roadgpt.geometry.curve import Array, PlanCurve
 
 SHARE = 2.828  # CD 109; the superelevation then balances 45 % of the lateral acceleration: 127 / 2.828 = 45
 MOST = 0.07  # ratio, CD 109
+EDGE = 0.01  # ratio, CD 109: grade of an edge of the carriageway against the centre line
 STRAIGHT = 1 / 2000  # 1/m; flatter curves count as straight where one superelevation is set for all bends
-JUMP = 1e-4  # 1/m; where the curvature changes at once by more, the superelevation is run in beside it
-STEP = 4.0  # m between the stations of a superelevation that does not follow pieces of the plan
+EQUAL = 1e-9  # rad
 SHORTEST = 1e-6  # m; shorter pieces of the plan are skipped
-RUN_IN = 24.0  # m over which a jump of the curvature is spread
+STEP = 4.0  # m between the stations at which the superelevation of a spline is computed
+RUN_IN = 24.0  # m over which the superelevation of a spline is averaged
+
+Knots = list[tuple[float, float]]
+"""Stations in metres, each with its angle in radians; between two of them it changes without a kink."""
 
 
-def superelevation(plan: PlanCurve, speed: float, ratio: float | None = None) -> CubicProfile:
+def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | None = None) -> CubicProfile:
     """Returns the angle in radians by station, negative in left bends, so that bends fall to their inside.
 
     Args:
         plan: The centre line.
+        reach: Distance in metres from the centre line to the farther edge of the carriageway.
         speed: Design speed in m/s.
         ratio: The superelevation of every bend as a ratio; None takes that of CD 109 for its radius.
     """
-    if isinstance(plan, PieceCurve) and not _jumps(plan):
-        pieces = [piece for piece in plan.pieces if piece.length > SHORTEST]
-        s = np.r_[0.0, np.cumsum([piece.length for piece in pieces])]
-        starts = _angles(np.array([piece.k0 for piece in pieces]), speed, ratio)
-        ends = _angles(np.array([piece.k1 for piece in pieces]), speed, ratio)
+    if isinstance(plan, PieceCurve):
+        knots = _of_pieces(plan, reach, speed, ratio)
     else:
         s = np.linspace(0.0, plan.length, max(2, round(plan.length / STEP) + 1))
-        angles = _smoothed(plan, s, speed, ratio)
-        starts, ends = angles[:-1], angles[1:]
-    rows = [
-        (start, 0.0, 3 * (end - start) / n**2, -2 * (end - start) / n**3)
-        for start, end, n in zip(starts.tolist(), ends.tolist(), np.diff(s).tolist(), strict=True)
-    ]
-    return CubicProfile(tuple(s.tolist()), (*rows, (float(ends[-1]), 0.0, 0.0, 0.0)))
+        knots = list(zip(s.tolist(), _smoothed(plan, s, speed, ratio).tolist(), strict=True))
+    rows = []
+    for (s0, start), (s1, end) in pairwise(knots):
+        n, change = s1 - s0, end - start
+        rows.append((start, 0.0, 3 * change / n**2 + 0.0, -2 * change / n**3 + 0.0))
+    rows.append((knots[-1][1], 0.0, 0.0, 0.0))
+    return CubicProfile(tuple(s for s, _ in knots), tuple(rows))
+
+
+def _of_pieces(plan: PieceCurve, reach: float, speed: float, ratio: float | None) -> Knots:
+    """Returns knots at both ends of each run-in, and at the ends of the road."""
+    pieces = [piece for piece in plan.pieces if piece.length > SHORTEST]
+    s = np.r_[0.0, np.cumsum([piece.length for piece in pieces])].tolist()
+    starts = _angles(np.array([piece.k0 for piece in pieces]), speed, ratio).tolist()
+    ends = _angles(np.array([piece.k1 for piece in pieces]), speed, ratio).tolist()
+    level = [abs(b - a) < EQUAL for a, b in zip(starts, ends, strict=True)]
+    spare = [(s[i + 1] - s[i]) / 2 if level[i] else 0.0 for i in range(len(pieces))]
+    knots: Knots = [(0.0, starts[0])]
+    for i in range(len(pieces)):
+        if i and abs(starts[i] - ends[i - 1]) >= EQUAL:  # no transition curve between two pieces
+            knots += _run_in((s[i], ends[i - 1]), (s[i], starts[i]), reach, (spare[i - 1], spare[i]))
+        if not level[i]:
+            beside = (spare[i - 1] if i else 0.0, spare[i + 1] if i + 1 < len(pieces) else 0.0)
+            knots += _run_in((s[i], starts[i]), (s[i + 1], ends[i]), reach, beside)
+    knots.append((s[-1], ends[-1]))
+    return [knots[0], *(b for a, b in pairwise(knots) if b[0] - a[0] > SHORTEST)]
+
+
+def _run_in(
+    first: tuple[float, float], last: tuple[float, float], reach: float, spare: tuple[float, float]
+) -> Knots:
+    """Returns the knots of one run-in, made longer by at most the spare metres before and behind it."""
+    (s0, start), (s1, end) = first, last
+    lacking = max(abs(end - start) * reach / EDGE - (s1 - s0), 0.0) / 2
+    return [(s0 - min(lacking, spare[0]), start), (s1 + min(lacking, spare[1]), end)]
 
 
 def _angles(curvature: Array, speed: float, ratio: float | None) -> Array:
@@ -54,12 +85,6 @@ def _angles(curvature: Array, speed: float, ratio: float | None) -> Array:
     else:
         sizes = np.where(bend > STRAIGHT, ratio, 0.0)
     return -np.copysign(np.arctan(sizes), curvature) + 0.0
-
-
-def _jumps(plan: PieceCurve) -> bool:
-    """Returns whether the curvature changes at once somewhere between two pieces."""
-    pieces = [piece for piece in plan.pieces if piece.length > SHORTEST]
-    return any(abs(b.k0 - a.k1) > JUMP for a, b in pairwise(pieces))
 
 
 def _smoothed(plan: PlanCurve, s: Array, speed: float, ratio: float | None) -> Array:

@@ -86,7 +86,7 @@ class World(BaseModel):
         profile = self.usual_profile(road.length)
         if self.bank != "none":
             ratio = None if self.bank == "auto" else self.bank
-            angle = superelevation(road.plan, self.speed_limit, ratio)
+            angle = superelevation(road.plan, profile.paved_reach, self.speed_limit, ratio)
             profile = replace(profile, superelevation_angle=angle)
         return road.with_profile(profile)
 

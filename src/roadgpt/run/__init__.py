@@ -154,7 +154,7 @@ def prove(
     check_parts(setup, world)
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None
-    road = build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint
+    road = world.lay(build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint)
     findings = inspect(road, brief, world, setup.rules)
     request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun
@@ -206,7 +206,7 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
         if setup.geometry == "spline" and own_geometry is None:
             # designers draw bends, which a spline keeps only through many nodes
             design = in_short_segments(design)
-        road = build(design, own_geometry or setup.geometry)
+        road = world.lay(build(design, own_geometry or setup.geometry))
         findings = inspect(road, brief, world, setup.rules)
         kept = _Made(design, road, findings, attempt + 1, getattr(designer, "report", None))
         if not findings:

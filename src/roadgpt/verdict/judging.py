@@ -53,6 +53,7 @@ def judge(
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.oob_tolerance``.
     """
+    road = world.lay(road)
     step, cause = known or _first_failure(road, drive, world)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())

@@ -127,7 +127,7 @@ def _of_result(cell: Cell, its: Result, system: str) -> LocatedFailure | None:
     if its.design is None:
         return None
     try:
-        road = build(its.design, cell.request.setup.geometry)
+        road = cell.request.world.lay(build(its.design, cell.request.setup.geometry))
     except RoadGPTError:  # of another version, which built it
         return None
     name = NumberedTest(cell.name, its.number)

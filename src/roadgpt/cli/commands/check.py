@@ -18,7 +18,7 @@ UNREADABLE = 2
 
 OPTIONS = (
     *named(options.SETUP, "rules"),
-    *named(options.WORLD, "map_size"),
+    *named(options.WORLD, "map_size", "lanes", "lane_width", "lane_width_end", "verge", "bank"),
     *named(options.SETUP, "geometry"),
     *options.SCREEN,
 )
@@ -44,7 +44,7 @@ def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -
     from roadgpt.road import Design, build
 
     begun = time.perf_counter()
-    blueprint, remarks = blueprint_of(file)
+    blueprint, remarks = blueprint_of(file, world)
     road = build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
     findings = inspect(road, None, world, rules)
     seconds = time.perf_counter() - begun

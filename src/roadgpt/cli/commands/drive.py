@@ -112,7 +112,7 @@ def _driven(
 ) -> Row:
     from roadgpt.run import prove
 
-    blueprint, remarks = blueprint_of(file)
+    blueprint, remarks = blueprint_of(file, world)
     for remark in remarks:
         screen.say(f"{file}: {remark}")
     with redirect_stdout(sys.stderr):  # what a user's driver prints is no row

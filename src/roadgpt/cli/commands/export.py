@@ -29,7 +29,9 @@ OPTIONS = (
     options.formats_option("--to formats", FORMATS, required=True, advice=TO),
     *options.CHOICES,
     options.out("Folder for the files.", default=Path("exports")),
-    *named(options.WORLD, "speed_limit", "lane_width", "verge", "friction"),
+    *named(
+        options.WORLD, "speed_limit", "lanes", "lane_width", "lane_width_end", "verge", "bank", "friction"
+    ),
     *(*named(options.SETUP, "geometry"), options.QUIET),
 )
 
@@ -107,10 +109,10 @@ class _Source:
             self._tell(file, found.remarks)
             world = found.world(self.world).model_copy(update=self.said)
             return Run(Request(world=world), 1, 0, road=found.road)
-        blueprint, remarks = blueprint_of(file)
+        blueprint, remarks = blueprint_of(file, self.world)
         self._tell(file, remarks)
         road = build(blueprint, self.geometry) if isinstance(blueprint, Design) else blueprint
-        return Run(Request(world=self.world), 1, 0, road=road)
+        return Run(Request(world=self.world), 1, 0, road=self.world.lay(road))
 
     def _tell(self, file: str, remarks: tuple[str, ...]) -> None:
         for remark in () if self.is_quiet else remarks:
