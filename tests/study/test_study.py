@@ -23,7 +23,7 @@ from roadgpt.study.study_report import keep_problems, write_run_report, write_st
 from roadgpt.study.truth import Truth
 
 GOLDEN = Path(__file__).parent / "golden"
-CLOCK = ("seconds.json", "generation_stats.csv")  # what the clock writes
+CLOCK = ("seconds.json", "generation_stats.csv", "workers.log")  # what the clock and workers write
 QUICK = Setup(reader="grammar", drives=False)
 
 
@@ -118,7 +118,7 @@ def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
     for name, workers in (("one", 1), ("two", 2)):
         open_folder(plan, tmp_path / name)
         heard: list[int] = []
-        assert work(plan, tmp_path / name, workers, tell=lambda _, done, h=heard: h.append(done)) == []
+        assert work(plan, tmp_path / name, workers, tell=heard.append) == []
         assert heard[-1] == 4
         write_study(tmp_path / name)
     assert content(tmp_path / "one") == content(tmp_path / "two")

@@ -1,29 +1,28 @@
-"""Makes the roads of a study: one description after another, or several at once in processes.
+"""Makes the roads of a study: each part is a folder of runs, in which the engine of campaigns works.
 
-Every part draws its own seeds, so the files are the same for any number of processes. If a process is killed,
-its part can be resumed where it stopped.
+Every part draws its own seeds, so the files are the same for any number of workers. After an interruption,
+``work`` makes the roads that are missing.
 """
 
-import multiprocessing
-import time
-from collections.abc import Callable, Sequence
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack, closing
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign import campaign
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.folder_campaign import campaign, work_in
+from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
-from roadgpt.errors import BriefError, DesignError, GivenUpError, RoadGPTError
+from roadgpt.errors import BriefError, DesignError
+from roadgpt.run import Request, brief_of
+from roadgpt.run.atomic import alone_in
 from roadgpt.run.folder import Draw, finished
-from roadgpt.stopping import look, shielded
 from roadgpt.study.plan import StudyPart, StudyPlan
 
-LOOK = 0.3  # s between two looks at how far processes are
-KILLED = "its process ended before its work was done; the same command goes on"
+AT_ONCE = 200  # parts whose folders are locked together: a process may open about 1,000 files
 
-Tell = Callable[[str, int], None]
-"""Called with the name of the part at work and the number of finished roads of the study."""
+Tell = Callable[[int], object]
+"""Called with the number of finished roads of the study."""
 
 
 class Problem(NamedTuple):
@@ -37,15 +36,15 @@ class Problem(NamedTuple):
 
 
 def work(
-    plan: StudyPlan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell | None = None
+    plan: StudyPlan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell = lambda _: None
 ) -> list[Problem]:
     """Makes all roads of a study, or those that are missing.
 
     Args:
         plan: the study.
         folder: the study's folder.
-        workers: number of processes. With more than one, the calling program must be importable, as for
-            ``multiprocessing``. Designers that ask a language model work in this process, one after another.
+        workers: number of processes; 1: this one. Parts whose designer or reader asks a language model are
+            made in this process, one after another.
         draw: draws pictures into the folders of runs.
         tell: called with the progress.
 
@@ -53,134 +52,78 @@ def work(
         Why roads are missing; empty if all were made.
 
     Raises:
-        RoadGPTError: a plug-in is not installed, or the folder cannot be used.
+        GivenUpError: the simulator failed three times in a row; the same command makes these roads again.
+        UsageError: a plug-in is not installed, or another process works in the folder.
+        RoadGPTError: a file cannot be written, or there are no workers.
     """
-    watch = _Watch(plan, folder, tell)
-    alone = [part for part in plan.parts() if workers == 1 or plan.setup_of(part.designer).chat is not None]
-    apart = [part for part in plan.parts() if part not in alone]
-    problems = _in_processes(plan, apart, folder, workers, draw, watch)
-    return problems + _in_turn(plan, alone, folder, draw, watch)
+    session = _Session(plan, folder, draw, tell)
+    asking = {name for name in plan.designers if plan.setup_of(name).chat is not None}
+    with alone_in(folder):
+        others = [part for part in plan.parts() if part.designer not in asking]
+        for first in range(0, len(others), AT_ONCE):
+            session.make(others[first : first + AT_ONCE], workers)
+        session.make_in_turn(part for part in plan.parts() if part.designer in asking)
+    return [session.problems[part.name] for part in plan.parts() if part.name in session.problems]
 
 
-class _Watch:
-    """Counts the finished roads."""
+class _Session:
+    """Makes the roads of parts, counts them, and keeps why some are missing."""
 
-    def __init__(self, plan: StudyPlan, folder: Path, tell: Tell | None) -> None:
-        self._folders = [folder / part.name for part in plan.parts()]
-        self._done = {place: len(finished(place)) for place in self._folders}
-        self._tell = tell
+    def __init__(self, plan: StudyPlan, folder: Path, draw: Draw | None, tell: Tell) -> None:
+        self.plan, self.folder, self.draw, self.tell = plan, folder, draw, tell
+        self.done = {part.name: len(finished(folder / part.name)) for part in plan.parts()}
+        self.problems: dict[str, Problem] = {}
 
-    def look(self, at: str) -> None:
-        """Counts again and reports the progress."""
-        if self._tell is None:
-            return
-        for place in self._folders:
-            if place.is_dir():
-                self._done[place] = len(list(place.glob("test.*.json")))
-        self._tell(at, sum(self._done.values()))
+    def make(self, parts: Iterable[StudyPart], workers: int) -> None:
+        """Makes the roads of all parts together; no language model is asked."""
+        folders, briefs = dict[str, RunFolder](), dict[str, Brief]()
+        for part in parts:
+            setup = self.plan.setup_of(part.designer)
+            try:
+                brief = brief_of(part.prompt.prompt, self.plan.world, setup)
+            except BriefError as error:
+                self.problems[part.name] = Problem(part.name, str(error))
+                continue
+            request = Request(words=brief.words, seed=self.plan.seed, world=self.plan.world, setup=setup)
+            runs = RunFolder.opened(request, self.plan.roads, self._place(part))
+            folders[part.name], briefs[part.name] = runs, brief
+        with ExitStack() as stack:
+            for runs in folders.values():
+                stack.enter_context(alone_in(runs.path))
+            folders = {name: runs for name, runs in folders.items() if not runs.begin()}
+            if folders:
+                several = workers if workers > 1 else 0
+                tests = work_in(self.folder, folders, briefs, self.draw, workers=several)
+                for name, _ in stack.enter_context(closing(tests)):
+                    self._count(name)
+        for name, runs in folders.items():
+            if runs.failure:
+                self.problems[name] = Problem(name, runs.failure)
 
+    def make_in_turn(self, parts: Iterable[StudyPart]) -> None:
+        """Makes the roads of parts one after another, with one meter for all language models."""
+        meter = Meter.of(self.plan.setup.chat)
+        silent: dict[str, Problem] = {}
+        for part in parts:
+            if part.designer in silent:  # a designer whose server did not answer is not asked again
+                self.problems[part.name] = silent[part.designer]._replace(part=part.name)
+                continue
+            setup, place, words = self.plan.setup_of(part.designer), self._place(part), part.prompt.prompt
+            plan = self.plan
+            try:
+                for _ in campaign(words, plan.roads, plan.seed, plan.world, setup, place, self.draw, meter):
+                    self._count(part.name)
+            except (ChatError, BriefError, DesignError) as error:
+                problem = Problem(part.name, str(error), isinstance(error, ChatError))
+                self.problems[part.name] = problem
+                if problem.is_of_chat and not isinstance(error, ReplyError):
+                    silent[part.designer] = problem
 
-def _in_turn(
-    plan: StudyPlan, parts: Sequence[StudyPart], folder: Path, draw: Draw | None, watch: _Watch
-) -> list[Problem]:
-    """Makes the parts one after another in this process, with one meter for all language models."""
-    problems: list[Problem] = []
-    meter = Meter.of(plan.setup.chat)
-    silent: dict[str, Problem] = {}
-    for part in parts:
-        if part.designer in silent:  # whom nobody answered once is not asked again
-            problems.append(silent[part.designer]._replace(part=part.name))
-            continue
-        try:
-            make(plan, part, folder, draw, meter, watch)
-        except ChatError as error:
-            problems.append(Problem(part.name, str(error), is_of_chat=True))
-            if not isinstance(error, ReplyError):
-                silent[part.designer] = problems[-1]
-        except (BriefError, DesignError) as error:
-            problems.append(Problem(part.name, str(error)))
-    return problems
+    def _place(self, part: StudyPart) -> Path:
+        place = self.folder / part.name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        return place
 
-
-def make(
-    plan: StudyPlan,
-    part: StudyPart,
-    folder: Path,
-    draw: Draw | None,
-    meter: Meter | None = None,
-    watch: _Watch | None = None,
-) -> None:
-    """Makes the roads of one part.
-
-    Raises:
-        RoadGPTError: as ``run.campaign`` raises it.
-    """
-    place = folder / part.name
-    place.parent.mkdir(parents=True, exist_ok=True)
-    setup = plan.setup_of(part.designer)
-    made = campaign(part.prompt.prompt, plan.roads, plan.seed, plan.world, setup, place, draw, meter)
-    try:
-        for _ in made:
-            if watch is not None:
-                watch.look(part.prompt.prompt)
-    except GivenUpError as error:
-        raise GivenUpError(error.why, "see to it, and the same command goes on") from error
-
-
-def _in_processes(
-    plan: StudyPlan, parts: Sequence[StudyPart], folder: Path, workers: int, draw: Draw | None, watch: _Watch
-) -> list[Problem]:
-    """Makes the parts in processes, up to ``workers`` at a time, each in a new process."""
-    context = multiprocessing.get_context("spawn")
-    waiting, problems = list(parts), list[Problem]()
-    at_work: dict[StudyPart, tuple[SpawnProcess, Connection]] = {}
-    try:
-        while waiting or at_work:
-            while waiting and len(at_work) < workers:
-                part = waiting.pop(0)
-                ours, theirs = context.Pipe(duplex=False)
-                process = context.Process(target=_child, args=(plan, part, folder, draw, theirs), daemon=True)
-                with shielded():
-                    process.start()
-                theirs.close()
-                at_work[part] = process, ours
-            time.sleep(LOOK)
-            look()
-            for part in [part for part, (process, _) in at_work.items() if not process.is_alive()]:
-                problems += _ended(part, *at_work.pop(part))
-            watch.look(", ".join(part.prompt.prompt for part in at_work))
-    finally:
-        for process, _ in at_work.values():
-            process.terminate()
-            process.join()
-    order = [part.name for part in parts]
-    return sorted(problems, key=lambda problem: order.index(problem.part))
-
-
-def _child(plan: StudyPlan, part: StudyPart, folder: Path, draw: Draw | None, end: Connection) -> None:
-    """Makes one part in a process; sends errors, which the parent raises again if they end the study."""
-    try:
-        make(plan, part, folder, draw)
-    except KeyboardInterrupt:
-        return
-    except RoadGPTError as error:
-        end.send(error)
-    else:
-        end.send(None)
-
-
-def _ended(part: StudyPart, process: SpawnProcess, end: Connection) -> list[Problem]:
-    process.join()
-    try:
-        error = end.recv() if end.poll() else RoadGPTError(f"{part.prompt.prompt}: {KILLED}")
-    except EOFError:
-        error = RoadGPTError(f"{part.prompt.prompt}: {KILLED}")
-    end.close()
-    if error is None:
-        return []
-    if isinstance(error, (BriefError, DesignError)):
-        return [Problem(part.name, str(error))]
-    raise error
-
-
-__all__ = ["Problem", "Tell", "make", "work"]
+    def _count(self, name: str) -> None:
+        self.done[name] += 1
+        self.tell(sum(self.done.values()))

@@ -12,7 +12,7 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import read_json
 from roadgpt.road import World
 from roadgpt.run import Setup
-from roadgpt.run.atomic import json_text, write_whole
+from roadgpt.run.atomic import LOCK, PART, json_text, write_whole
 from roadgpt.run.folder_names import slug
 from roadgpt.study.prompts import Prompt
 
@@ -86,7 +86,7 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         if (folder / CARD).is_file():
             _same(read_plan(folder), plan, folder)
-        elif any(path.name != CARD and not path.name.endswith(".part") for path in folder.iterdir()):
+        elif any(path.name not in (CARD, LOCK) and not path.name.endswith(PART) for path in folder.iterdir()):
             raise UsageError(f"{folder} is not empty and holds no study; name another folder")
         write_whole(folder / CARD, json_text(plan.model_dump(mode="json", by_alias=True)))
     except OSError as error:

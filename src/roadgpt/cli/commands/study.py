@@ -120,7 +120,7 @@ def _study(
     begun = time.perf_counter()
     try:
         with progress("roads", total, quiet) as tell:
-            problems = work(plan, place, workers, _drawing(formats), lambda _, done: tell(done))
+            problems = work(plan, place, workers, _drawing(formats), tell)
     except KeyboardInterrupt:
         click.echo("roadgpt: stopped; finished roads are complete, and the same command continues", err=True)
         raise
