@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.drive import COLUMNS, Command, Drive, View
-from roadgpt.drive.simulators.mujoco import MujocoSimulator, drive_monitor, simulator
+from roadgpt.drive import COLUMNS, Command, Drive, View, drive_monitor
+from roadgpt.drive.simulators.mujoco import MujocoSimulator, simulator
 from roadgpt.road import Road, World
 from roadgpt.verdict import Verdict, consult, judge
 

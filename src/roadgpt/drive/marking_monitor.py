@@ -73,18 +73,9 @@ class MarkingMonitor(NamedTuple):
             floor: values below ``floor`` need not be exact; set it to save time when only the largest value
                 matters.
         """
-        sampled = self.sampled
+        table, first, step, _ = self.sampled
         poses = np.ascontiguousarray(poses, dtype=np.float64)
-        return farthest(
-            sampled.table,
-            sampled.first,
-            sampled.step,
-            poses,
-            self.points,
-            self.left,
-            self.right,
-            float(floor),
-        )
+        return farthest(table, first, step, poses, self.points, self.left, self.right, float(floor))
 
     def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
         """Returns ``beyond`` for every step of a drive."""

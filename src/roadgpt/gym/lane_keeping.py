@@ -11,8 +11,8 @@ from pydantic import ValidationError
 
 from roadgpt.brief import sentence
 from roadgpt.drive.camera_sensor import CameraSensor
+from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
-from roadgpt.drive.simulators.mujoco.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import CameraSpec
 from roadgpt.errors import DesignError, UsageError
@@ -124,7 +124,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self._sensor = None if self._camera is None else CameraSensor(self._camera, road, self._world)
         self._scene: Any = None
         self._step, self._row, self._gain = 0, self._vehicle.see(), 0.0
-        self._ended = self._monitor.ended(self._vehicle.row, 0, self._vehicle.has_fallen)
+        self._ended = self._monitor.ended(self._vehicle.row, 0.0, self._vehicle.has_fallen)
         return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
@@ -159,7 +159,9 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
                 break
             self._vehicle.move(turn * ETK_LIKE.max_steer_angle, max(pedal, 0.0), max(-pedal, 0.0))
             self._step += 1
-            self._ended = self._monitor.ended(self._vehicle.row, self._step, self._vehicle.has_fallen)
+            self._ended = self._monitor.ended(
+                self._vehicle.row, self._step * CONTROL, self._vehicle.has_fallen
+            )
         self._row = row = self._vehicle.see()
         aside = abs(row["t"] + self._world.lane_width / 2)
         self._gain = row["s"] - before

@@ -11,22 +11,18 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.drive_monitor import STUCK_WAY, DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
-from roadgpt.drive.marking_monitor import POSE, MarkingMonitor
+from roadgpt.drive.marking_monitor import POSE
 from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.tracking import LOCK, CarSample, RoadTracker, interpolate_samples
 from roadgpt.drive.view import View
 from roadgpt.errors import SimulationError
-from roadgpt.road.ends import GOAL
 from roadgpt.stopping import look
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-STUCK_TIME = 10.0  # s within which a car must move ... (SBFT)
-STUCK_WAY = 1.0  # m ... this far
-SLOWEST = 2.0  # m/s, mean speed below which the time runs out
-SPARE = 30.0  # s, added to that time
 FALLEN = 1.0  # m below the road's surface
 HALVINGS = 20  # of the time between two samples, to find a crossing
 
@@ -53,10 +49,7 @@ class DriveLoop:
         """Prepares a drive; ``guard`` is None if BeamNG's AI drives."""
         self.loaded, self.road, self.world, self.guard = loaded, road, world, guard
         self.track = RoadTracker(road, world, loaded.body)
-        self.tyres = (
-            MarkingMonitor.for_tyres(road, world, loaded.body.box(LOCK)) if world.lane_departure else None
-        )
-        self.end = np.asarray(road.at(road.length))[:2].tolist()
+        self.monitor = DriveMonitor(road, world, loaded.body.box(LOCK))
         self.samples: list[Sample] = []
         self.has_left = False
 
@@ -71,17 +64,13 @@ class DriveLoop:
         self._keep(loaded.now, (0.0, 0.0, 0.0))
         if self.guard is None:
             loaded.let_ai_drive(world.speed_limit)
-        limit = self.road.length / SLOWEST + SPARE
-        since = self.samples[0].car
         while True:
             here = self.samples[-1]
             now = here.car
-            if self._is_at_goal(now, here.s):
-                self._cut(lambda sample: self._is_at_goal(sample.car, sample.s))
+            if self._is_at_goal(here):
+                self._cut(self._is_at_goal)
                 return "goal"
-            if math.hypot(now.x - since.x, now.y - since.y) >= STUCK_WAY:
-                since = now
-            elif now.time - since.time >= STUCK_TIME:
+            if self.monitor.is_stuck(now.x, now.y, now.time):
                 self._check_ai()
                 return "stuck"
             if self._is_out(here):
@@ -92,7 +81,7 @@ class DriveLoop:
                     return "out_of_lane"
             if now.z < self.track.place(now.x, now.y)[2] - FALLEN:
                 return "fell"
-            if now.time >= limit:
+            if now.time >= self.monitor.limit:
                 return "timeout"
             self._go_on(here)
 
@@ -110,25 +99,9 @@ class DriveLoop:
         self._keep(self.loaded.step(), command)
 
     def _view(self, here: Sample, image: FloatArray | None) -> View:
-        now = here.car
-        return View(
-            now.time,
-            now.x,
-            now.y,
-            now.z,
-            now.heading,
-            now.speed,
-            now.yaw_rate,
-            here.s,
-            here.t,
-            self.road,
-            self.world,
-            here.steer,
-            1.0 / self.loaded.settings.rate,
-            now.vx,
-            now.vy,
-            image,
-        )
+        now, dt = here.car, 1.0 / self.loaded.settings.rate
+        state = (now.time, now.x, now.y, now.z, now.heading, now.speed, now.yaw_rate, here.s, here.t)
+        return View(*state, self.road, self.world, here.steer, dt, now.vx, now.vy, image)
 
     def _keep(self, now: CarSample, command: tuple[float, float, float]) -> None:
         self.samples.append(self._sample(now, command))
@@ -141,17 +114,12 @@ class DriveLoop:
         pedals = (now.throttle, now.brake) if self.guard is None else command[1:]
         return Sample(now, s, t, outside, steer, pedals[0], pedals[1])
 
-    def _is_at_goal(self, now: CarSample, s: float) -> bool:
-        # If a road ends near its start, the goal counts only from half of the road on.
-        return s > self.road.length / 2 and math.hypot(now.x - self.end[0], now.y - self.end[1]) < GOAL
+    def _is_at_goal(self, sample: Sample) -> bool:
+        return self.monitor.is_at_goal(sample.car.x, sample.car.y, sample.s)
 
     def _is_out(self, sample: Sample) -> bool:
-        if sample.outside > self.world.oob_tolerance:
-            return True
-        if self.tyres is None:
-            return False
         pose = [getattr(sample if name == "s" else sample.car, name) for name in POSE]
-        return bool(self.tyres.beyond(np.array([pose]))[0] > 0)
+        return self.monitor.is_out(sample.outside, pose)
 
     def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
         """Inserts the moment at which something happened before the last sample, or replaces that sample with
@@ -191,15 +159,12 @@ class DriveLoop:
         if told is None:  # not measured: the sign follows from the direction in which the car turned
             turned = float(np.sum(steer * cars["yaw_rate"]))
             steer = steer * math.copysign(LOCK, turned)
-        ours = {
+        own = ("s", "t", "outside", "throttle", "brake")
+        ours = {name: np.array([getattr(each, name) for each in self.samples]) for name in own}
+        ours |= {
             "steer": steer,
             "ax": _slope(cars["vx"], cars["time"]) - cars["yaw_rate"] * cars["vy"],
             "ay": _slope(cars["vy"], cars["time"]) + cars["yaw_rate"] * cars["vx"],
-            "s": np.array([each.s for each in self.samples]),
-            "t": np.array([each.t for each in self.samples]),
-            "outside": np.array([each.outside for each in self.samples]),
-            "throttle": np.array([each.throttle for each in self.samples]),
-            "brake": np.array([each.brake for each in self.samples]),
         }
         return Columns({name: ours.get(name, cars.get(name)) for name in COLUMNS}), lock  # type: ignore[misc]
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
-from roadgpt.drive.simulators.mujoco.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
 from roadgpt.stopping import look
@@ -58,27 +58,10 @@ def _drive(
     log = _Log()
     row = log.add(vehicle.row)
     step = 0
-    while (ended := monitor.ended(vehicle.row, step, vehicle.has_fallen)) is None:
-        x, y, z, heading, speed, yaw_rate, s, t, steer, vx, vy = (row[i] for i in _SEEN)
+    while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
+        *place, steer, vx, vy = (row[i] for i in _SEEN)
         image = None if sensor is None else sensor.see(vehicle.see())
-        view = View(
-            step * CONTROL,
-            x,
-            y,
-            z,
-            heading,
-            speed,
-            yaw_rate,
-            s,
-            t,
-            road,
-            world,
-            steer,
-            CONTROL,
-            vx,
-            vy,
-            image,
-        )
+        view = View._make((step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image))
         vehicle.move(*guard.ask(view))
         look()
         row = log.add(vehicle.row)

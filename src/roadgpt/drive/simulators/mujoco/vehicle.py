@@ -164,19 +164,5 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
 
 
 def _handles(model: Any, data: Any) -> MujocoHandles:
-    first, second, place = bridge.functions()
-    model_handle, data_handle = bridge.handles(model, data)
-    return MujocoHandles(
-        first,
-        second,
-        place,
-        model_handle,
-        data_handle,
-        data.qpos,
-        data.qvel,
-        data.qfrc_applied,
-        data.xpos,
-        data.xmat,
-        data.cvel,
-        data.subtree_com,
-    )
+    views = (data.qpos, data.qvel, data.qfrc_applied, data.xpos, data.xmat, data.cvel, data.subtree_com)
+    return MujocoHandles._make((*bridge.functions(), *bridge.handles(model, data), *views))

@@ -1,13 +1,13 @@
-"""Decides when a drive is over, from the state of the car at every control step."""
+"""Decides when a drive is over, from the state of the car at every control step, for every simulator."""
 
 import math
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from roadgpt.drive.drive import COLUMNS, Box, Ended, FloatArray
 from roadgpt.drive.marking_monitor import POSE, MarkingMonitor
-from roadgpt.drive.simulators.mujoco.vehicle import CONTROL
 from roadgpt.errors import SimulationError
 from roadgpt.road.ends import GOAL, START
 
@@ -18,6 +18,7 @@ STUCK_TIME = 10.0  # s within which a car must move ... (SBFT)
 STUCK_WAY = 1.0  # m ... this far
 SLOWEST = 2.0  # m/s, mean speed below which the time runs out
 SPARE = 30.0  # s, added to that time
+ROUNDING = 1e-9  # s, of times that are multiples of a step
 
 _NAMES = tuple(COLUMNS)
 _SEEN = tuple(map(_NAMES.index, ("x", "y", "z", "speed", "s", "outside")))
@@ -38,17 +39,23 @@ class DriveMonitor:
         """
         self.start = min(START, road.length / 2)
         """Station in metres where the car is placed."""
+        self.limit = road.length / SLOWEST + SPARE
+        """Time in seconds after which the drive ends."""
         self._length = road.length
         self._tolerance = math.inf if keep_driving else world.oob_tolerance
         is_watched = world.lane_departure and not keep_driving
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
         self._end = np.asarray(road.at(road.length)).tolist()
-        self._last = math.ceil((road.length / SLOWEST + SPARE) / CONTROL)
-        self._since, self._from = 0, (math.nan, math.nan)
+        self._since, self._from = 0.0, (math.nan, math.nan)
 
-    def ended(self, row: FloatArray, step: int, has_fallen: bool) -> Ended | None:
+    def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:
         """Returns how the drive ended at this step, or None if it continues; call it once for every step,
-        from 0 on.
+        from the first on.
+
+        Args:
+            row: the state of the car, in the order of COLUMNS; its time is not read.
+            time: seconds since the start.
+            has_fallen: whether the car has fallen off the road.
 
         Raises:
             SimulationError: the physics became unstable.
@@ -56,25 +63,38 @@ class DriveMonitor:
         x, y, z, speed, s, outside = (float(row[place]) for place in _SEEN)
         if not math.isfinite(x + y + z + speed + outside):
             raise SimulationError(
-                f"the physics became unstable at {step * CONTROL:.2f} s: check the road and the car for "
+                f"the physics became unstable at {time:.2f} s: check the road and the car for "
                 "numbers that make no sense"
             )
         # Within one step the competition checks for the goal, then for motion, then for the lane.
-        # If a road ends near its start, the goal counts only from half of the road on.
-        if s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL:
+        if self.is_at_goal(x, y, s):
             return "goal"
-        if self._is_stuck(x, y, step):
+        if self.is_stuck(x, y, time):
             return "stuck"
-        if outside > self._tolerance or self._has_departed(row):
+        if self.is_out(outside, None if self._tyres is None else row[_POSE]):
             return "out_of_lane"
         if has_fallen:
             return "fell"
-        return "timeout" if step >= self._last else None
+        return "timeout" if time >= self.limit - ROUNDING else None
 
-    def _has_departed(self, row: FloatArray) -> bool:
-        return self._tyres is not None and bool(self._tyres.beyond(row[None, _POSE])[0] > 0)
+    def is_at_goal(self, x: float, y: float, s: float) -> bool:
+        """Returns whether the car has arrived; if a road ends near its start, only from half of the road
+        on."""
+        return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
-    def _is_stuck(self, x: float, y: float, step: int) -> bool:
-        if step == 0 or math.hypot(x - self._from[0], y - self._from[1]) >= STUCK_WAY:
-            self._since, self._from = step, (x, y)
-        return (step - self._since) * CONTROL >= STUCK_TIME
+    def is_stuck(self, x: float, y: float, time: float) -> bool:
+        """Returns whether the car has not moved for too long; call it once for every step."""
+        if not math.hypot(x - self._from[0], y - self._from[1]) < STUCK_WAY:
+            self._since, self._from = time, (x, y)
+        return time - self._since >= STUCK_TIME - ROUNDING
+
+    def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
+        """Returns whether the car is out of its lane, or a front tyre beyond a marking where that counts.
+
+        Args:
+            outside: share of the car's box outside the lane, 0 to 1.
+            pose: the values of the columns POSE, shape (6,); None if no tyres are watched.
+        """
+        if outside > self._tolerance:
+            return True
+        return self._tyres is not None and bool(self._tyres.beyond(np.array([pose]))[0] > 0)
