@@ -10,9 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from roadgpt.drive import View
-from roadgpt.drive.driving_line import DrivingLine, line_along, stations
-from roadgpt.drive.pedals import pedals
-from roadgpt.drive.pursuit import pursuit_curvature
+from roadgpt.drive.driving_line import DrivingLine, line_along, pedals, pursuit_curvature, stations
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, plan_speed

@@ -1,4 +1,5 @@
-"""Computes driving lines: the centre line of the road, shifted sideways by a given offset at every station.
+"""Computes driving lines: the centre line of the road, shifted sideways by a given offset at every station;
+and the controls with which a car follows such a line.
 
 Drivers look up the line every 20 ms. The line is therefore computed once per road and stored as plain lists,
 so that a lookup takes one index.
@@ -11,12 +12,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from roadgpt.drive.view import View
+
 if TYPE_CHECKING:
     from roadgpt.road import Road
 
 STEP = 0.5  # m between stations
 BEYOND = 60.0  # m that the line runs straight on behind the road's end, for drivers that look ahead
 LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to the line on the inside of a bend
+
+NEAREST = 1.0  # m, lower bound of the distance to the point that pure pursuit steers for
+LAG = 0.12  # s, response time of engine and brakes; the plan is looked up that far ahead
+FULL_THROTTLE = 6.8  # m/s^2 at low speed, of a strong saloon
+POWER = 85.0  # W/kg at the wheels
+FULL_BRAKE = 13.0  # m/s^2, deceleration of the brakes with unlimited tyre friction
+DRAG = 3e-4  # 1/m, aerodynamic drag per mass and speed squared
+ROLLING = 0.11  # m/s^2, rolling resistance per mass
+GRAVITY = 9.81  # m/s^2
+GAIN = 1.5  # 1/s, acceleration per speed error
+COAST = 0.3  # m/s^2, demanded deceleration up to which the driver lifts the throttle and does not brake
+
 
 FloatArray = NDArray[np.float64]
 
@@ -95,3 +110,43 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
 
 def _longer(values: FloatArray, more: int, last: float) -> list[float]:
     return [float(v) for v in values] + [float(last)] * more
+
+
+def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
+    """Returns the curvature of the circle from the car to a point of the line ahead, in 1/m, positive to the
+    left.
+
+    Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01
+    (1992).
+
+    Args:
+        line: the line to follow.
+        view: the current state of the car.
+        ahead: distance to the point, in metres along the road.
+    """
+    i, share = line.place(view.s + ahead)
+    dx = line.x[i] + share * (line.x[i + 1] - line.x[i]) - view.x
+    dy = line.y[i] + share * (line.y[i + 1] - line.y[i]) - view.y
+    angle = math.atan2(dy, dx) - view.heading
+    return 2 * math.sin(angle) / max(math.hypot(dx, dy), NEAREST)
+
+
+def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[float, float]:
+    """Returns throttle and brake, 0..1 each, that follow a speed plan by feed-forward and feedback on the
+    speed error.
+
+    Args:
+        line: the driving line.
+        speed: planned speed in m/s at each station of the line.
+        s: station of the car, metres.
+        v: speed of the car, m/s.
+    """
+    i, share = line.place(s + LAG * v + 0.5 * line.step)
+    here, there = speed[i], speed[i + 1]
+    planned = here + share * (there - here)
+    needed = planned * (there - here) / (line.step * line.stretch[i])
+    wanted = needed + GAIN * (planned - v)
+    wanted += GRAVITY * line.grade[i] + DRAG * v * v + ROLLING
+    if wanted > 0.0:
+        return min(wanted / min(FULL_THROTTLE, POWER / max(v, 1.0)), 1.0), 0.0
+    return 0.0, min(max(-wanted - COAST, 0.0) / FULL_BRAKE, 1.0)

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from roadgpt.drive.driving_line import FloatArray, line_along, stations
-from roadgpt.drive.pursuit import pursuit_curvature
+from roadgpt.drive.driving_line import FloatArray, line_along, pursuit_curvature, stations
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 

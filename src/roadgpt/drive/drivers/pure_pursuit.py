@@ -3,9 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along
-from roadgpt.drive.pedals import pedals
-from roadgpt.drive.pursuit import pursuit_curvature
+from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 

@@ -4,8 +4,7 @@ feedback."""
 import math
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along
-from roadgpt.drive.pedals import pedals
+from roadgpt.drive.driving_line import line_along, pedals
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
