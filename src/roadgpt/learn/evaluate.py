@@ -8,9 +8,9 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.labels import REFUSALS
 
 Read = Callable[[str], Brief]
 PARTS = ("turns", "slope", "order and side")

@@ -3,13 +3,12 @@
 import json
 from collections.abc import Iterable, Iterator
 
-from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ADVICE
+from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.labels import REFUSALS
 from roadgpt.road import World
 
 TO_BRIEF = (
@@ -21,7 +20,7 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
     """Yields one line of JSON for each pair: a chat that asks for the Brief of a description and gives it."""
     for pair in pairs:
-        answer = ADVICE[pair.plan] if pair.plan in REFUSALS else _json(read_plan(pair.plan))
+        answer = ADVICE.get(pair.plan) or read_plan(pair.plan).model_dump_json(exclude_defaults=True)
         yield _chat(TO_BRIEF, pair.text, answer)
 
 
@@ -35,10 +34,6 @@ def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str
         except DesignError:
             continue
         yield _chat(TO_DESIGN, pair.text, json.dumps(design.to_json()))
-
-
-def _json(brief: Brief) -> str:
-    return brief.model_dump_json(exclude_defaults=True)
 
 
 def _chat(system: str, user: str, answer: str) -> str:

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.errors import BriefError, LearnError
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.standard import standard
 from roadgpt.reading import read_text
 
-REFUSALS = ("!nonsense", "!contradiction", "!impossible")
 LONGEST = 2000  # letters
 SPLITS = ("train", "validation", "test")
 

@@ -6,7 +6,7 @@ variable lengths.
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 
 import torch
@@ -31,10 +31,6 @@ class NetworkSizes:
     """The largest length of a text in pieces."""
     plan_places: int = 96
     """The largest length of a plan in tokens."""
-
-    def as_dict(self) -> dict[str, int]:
-        """Returns the sizes as a dictionary, to be stored in a checkpoint."""
-        return asdict(self)
 
 
 class Attention(nn.Module):

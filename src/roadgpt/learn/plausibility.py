@@ -8,7 +8,6 @@ MOST_TURNS = 12
 SMALLEST_RADIUS = 15.0  # metres
 STEEPEST = 15.0  # percent
 STRAIGHT_KINDS = frozenset({"straight", "crest", "dip"})
-OPPOSITES = {"up": "down", "down": "up"}
 TURNS_OF = {"s_bend": 2, "chicane": 2, "slalom": 4, "serpentine": 4, "zigzag": 4, "winding": 3}
 
 
@@ -66,7 +65,7 @@ def _counts_contradict(brief: Brief) -> bool:
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS]
     wanted = brief.turns
     sides = sum(amount.lo or 0 for amount in (brief.left, brief.right) if amount)
-    least = sum(_least(clause) for clause in turning)
+    least = sum(clause.count.lo or 0 for clause in turning)
     if wanted and (wanted.hi is not None) and (least > wanted.hi or sides > wanted.hi):
         return True
     if turning and wanted and any(clause.kind in TURNS_OF for clause in turning):
@@ -77,13 +76,9 @@ def _counts_contradict(brief: Brief) -> bool:
     return bool(turning) and sides > most and not any(clause.kind in TURNS_OF for clause in turning)
 
 
-def _least(clause: Clause) -> float:
-    return clause.count.lo or 0
-
-
 def impossibility(brief: Brief) -> bool:
     """Returns True if the Brief asks for more than a map of 250 m holds, or breaks a rule for every road."""
-    turns = sum(_least(clause) for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
+    turns = sum(clause.count.lo or 0 for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:
         return True
     if brief.length and (_bottom(brief.length) > 1500 or _top(brief.length) < 20):

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
-from torch import Tensor, nn
+from torch import nn
 from torch.nn import functional
 
 from roadgpt.brief.readers.model.vocabulary import TOKENS
@@ -147,18 +147,14 @@ def _step(
     pieces, tokens = (torch.from_numpy(part).to(device) for part in batch)
     with torch.autocast(device.type, torch.bfloat16):
         scores = reader(pieces, tokens[:, :-1])
-    loss = _loss(scores.float(), tokens[:, 1:])
+    loss = functional.cross_entropy(
+        scores.float().flatten(0, 1), tokens[:, 1:].flatten(), ignore_index=0, label_smoothing=SMOOTHING
+    )
     optimiser.zero_grad(set_to_none=True)
     loss.backward()
     nn.utils.clip_grad_norm_(reader.parameters(), 1.0)
     optimiser.step()
     return float(loss.detach())
-
-
-def _loss(scores: Tensor, wanted: Tensor) -> Tensor:
-    return functional.cross_entropy(
-        scores.flatten(0, 1), wanted.flatten(), ignore_index=0, label_smoothing=SMOOTHING
-    )
 
 
 def _note(
