@@ -11,11 +11,11 @@ from PIL import Image
 
 from roadgpt.drive import Columns
 from roadgpt.report import drawing
+from roadgpt.report.birds_eye import severities
 from roadgpt.report.canvas import OUTCOMES, SEVERE, outcome_of
 from roadgpt.report.overview import _entry, overview
 from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.places import places_of
-from roadgpt.report.rim import severities
 from roadgpt.report.view.scene import scene
 from roadgpt.road import Road
 from roadgpt.run import Run, prove, write_run

@@ -1,4 +1,4 @@
-"""The bird's-eye view of a road, north up and to scale."""
+"""The bird's-eye view of a road, north up and to scale; a rim marks where the car was outside its lane."""
 
 from typing import Literal
 
@@ -8,17 +8,19 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
 from roadgpt.drive import Drive
-from roadgpt.report.border import name_border
-from roadgpt.report.canvas import HALO, INK, SOFT, Header, add_axes, new_figure
-from roadgpt.report.labels import Labels
+from roadgpt.geometry.curve import Array
+from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, new_figure
+from roadgpt.report.labels import Labels, name_border
 from roadgpt.report.places import MarkedPlace, places_of
-from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
-from roadgpt.report.rim import OUTSIDE, draw_key, draw_rim, severities
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.text_width import inches
 from roadgpt.run import Run
+from roadgpt.verdict import SEVERITIES, Severity, severity
 
 Scale = Literal["equal", "thesis"]
 """Axes that fit the road ("equal"), or x and y from 0 to 220 m as in RoadGPT's thesis ("thesis")."""
@@ -28,6 +30,11 @@ SIDE = 6.6  # inches, the longer side of what shows the road
 LEFT, BOTTOM, BAR, KEY = 0.75, 0.62, 1.15, 0.22  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
 SLOWEST = 10.0  # km/h; the colours span at least so much
+
+RIM = 8.0  # points, width of the rim around the path
+KEY_SIZE, FOOT = 9, 0.14  # points; inches above the foot of the figure
+SWATCH, GAP = 0.25, 0.11  # inches
+OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
 
 # plasma without its lightest end, which has too little contrast on asphalt
 SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.linspace(0.0, 0.86, 64)))
@@ -54,7 +61,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
-    draw_key(figure, LEFT, found)
+    _draw_key(figure, LEFT, found)
     _ground(axes, frame, world.map_size)
     border = name_border(axes, frame, world.map_size, centre, frame.width / across)
     draw_road(axes, road, world, frame.width / across)
@@ -129,7 +136,7 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
     norm = Normalize(0.0, max(SLOWEST, float(speed.max())))
     axes.plot(track[:, 0], track[:, 1], color="white", lw=4.2, zorder=6, solid_capstyle="round")
     pieces = np.stack([track[:-1], track[1:]], axis=1)
-    draw_rim(axes, pieces, severities(drive)[::every])
+    _draw_rim(axes, pieces, severities(drive)[::every])
     line = LineCollection(list(pieces), cmap=SPEEDS, norm=norm, linewidths=2.6, zorder=7, capstyle="round")
     line.set_array((speed[:-1] + speed[1:]) / 2)
     axes.add_collection(line)
@@ -144,3 +151,31 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
         )
         axes.add_patch(car)
     axes.plot(place.x, place.y, place.sign, ms=10, mfc=place.colour, mec="white", mew=1.4, zorder=10)
+
+
+def severities(drive: Drive | None) -> list[Severity]:
+    """Returns how far outside its lane the car was at each step that counts; empty without a drive."""
+    return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
+
+
+def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
+    """Draws a rim, coloured by the severities ``found``, around pieces ``(n, 2, 2)`` of a path."""
+    for name in OUTSIDE:
+        some = [piece for piece, where in zip(pieces, found, strict=False) if where == name]
+        if not some:
+            continue
+        rim = LineCollection(some, colors=SEVERE[name], linewidths=RIM, zorder=5.5, capstyle="round")
+        axes.add_collection(rim)
+
+
+def _draw_key(figure: Figure, left: float, found: list[Severity]) -> None:
+    """Writes what the colours of the rim mean at the foot of a figure, from ``left`` inches on."""
+    wide, high = figure.get_size_inches()
+    for name in OUTSIDE:
+        if name not in found:
+            continue
+        ends = (left / wide, (left + SWATCH) / wide)
+        figure.add_artist(Line2D(ends, (FOOT / high, FOOT / high), lw=RIM, color=SEVERE[name]))
+        text = f"{name} its lane"
+        figure.text((left + SWATCH + GAP) / wide, FOOT / high, text, size=KEY_SIZE, color=SOFT, va="center")
+        left += SWATCH + 3 * GAP + inches(text, KEY_SIZE)

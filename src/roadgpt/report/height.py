@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import Scale
 from roadgpt.report.canvas import (
     FAINT,
@@ -18,7 +19,7 @@ from roadgpt.report.canvas import (
     new_figure,
 )  # fmt: skip
 from roadgpt.report.places import name_places, places_of
-from roadgpt.report.plan_view import Array, stations_of
+from roadgpt.report.plan_view import stations_of
 from roadgpt.run import Run
 
 WIDTH = 9.6  # inches

@@ -60,13 +60,7 @@ class _Counts(NamedTuple):
     seconds: float = 0.0
 
     def plus(self, other: "_Counts") -> "_Counts":
-        return _Counts(
-            self.tests + other.tests,
-            self.failures + other.failures,
-            self.errors + other.errors,
-            self.skipped + other.skipped,
-            self.seconds + other.seconds,
-        )
+        return _Counts._make(one + more for one, more in zip(self, other, strict=True))
 
     def attributes(self) -> str:
         counts = self._asdict()

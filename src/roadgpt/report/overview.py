@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import (
     DARKER,
@@ -28,7 +29,7 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.plan_view import GROUND, Array
+from roadgpt.report.plan_view import GROUND
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import World
 from roadgpt.run.execution import FIELDS
@@ -225,16 +226,8 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     if entry.graded != entry.outcome and entry.share is not None:
         outcome = f"{percent(entry.share)} out"
     axes.text(x0, y0 - 0.06, f"{entry.number}", size=small, color=SOFT, va="bottom")
-    axes.text(
-        x0 + cell,
-        y0 - 0.06,
-        outcome,
-        size=small,
-        weight="bold",
-        color=DARKER.get(colour, colour),
-        ha="right",
-        va="bottom",
-    )
+    style: dict[str, Any] = {"size": small, "weight": "bold", "color": DARKER.get(colour, colour)}
+    axes.text(x0 + cell, y0 - 0.06, outcome, ha="right", va="bottom", **style)
     if not len(entry.points):
         return
     clip = Rectangle((x0, y0), cell, cell, transform=axes.transData)

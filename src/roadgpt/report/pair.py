@@ -7,10 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
+from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS, Scale
 from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
-from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
 from roadgpt.run import Run
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches

@@ -6,12 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
-from numpy.typing import NDArray
 
+from roadgpt.geometry.curve import Array
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Road, World
-
-Array = NDArray[np.float64]
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
 BEYOND = 12.0  # m that are shown outside the map

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import (
     BLUE,
     FAINT,
@@ -17,7 +18,7 @@ from roadgpt.report.canvas import (
     new_figure,
 )  # fmt: skip
 from roadgpt.report.places import name_places, places_of
-from roadgpt.report.plan_view import Array, stations_of
+from roadgpt.report.plan_view import stations_of
 from roadgpt.report.text_width import POINTS
 from roadgpt.run import Run
 

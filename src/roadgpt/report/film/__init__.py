@@ -3,6 +3,7 @@
 The frames depend on nothing but the Run and the settings; threads draw them, and PyAV encodes them.
 """
 
+import math
 import os
 from collections import deque
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -18,10 +19,10 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.report.film.encoding import encoder, write_film
 from roadgpt.report.film.glyphs import Frame
-from roadgpt.report.film.pane import Pane
+from roadgpt.report.film.overlay import Overlay
 from roadgpt.report.film.trip import Trip
 from roadgpt.run import Run
-from roadgpt.scene import Mount, Scene
+from roadgpt.scene import Camera, Mount, Scene
 
 __all__ = ["Film", "Settings", "View", "film_of", "split_film"]
 
@@ -34,6 +35,7 @@ HOLD = 2.0  # s that the last picture stays, with the outcome
 SEAM = 4  # pixels between two pictures
 SLOWEST, FASTEST = 1, 120  # frames per second
 SMALLEST, LARGEST = 64, 3840  # pixels, a side of a picture
+FIELDS: dict[str, float] = {"chase": math.radians(62), "bonnet": math.radians(72)}
 
 
 @dataclass(frozen=True)
@@ -64,6 +66,32 @@ class Settings:
             raise UsageError(f"a film cannot have {self.fps} pictures a second; give {SLOWEST} to {FASTEST}")
         if not self.begin >= 0 or (self.seconds is not None and not self.seconds > 0):
             raise UsageError("a film begins at second 0 or later and lasts longer than nothing")
+
+
+@dataclass(frozen=True, eq=False)
+class Pane:
+    """Renders a Run from one camera at any time; may be used by several threads."""
+
+    scene: Scene
+    trip: Trip
+    camera: Camera
+    overlay: Overlay
+    has_car: bool
+
+    @classmethod
+    def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
+        """Returns the pane of a Run for one mount of the camera, with the field of view in FIELDS."""
+        camera = Camera(width, height, FIELDS[mount], mount)
+        return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
+
+    def draw(self, time: float) -> Frame:
+        """Returns the picture ``(height, width, 3)`` at a time in seconds; after the drive the last one."""
+        now = min(time, self.trip.duration)
+        car = self.trip.car(now)
+        pose = self.trip.follower(now) if self.camera.mount == "chase" else car
+        frame = self.scene.render(self.camera, pose, car=car if self.has_car else None)
+        self.overlay.lay(frame, self.trip.readout(now), time >= self.trip.duration)
+        return frame
 
 
 @dataclass(frozen=True, eq=False)

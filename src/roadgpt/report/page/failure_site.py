@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from roadgpt.drive import Drive
+from roadgpt.geometry.curve import Array
 from roadgpt.report.page.svg import chart, line, number, tag, words
 from roadgpt.road import Road, World
-
-Array = NDArray[np.float64]
 
 SIDE = 240.0  # px
 ACROSS = 52.0  # m that are shown

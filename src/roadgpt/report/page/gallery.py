@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from roadgpt.geometry.curve import Array
 from roadgpt.report.page.svg import chart, number, tag, words
 from roadgpt.verdict import graded, percent, severity
-
-Array = NDArray[np.float64]
 
 CELL, GAP, TITLE, COLUMNS = 48.0, 8.0, 14.0, 10
 POINTS = 36  # of the line of a road

@@ -117,17 +117,8 @@ def _places(run: Run) -> list[dict[str, Any]]:
     found = []
     for place in places_of(run):
         time = None if run.drive is None or place.step is None else float(run.drive["time"][place.step])
-        found.append(
-            {
-                "x": place.x,
-                "y": place.y,
-                "s": place.s,
-                "text": place.text,
-                "time": time,
-                "colour": place.colour,
-                "letters": place.letters,
-            }
-        )
+        named = {name: getattr(place, name) for name in ("x", "y", "s", "text", "colour", "letters")}
+        found.append({**named, "time": time})
     return found
 
 

@@ -14,13 +14,14 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, MultipleLocator
 
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS
 from roadgpt.report.canvas import FAINT, INK, SOFT, add_axes, in_our_style, new_figure, save
 from roadgpt.report.film import Settings, film_of, split_film
 from roadgpt.report.film.encoding import encoder
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
 from roadgpt.report.labels import Labels
-from roadgpt.report.plan_view import GROUND, Array, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
 from roadgpt.report.view import page_of, scene
 from roadgpt.road import Road, World
 from roadgpt.run import Run
