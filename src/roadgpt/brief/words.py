@@ -33,6 +33,11 @@ class Range:
             return f"{self.hi:g} or less"
         return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
 
+    def drawn_in(self, margin: float, share: float) -> Range:
+        """Returns the range without a margin at either end, which is at most this share of its width."""
+        edge = min(margin, share * (self.hi - self.lo))
+        return Range(self.lo + edge, self.hi - edge)
+
 
 def overlap(one: Range | None, other: Range | None) -> Range | None:
     """Returns the intersection of two ranges; None means no limit, and an empty intersection has ``lo`` >

@@ -185,12 +185,8 @@ def _change(grade: Range | None, other: Range | None, windows: Windows, haste: f
 
     As long as nothing presses, half a comfortable parabola between the two promises and as much again.
     """
-    most = CHANGE
-    if grade is not None:
-        steep, width = max(abs(grade.lo), abs(grade.hi)), max(grade.hi - grade.lo, 0.5)
-        most = max(CHANGE, min(PARABOLA_OF_GRADE * steep * steep / width, LONGEST_CHANGE))
     comfortable = windows.comfort * windows.between(grade, other) / 100
-    return max(most * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
+    return max(CHANGE * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
 
 
 def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:

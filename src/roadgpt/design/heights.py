@@ -1,6 +1,7 @@
-"""The heights of a draft: an incline for every turn, and one or more for every straight."""
+"""Draws the heights of a draft: one incline for every turn, and one or more for every straight."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import inf
 
 import numpy as np
@@ -11,58 +12,56 @@ from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.elements import TENTH
-from roadgpt.design.grade_transitions import eased
 from roadgpt.design.sequence import is_hairpin
-from roadgpt.design.softening import climbing, held, one_way, softened_values, steep_kept
-from roadgpt.design.vertical import COMFORT, Pace
+from roadgpt.design.vertical import COMFORT, Pace, softened
 from roadgpt.errors import DesignError
+from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 
 UNDER_LIMIT = 0.4  # percentage points kept off the steepest grade allowed
-MARGIN = 0.5  # percentage points kept off a promised grade, at most ...
-MARGIN_SHARE = 0.2  # ... and at most so much of its range
-LEVEL_SHARE, SLOPE_SHARE = (
-    0.22,
-    0.3,
-)  # of roads whose words say nothing of heights: level, one slope; the rest rolls
+MARGIN, MARGIN_SHARE = (
+    0.5,
+    0.2,
+)  # percentage points kept off a required grade, and at most as a share of it
+LEVEL_SHARE, SLOPE_SHARE = 0.22, 0.3  # of roads without required heights: level, of one slope; others roll
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
-NARROW = 3.0  # percentage points, of a requirement that a parabola could break
-BRIEF = 45.0  # m: a straight so short that parabolas are a good part of it
-STEADY = 0.5  # chance that a feature keeps the grade of the one before, if it may
+STEADY = 0.5  # probability that an element keeps the grade of the one before, if it may
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
 ROLL = 60.0  # m for which a road that rolls keeps its grade at least
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
-CREST = (2.5, 4.5)  # percent up to a bend of a hard road, and down in it
-STEADY_SHARE = (0.75, 1.25)  # of one grade, that of the places of a road with hairpins
+CREST = Range(2.5, 4.5)  # percent: climb of a straight before a bend of a hard road, and fall in the bend
+STEADY_SHARE = Range(0.75, 1.25)  # of the mean grade, on a road with hairpins
+HELD = 0.5  # percentage points by which the grade of a straight of required length and grade may be moved
+LEAST_SLOPE = 1.8  # percent: the least slope that is clearly a climb or a fall
+MOST_SHIFT = 40.0  # percentage points
+BISECTIONS = 50
 
 
 class Windows:
-    """The grades in percent that every place and every feature of a road may have."""
+    """The ranges of grade, in percent, that the road and each of its features may have."""
 
     def __init__(self, outline: Outline, world: World) -> None:
         limit = min(100 * world.max_grade, STEEPEST) - UNDER_LIMIT
-        steepest = (
-            outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi) if outline.steepest else inf
-        )
-        self.limit = Range(-min(limit, steepest), min(limit, steepest))
+        if outline.steepest:
+            limit = min(limit, outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi))
+        self.limit = Range(-limit, limit)
+        """The grades that are allowed anywhere."""
         self.comfort = world.speed_limit**2 / COMFORT
-        """Metres: the vertical radius that is comfortable at the speed limit."""
+        """The vertical radius in metres that is comfortable at the speed limit."""
         self.least = world.speed_limit**2 / MOST
-        """Metres: the least that the rule allows there."""
+        """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit."""
         self.base: Range | None = None
+        """The grades of features without a requirement of their own; None if they are free."""
         self.way = {"up": "uphill", "down": "downhill"}.get(outline.grade or "", "flat")
         self.allowed = {"up": Range(-1, inf), "down": Range(-inf, 1), "flat": Range(-1, 1)}.get(
             outline.grade or "", self.limit
         )
         if outline.grade == "flat":
             self.base = Range(-0.4, 0.4)
-        elif outline.grade == "up":
-            self.base = drawn_in(outline.grade_range or Range(3, 12))
-        elif outline.grade == "down":
-            self.base = drawn_in(outline.grade_range or Range(-12, -3))
-        elif outline.grade_range:
-            self.base = drawn_in(outline.grade_range)
+        elif outline.grade or outline.grade_range:
+            usual = Range(-12, -3) if outline.grade == "down" else Range(3, 12)
+            self.base = (outline.grade_range or usual).drawn_in(MARGIN, MARGIN_SHARE)
         if self.base:
             self.base = overlap(self.base, self.limit) or self.base
             if self.base.lo > self.base.hi:
@@ -72,10 +71,16 @@ class Windows:
                 )
 
     def of(self, feature: Feature) -> Range | None:
-        """Returns the grade required of a feature without its edges; else that of the whole road."""
+        """Returns the grades that a feature may be designed with, a little inside its required range.
+
+        Without a requirement of its own, these are the grades required of the whole road.
+
+        Raises:
+            DesignError: the required grade is steeper than allowed, or contradicts that of the road.
+        """
         if feature.grade is None:
             return self.base
-        own = overlap(drawn_in(feature.grade), self.limit) or self.limit
+        own = overlap(feature.grade.drawn_in(MARGIN, MARGIN_SHARE), self.limit) or self.limit
         if own.lo > own.hi:
             most = f"the {self.limit.hi + UNDER_LIMIT:.3g} % that the road may have"
             raise DesignError(
@@ -92,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns grades of consecutive straights; one without a requirement differs from the others."""
+        """Returns the grades of consecutive straights; one without a requirement differs from the others."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -101,32 +106,25 @@ class Windows:
         return out
 
     def other(self, grade: Range | None) -> Range:
-        """Returns a grade that is seen to differ from the given one."""
+        """Returns grades that a measurement tells apart from the given ones."""
         if self.base and not (self.base.lo <= 0 <= self.base.hi):
             return Range(0, 0)
         return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
 
     @staticmethod
-    def part(one: Range | None, other: Range | None) -> bool:
-        """Returns whether the grade must change between features with these requirements."""
-        return bool(one and other and (one.lo > other.hi or other.lo > one.hi))
-
-    @staticmethod
     def between(one: Range | None, other: Range | None) -> float:
-        """Returns the least change of grade in percentage points between features with these requirements."""
+        """Returns the least change of grade between two ranges, in percentage points; 0 if they overlap."""
         return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
 
+    def part(self, one: Range | None, other: Range | None) -> bool:
+        """Returns whether the grade must change between features with these grades."""
+        return self.between(one, other) > 0
+
     def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether straights with these requirements would be measured as one."""
+        """Returns whether consecutive straights with these grades would be measured as one straight."""
         if not one or not other or not self.part(one, other):
             return True
         return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
-
-
-def drawn_in(grade: Range) -> Range:
-    """Returns a required grade without its edges, where parabolas and rounding could break it."""
-    margin = min(MARGIN, MARGIN_SHARE * (grade.hi - grade.lo)) if grade.hi - grade.lo < inf else MARGIN
-    return Range(grade.lo + margin, grade.hi - margin)
 
 
 def drawn_heights(
@@ -150,7 +148,7 @@ def drawn_heights(
         pace: the vertical radii that the expected speeds on this plan require.
         ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule
             requires) to 1 (fully comfortable).
-        bumps: whether crests or dips were requested.
+        bumps: True if a crest or a dip was requested, so that radii may be as small as wheels can follow.
     """
     is_hilly = bool(outline.hills and outline.hills.lo > 0)
     if is_hilly:
@@ -165,22 +163,22 @@ def drawn_heights(
     values = np.clip([e.incline for e in row], [r.lo for r in limits], [r.hi for r in limits])
     if outline.steepest and outline.steepest.lo > 0:
         values = _with_steepest(values, lengths, limits, outline.steepest, rng)
-        limits = steep_kept(values, lengths, limits, outline.steepest.lo)
+        limits = _steep_kept(values, lengths, limits, outline.steepest.lo)
     if ease > 0:
-        limits = [held(one, value, room) for one, value, room in zip(row, values, limits, strict=True)]
-    if is_hilly or is_mountainous(outline):
-        limits = [one_way(value, room) for value, room in zip(values, limits, strict=True)]
-    values = softened_values(values, lengths, limits, pace, ease, bumps)
+        limits = [_held(one, value, room) for one, value, room in zip(row, values, limits, strict=True)]
+    if is_hilly or _is_mountainous(outline):
+        limits = [_one_way(value, room) for value, room in zip(values, limits, strict=True)]
+    values = _softened(values, lengths, limits, pace, ease, bumps)
     if outline.climb:
         values = _with_climb(values, lengths, limits, outline.climb, rng)
-        values = softened_values(values, lengths, limits, pace, ease, bumps)
+        values = _softened(values, lengths, limits, pace, ease, bumps)
     final = iter(rounded(values).tolist())
     drawn = [[element._replace(incline=next(final)) for element in own] for own in drawn]
-    return eased(_joining(drawn), windows.limit, pace, ease, bumps)
+    return [element for own in _joining(drawn) for element in own]
 
 
-def rounded(values: np.ndarray) -> np.ndarray:
-    """Returns grades rounded to a tenth of a percent, each clearly flat or clearly not."""
+def rounded(values: Array) -> Array:
+    """Returns grades in percent, rounded to a tenth so that each is clearly flat or clearly not."""
     steep = np.abs(values)
     near = np.abs(steep - LEVEL) < UNCLEAR
     clear = np.where(near, LEVEL + np.where(steep < LEVEL, -UNCLEAR, UNCLEAR), steep)
@@ -190,11 +188,11 @@ def rounded(values: np.ndarray) -> np.ndarray:
 def _grades(
     plan: Sequence[Element], outline: Outline, windows: Windows, rng: np.random.Generator
 ) -> list[float]:
-    """One grade per element; joining straights get NaN, and are filled from their neighbours at the end."""
+    """Returns a grade per element; joining straights get NaN, and are filled from their neighbours later."""
     if outline.hard and all(element.required_grade in (None, windows.base) for element in plan):
         return _crests(plan, windows, rng)
     if not windows.base and not any(element.required_grade for element in plan):
-        free = _steady_grades if is_mountainous(outline) else _free_grades
+        free = _steady_grades if _is_mountainous(outline) else _free_grades
         return free(plan, windows, rng)
     out: list[float] = []
     last: tuple[Range | None, float] = (None, 0.0)
@@ -205,28 +203,18 @@ def _grades(
             continue
         keeps = last[0] is not None and last[1] in window and rng.random() < STEADY
         value = last[1] if keeps else _between(window, rng)
-        if element.required_length and (window.hi - window.lo < NARROW or element.length < BRIEF):
-            value = _far_end(window, rng)
         out.append(value)
         last = (window, value)
     return out
 
 
 def _crests(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """Every straight climbs more, or falls less, than the bends at its ends: those are taken over a crest."""
+    """Returns grades by which every bend is entered over a crest: straights climb more than bends."""
     if windows.base is None:
-        return [(-1 if element.turn else 1) * _between(Range(*CREST), rng) for element in plan]
+        return [(-1 if element.turn else 1) * _between(CREST, rng) for element in plan]
     middle = (windows.base.lo + windows.base.hi) / 2
     halves = Range(windows.base.lo, middle), Range(middle, windows.base.hi)
     return [_between(halves[0] if element.turn else halves[1], rng) for element in plan]
-
-
-def _far_end(window: Range, rng: np.random.Generator) -> float:
-    """The steep end of a window: parabolas lower the mean where it is narrow or the straight is short."""
-    share = 0.2 * float(rng.random())
-    if window.lo > 0:
-        return window.hi - share * (window.hi - window.lo)
-    return window.lo + share * (window.hi - window.lo) if window.hi < 0 else _between(window, rng)
 
 
 def _between(window: Range, rng: np.random.Generator) -> float:
@@ -234,7 +222,7 @@ def _between(window: Range, rng: np.random.Generator) -> float:
 
 
 def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """Heights nobody asked for: level, one slope, or a different one for every feature."""
+    """Returns grades for a road without required heights: level, of one slope, or rolling."""
     style, top = rng.random(), min(STEEP, windows.limit.hi)
     if style < LEVEL_SHARE:
         return [0.0] * len(plan)
@@ -252,28 +240,25 @@ def _free_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Gener
     return out
 
 
-def is_mountainous(outline: Outline) -> bool:
-    """Returns whether the road has several hairpins, which take it up or down a slope.
-
-    Where the words speak of heights at a place or of hills, they decide.
-    """
+def _is_mountainous(outline: Outline) -> bool:
+    """Returns whether hairpins take the road up or down a slope, and no slope is required otherwise."""
     if outline.grade or outline.hills or any(group.feature.grade for group in outline.groups):
         return False
     return sum(group.lo for group in outline.groups if is_hairpin(group.feature)) > 1
 
 
 def _steady_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Generator) -> list[float]:
-    """All up or all down, here steeper and there less."""
+    """Returns grades that all climb or all fall, some steeper than others."""
     top = min(STEEP, windows.limit.hi)
     low = min(2 * GENTLE, top)
     way = float(rng.choice((-1, 1))) * (low + rng.random() * (top - low))
-    return [way * _between(Range(*STEADY_SHARE), rng) for _ in plan]
+    return [way * _between(STEADY_SHARE, rng) for _ in plan]
 
 
 def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> list[list[Element]]:
-    """Elements that climb and fall in turn; promised grades stay.
+    """Returns elements that climb and fall in turn; required grades stay.
 
-    Long straights are cut into several; an element too short for a hill of its own goes on as the one before.
+    Long straights are cut into several. An element too short for a hill continues the one before.
     """
     out: list[list[Element]] = []
     sign, wanted, so_far = float(rng.choice((-1, 1))), 0, 0.0
@@ -299,13 +284,13 @@ def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> l
 
 
 def _with_steepest(
-    values: np.ndarray,
-    lengths: np.ndarray,
+    values: Array,
+    lengths: Array,
     limits: Sequence[Range],
     steepest: Range,
     rng: np.random.Generator,
-) -> np.ndarray:
-    """One long enough stretch made as steep as was asked, if none is."""
+) -> Array:
+    """Returns grades of which one, on a long element, is as steep as required."""
     low = steepest.lo + min(0.5, 0.3 * max(min(steepest.hi, STEEPEST) - steepest.lo, 0.0))
     if np.any((np.abs(values) >= low) & (lengths > HILL)):
         return values
@@ -324,9 +309,9 @@ def _with_steepest(
 
 
 def _with_climb(
-    values: np.ndarray, lengths: np.ndarray, limits: Sequence[Range], climb: Range, rng: np.random.Generator
-) -> np.ndarray:
-    """All grades shifted alike, each within its limits, until the road climbs as much as was asked."""
+    values: Array, lengths: Array, limits: Sequence[Range], climb: Range, rng: np.random.Generator
+) -> Array:
+    """Returns grades shifted alike, each within its limits, until the road climbs as much as required."""
     known = np.where(np.isnan(values), np.nanmean(values) if np.isfinite(values).any() else 0.0, values)
     low = climb.lo if climb.lo > -inf else climb.hi - max(0.3 * abs(climb.hi), 2.0)
     high = climb.hi if climb.hi < inf else climb.lo + max(0.3 * abs(climb.lo), 2.0)
@@ -335,7 +320,7 @@ def _with_climb(
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
-    """Gives a joining straight its neighbours' grades, half each where they differ."""
+    """Gives a joining straight the grades of its neighbours, half each where they differ."""
     out = [*drawn]
     for index, own in enumerate(out):
         if not np.isnan(own[0].incline):
@@ -349,3 +334,66 @@ def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
             half = own[0]._replace(straight=own[0].straight / 2)
             out[index] = [half._replace(incline=grade or 0.0) for grade in (first, last)]
     return out
+
+
+def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: float) -> list[Range]:
+    """Returns limits by which the longest element that is as steep as required stays so."""
+    out = [*limits]
+    steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
+    if steep:
+        i = steep[0]
+        room = Range(least) if values[i] > 0 else Range(-inf, -least)
+        out[i] = overlap(out[i], room) or out[i]
+    return out
+
+
+def _held(element: Element, value: float, room: Range) -> Range:
+    """Returns the limit of a straight of required length and grade: hardly less than what was drawn."""
+    if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
+        return room
+    return overlap(room, Range(value - HELD, value + HELD)) or room
+
+
+def _one_way(value: float, room: Range) -> Range:
+    """Returns the limit of an element that must go on climbing, or falling."""
+    if np.isnan(value) or abs(value) < LEAST_SLOPE:
+        return room
+    return overlap(room, Range(LEAST_SLOPE) if value > 0 else Range(-inf, -LEAST_SLOPE)) or room
+
+
+def _softened(
+    values: Array, lengths: Array, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
+) -> Array:
+    """Returns grades between which parabolas find room; half of a joining straight goes to either side."""
+    known = np.flatnonzero(~np.isnan(values))
+    if len(known) < 2 or np.ptp(values[known]) == 0:
+        return values
+    ends = np.cumsum(lengths)
+    begins = ends - lengths
+    joints = [float(ends[a] + begins[b]) / 2 for a, b in pairwise(known)]
+    own = np.diff([0.0, *joints, float(ends[-1])])
+    radii = [pace.eased(s, ease, bumps) for s in joints]
+    rooms = [limits[int(i)] for i in known]
+    out = values.copy()
+    out[known] = softened(
+        values[known].tolist(), own.tolist(), radii, [r.lo for r in rooms], [r.hi for r in rooms]
+    )
+    return out
+
+
+def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
+    """Returns grades shifted alike, each as far as its limits allow, until the road climbs by ``metres``.
+
+    Args:
+        grades: percent, ``(n,)``.
+        lengths: metres, ``(n,)``.
+        limits: range of each grade in percent.
+        metres: height of the end above the start.
+    """
+    least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
+    down, up = -MOST_SHIFT, MOST_SHIFT
+    for _ in range(BISECTIONS):
+        middle = (down + up) / 2
+        climbed = float(np.clip(grades + middle, least, most) @ lengths) / 100
+        down, up = (middle, up) if climbed < metres else (down, middle)
+    return np.asarray(np.clip(grades + down, least, most))

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.check.bumps import asks_for_bumps
@@ -21,6 +22,7 @@ from roadgpt.check.rules.promises import complaints, promises_of
 from roadgpt.design.advice import TOO_ABRUPT, advice, too_fast
 from roadgpt.design.compose import composed
 from roadgpt.design.elements import cut
+from roadgpt.design.grade_correction import corrected, with_vertical_radii
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import PlacedPlan, PlanLine, keeps_clear, place, smallest_box, walk
@@ -49,6 +51,8 @@ NO_HASTE = 16  # drafts that are drawn freely
 SHOULDERS = 0.6  # of the drafts: for so long, legs keep off each other's shoulders as well
 FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
 SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
+CORRECTIONS = 8  # of straights whose measured lengths or grades are wrong
+EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried where a crest or a dip is required
 STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
 
 
@@ -198,15 +202,14 @@ class _Search:
         return design, road
 
     def _with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
+        """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
         pace = Pace.along(drafted.elements, self.world)
-        for ease in (*EASES, EASES[-1]):
-            sloped = drawn_heights(
-                drafted.elements, self.outline, self.windows, self.rng, pace, ease, self.bumps
-            )
-            drawn = [segment for element in sloped for segment in cut(element)]
-            for share in dict.fromkeys((1.0, ease)):  # all may have comfort after all
-                segments = joined(drawn, pace, share)
-                broken = self._broken(drafted.line, segments, pace)
+        tries = [(ease, False) for ease in (*EASES, EASES[-1])]
+        tries += [(ease, True) for ease in EASES_OF_BUMPS] if self.bumps else []
+        for ease, bumps in tries:
+            sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
+            for share in dict.fromkeys((1.0, ease)):  # what is not required may be comfortable after all
+                segments, broken = self._corrected(drafted.line, sloped, pace, (ease, bumps), share)
                 if not broken:
                     return segments
                 self.failed[broken[0].sentence] += 1
@@ -215,10 +218,22 @@ class _Search:
                 self.failed_on_heights += 1
         return None
 
-    def _broken(self, line: PlanLine, segments: Sequence[Segment], pace: Pace) -> list[Complaint]:
-        """The promises that a plan with these slopes would break, and the rule for their changes."""
-        if too_abrupt(segments, pace, self.bumps):
-            return [Complaint(TOO_ABRUPT, on_heights=True)]
-        heights = elevation_of(segments, 0.0).height(line.s)
-        points = np.stack([line.z.real, line.z.imag, heights], axis=1)
-        return complaints(measure(points, self.outline.widest), self.outline)
+    def _corrected(
+        self, line: PlanLine, sloped: list[Element], pace: Pace, narrow: tuple[float, bool], share: float
+    ) -> tuple[tuple[Segment, ...], list[Complaint]]:
+        """Returns the segments of elements, corrected until nothing is left to correct, and what is wrong."""
+        ends = np.cumsum([element.length for element in sloped])
+        for _ in range(CORRECTIONS):
+            parts = [part for one in with_vertical_radii(sloped, pace, *narrow) for part in cut(one)]
+            segments = joined(parts, pace, share)
+            heights = elevation_of(segments, 0.0).height(line.s)
+            points = np.stack([line.z.real, line.z.imag, heights], axis=1)
+            found = measure(points, self.outline.widest)
+            if too_abrupt(segments, pace, self.bumps):
+                broken = [Complaint(TOO_ABRUPT, on_heights=True)]
+            else:
+                broken = complaints(found, self.outline)
+            before, sloped = sloped, corrected(sloped, ends, found, self.windows.limit)
+            if not any(complaint.on_heights for complaint in broken) or sloped == before:
+                break
+        return segments, broken

@@ -13,9 +13,8 @@ import numpy as np
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import LEVEL, measure, way
-from roadgpt.design.heights import Windows
+from roadgpt.design.heights import Windows, climbing
 from roadgpt.design.road_elements import RoadElement
-from roadgpt.design.softening import climbing
 from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, made_to_fit, runs_of, too_abrupt, widened
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
