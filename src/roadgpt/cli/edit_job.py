@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from roadgpt.cli import options
 from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
 
@@ -16,7 +17,6 @@ if TYPE_CHECKING:
     from roadgpt.report import Format
     from roadgpt.road import World
     from roadgpt.run.editing import Original
-    from roadgpt.run.folder import Draw
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,8 @@ def edit_road(job: EditJob, screen: Screen) -> Path:
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, before.world, setup)
     folder = folder_for(job.words, before.seed, job.out)
-    place = write_edit(run, old, job.words, made.changes, before.path, folder, _drawing(job))
+    draw = options.drawing_of(job.pictures)
+    place = write_edit(run, old, job.words, made.changes, before.path, folder, draw)
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
         told = {"request": job.words, "of": before.path, "changes": made.changes, "unused": made.unused}
@@ -105,11 +106,3 @@ def _edited(before: "Original", job: EditJob, screen: Screen) -> "Edited":
     finally:
         if meter.spent.calls:
             screen.say(f"language model: {spending(meter.spent)}")
-
-
-def _drawing(job: EditJob) -> "Draw | None":
-    if not job.pictures:
-        return None
-    from roadgpt.report import drawing
-
-    return drawing(formats=job.pictures)

@@ -102,6 +102,9 @@ class Option(click.Option):
             return []
         if isinstance(value, bool):
             return [self.flag if value else f"--no-{self.flag[2:]}"]
+        if isinstance(value, tuple):
+            texts = value if self.multiple else [",".join(value)]
+            return [word for text in texts for word in (self.flag, text)]
         return [self.flag, _digits(value, self.unit) if isinstance(value, float) else str(value)]
 
     @property

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
     from roadgpt.campaign.selection import Choice
     from roadgpt.chat import ChatSettings
+    from roadgpt.report import Drawing
     from roadgpt.road import World
 
 _world = partial(Option, heading=Heading.SITE, table="world")
@@ -258,6 +259,15 @@ def choice_of(values: dict[str, Any]) -> "Choice | None":
     if len(said) > 1:
         raise UsageError(f"--{said[0]} and --{said[1]} contradict each other; give one of them")
     return said[0] if said else None
+
+
+def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
+    """Returns what draws pictures of runs in these formats, with these axes; None without formats."""
+    if not formats:
+        return None
+    from roadgpt.report import drawing
+
+    return drawing(axes, formats)
 
 
 def pictures_of(values: dict[str, Any]) -> Any:

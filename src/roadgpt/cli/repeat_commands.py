@@ -9,7 +9,8 @@ from pathlib import Path
 from roadgpt.cli import options
 from roadgpt.cli.configuration import keys_set
 from roadgpt.cli.option import Option, named, words_of
-from roadgpt.run.model import Request, Run
+from roadgpt.road import World
+from roadgpt.run.model import Request, Run, Setup
 
 # What the command that drives a road which exists takes; the road's file says what its geometry is.
 OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "rules")
@@ -23,36 +24,29 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
         lines.append(shlex.join(["roadgpt", "run", *request_words(request, run.index)]))
     if folder is not None and run.road is not None and request.setup.drives:
         again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
-        lines.append(shlex.join(again + _written(request, OF_DRIVES)))
+        lines.append(shlex.join(again + option_words(request.setup, request.world, OF_DRIVES, asks=False)))
     return lines
 
 
 def request_words(request: Request, roads: int) -> list[str]:
     """Returns the arguments after ``roadgpt run`` that make this many roads of a request."""
-    rest = [
-        "-n",
-        str(roads),
-        "--seed",
-        str(request.seed),
-        *_written(request, options.SETUP),
-        *_asked(request),
-    ]
+    rest = ["-n", str(roads), "--seed", str(request.seed), *option_words(request.setup, request.world)]
     if not request.setup.drives:
         rest.append("--no-drive")
     # words that begin with a dash would pass for an option
     return [*rest, "--", request.words] if request.words.startswith("-") else [request.words, *rest]
 
 
-def _asked(request: Request) -> list[str]:
-    """Returns the options of the language model that differ from their defaults."""
-    chat = request.setup.chat
-    return words_of(options.CHAT, chat, chat and type(chat)())
+def option_words(
+    setup: Setup, world: World, of_setup: Sequence[Option] = options.SETUP, asks: bool = True
+) -> list[str]:
+    """Returns the options that differ from their defaults, or that a file of settings would change.
 
-
-def _written(request: Request, of_setup: Sequence[Option]) -> list[str]:
-    """Returns the options that differ from their defaults, or that a file of settings would change."""
+    Args:
+        setup, world: The values of the options.
+        of_setup: The options of the Setup that the command has.
+        asks: Whether the command has options of language models.
+    """
     told = keys_set()
-    return [
-        *words_of(of_setup, request.setup, told=told),
-        *words_of(options.WORLD, request.world, told=told),
-    ]
+    words = [*words_of(of_setup, setup, told=told), *words_of(options.WORLD, world, told=told)]
+    return words + (words_of(options.CHAT, setup.chat, setup.chat and type(setup.chat)()) if asks else [])

@@ -102,11 +102,7 @@ def sbft_command(
 
     world = World(map_size=map_size, oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH)
     setup = Setup(driver=driver, simulator=simulator, rules="sbft")
-    draw = None
-    if has_pictures and not no_plot:
-        from roadgpt.report import drawing
-
-        draw = drawing(axes, picture_formats)
+    draw = options.drawing_of(picture_formats if has_pictures and not no_plot else (), axes)
     work = compete(Experiment(**experiment), world, setup, seed, out, draw)
     crashes_go_to(work.folder)
     screen = Screen(work.experiment.test_budget or 0, as_json, quiet, verbose)
