@@ -96,8 +96,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
     yield from outside_lines(status)
-    quiet = of_status(status)
-    yield from lines(quiet) if quiet is not None else ()
+    yield from lines(of_status(status))
     yield from [cell.remark for cell in status.cells[:MOST_CELLS] if cell.remark]
 
 

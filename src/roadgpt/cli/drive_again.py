@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.campaigns import one_line
+from roadgpt.cli.roads import made
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -67,11 +68,7 @@ def _made(path: Path) -> Path:
     from roadgpt.run.atomic import refuse_links
 
     refuse_links(*([path.parent] if path.parent.name == AGAIN else []), path)
-    try:
-        path.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"cannot make {path}: {error.strerror}; name another folder with --out") from error
-    return path
+    return made(path)
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":

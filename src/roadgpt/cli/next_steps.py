@@ -48,12 +48,15 @@ class WithoutFailure:
         return self.passed >= FEWEST and bool(self.request.words) and is_usual
 
 
-def next_steps(quiet: WithoutFailure) -> list[tuple[str, str]]:
-    """Returns suggestions, each with the command that carries it out; empty if too few tests were driven."""
-    return [*_steps(quiet)] if quiet.is_worth_it else []
+def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
+    """Returns suggestions, each with the command that carries it out.
+
+    The list is empty if a test failed (``quiet`` is None) or too few tests were driven.
+    """
+    return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 
 
-def lines(quiet: WithoutFailure) -> Iterator[str]:
+def lines(quiet: WithoutFailure | None) -> Iterator[str]:
     """Yields the suggestions as lines of text, below a heading."""
     found = next_steps(quiet)
     if found:
@@ -94,10 +97,8 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
     from roadgpt.cli.repeat_commands import request_words
 
     request = quiet.request.model_copy(update={"world": quiet.request.world.model_copy(update=world)})
-    if not quiet.is_search:
-        return shlex.join(["roadgpt", "run", *request_words(request, quiet.tests)])
-    goal = ["--goal", quiet.goal] if quiet.goal else []
-    return shlex.join(["roadgpt", "campaign", *goal, *request_words(request, quiet.tests)])
+    verb = ["campaign", *(["--goal", quiet.goal] if quiet.goal else [])] if quiet.is_search else ["run"]
+    return shlex.join(["roadgpt", *verb, *request_words(request, quiet.tests)])
 
 
 def of_status(status: "Status") -> WithoutFailure | None:

@@ -5,7 +5,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from roadgpt.chat import Spent
@@ -24,14 +24,20 @@ COLOURS = {
 }
 """Colours of outcomes on a terminal, from the best outcome to the worst."""
 WIDEST = max(len(name) for name in (*COLOURS, "FAIL (out of lane)"))
-
-
 MOST_TOLD = len("PASS (100 % out, 10.00 m)")
+IN_JSON = (
+    "file", "is_valid", "validation_message", "findings", "test_outcome", "description", "max_oob",
+    "beyond_m", "margin_m", "length_m", "seconds",
+)  # fmt: skip
 
 
 def colour_of(outcome: str) -> str:
     """Returns the colour of an outcome on a terminal."""
-    return COLOURS.get(outcome) or COLOURS[outcome.split(" ")[0]]
+    return COLOURS[_kind(outcome)]
+
+
+def _kind(outcome: str) -> str:
+    return outcome if outcome in COLOURS else outcome.split(" ")[0]
 
 
 @dataclass(frozen=True)
@@ -92,27 +98,11 @@ class Row:
 
     def to_json(self) -> str:
         """Returns the row as one line of JSON."""
-        asked = self.spent and {
-            "tokens": self.spent.usage.total,
-            "model_seconds": _rounded(self.spent.seconds),
-            "cost_usd": self.spent.cost,
-        }
-        return json.dumps(
-            {
-                "file": self.file,
-                "is_valid": self.is_valid,
-                "validation_message": self.validation_message,
-                "findings": [*self.findings],
-                "test_outcome": self.test_outcome,
-                "description": self.description,
-                "max_oob": _rounded(self.max_oob),
-                "beyond_m": _rounded(self.beyond_m),
-                "margin_m": _rounded(self.margin_m),
-                "length_m": _rounded(self.length_m),
-                "seconds": _rounded(self.seconds),
-                **(asked or {}),
-            }
-        )
+        told = {name: _rounded(getattr(self, name)) for name in IN_JSON}
+        if self.spent is not None:
+            told |= {"tokens": self.spent.usage.total, "model_seconds": _rounded(self.spent.seconds)}
+            told["cost_usd"] = self.spent.cost
+        return json.dumps(told)
 
     def to_line(self) -> str:
         """Returns a line with outcome, length, margin and file, and the sentence if something is wrong."""
@@ -157,9 +147,11 @@ def spending(spent: "Spent") -> str:
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
 
 
-def _rounded(number: float | None) -> float | None:
-    """Rounds to four decimals; returns None for an infinite number, which JSON does not have."""
-    return None if number is None or not math.isfinite(number) else round(number, 4)
+def _rounded(value: Any) -> Any:
+    """Rounds a number to four decimals; an infinite number becomes None, because JSON has no such number."""
+    if not isinstance(value, float):
+        return value
+    return round(value, 4) if math.isfinite(value) else None
 
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
@@ -168,7 +160,8 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
     """
     counted = Counter(row.outcome for row in rows)
     table = []
-    for outcome, count in sorted(counted.items(), key=lambda item: (_rank(item[0]), item[0])):
+    ranks = [*COLOURS]
+    for outcome, count in sorted(counted.items(), key=lambda item: (ranks.index(_kind(item[0])), item[0])):
         margins = [row.margin_m for row in rows if row.outcome == outcome and row.margin_m is not None]
         least = metres(min(margins)) if margins else "-"
         shares = [row.max_oob for row in rows if row.outcome == outcome and row.max_oob is not None]
@@ -176,11 +169,6 @@ def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
         most = outside(max(shares, default=None), max(farthest, default=None)) or "-"
         table.append((outcome, count, f"{100 * count / len(rows):.0f} %", least, most))
     return table
-
-
-def _rank(outcome: str) -> int:
-    every = [*COLOURS]
-    return every.index(outcome if outcome in COLOURS else outcome.split(" ")[0])
 
 
 def row_of(run: "Run", file: str, name: str = "") -> Row:

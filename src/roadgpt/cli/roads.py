@@ -1,6 +1,7 @@
 """Finds and reads the roads that a user names: files, runs, folders of runs, campaigns and tests."""
 
 import os
+import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -252,3 +253,40 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
                 row = unreadable(file, error)
             screen.row(row)
         screen.close()
+
+
+def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) -> None:
+    """Checks that a path can be that of a file to write, such as a page, a film or a picture.
+
+    Args:
+        path: The path.
+        kind: What the file is, such as 'film'.
+        usual: A usual name of such a file.
+        endings: The file name extensions that it may have, the usual one first; empty: any.
+
+    Raises:
+        UsageError: The path is a folder, or has another extension.
+    """
+    if path.is_dir():
+        raise UsageError(f"{path} is a folder; give the name of a {kind}, such as {path / usual}")
+    if endings and path.suffix.lower() not in endings:
+        raise UsageError(f"{path} does not end in {endings[0]}; give the {kind} such a name")
+
+
+def open_page(page: Path) -> None:
+    """Opens a page in the browser, or says that no browser could be started."""
+    if not webbrowser.open(page.resolve().as_uri()):
+        click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+
+
+def made(folder: Path) -> Path:
+    """Makes a folder, if it does not exist, and returns it.
+
+    Raises:
+        UsageError: It cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"cannot make {folder}: {error.strerror}; name another folder with --out") from error
+    return folder

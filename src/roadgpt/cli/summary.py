@@ -105,9 +105,14 @@ def _cell_lines(place: Selection, status: Status) -> Iterator[str]:
 
 def _one_line(named: NamedRoad) -> str:
     assert named.run is not None
-    row = row_of(named.run(), named.said)
-    margin = metres(row.margin_m) if row.margin_m is not None else ""
-    return f"{named.said}  {row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}  {row.description}"
+    return _line_of(named.said, named.run())
+
+
+def _line_of(name: str, run: Run) -> str:
+    """Returns a line of a list of roads: name, outcome, length, margin and a sentence."""
+    margin = metres(run.verdict.margin) if run.verdict else ""
+    outcome = row_of(run, name).outcome
+    return f"{name}  {outcome:<{WIDEST}} {run.length:>5.0f} m {margin:>9}  {run.description}"
 
 
 def _run_of(named: NamedRoad) -> Iterator[str]:
@@ -195,9 +200,7 @@ def _campaign_lines(folder: Path) -> Iterator[str]:
             continue
         counts[run.outcome] += 1
         spent = spent + (run.spent or Spent())
-        row = row_of(run, "")
-        margin = metres(row.margin_m) if row.margin_m is not None else ""
-        yield f"{index:>6}  {row.outcome:<{WIDEST}} {run.length:>5.0f} m {margin:>9}  {run.description}"
+        yield _line_of(f"{index:>6}", run)
     told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
     if spent.calls:
         yield f"language model: {spending(spent)}"

@@ -11,7 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.roads import shown_run
+from roadgpt.cli.roads import check_file, shown_run
 from roadgpt.errors import RoadGPTError, UsageError
 
 if TYPE_CHECKING:
@@ -90,8 +90,7 @@ def _draw(runs: list[Any], out: Path, axes: Any) -> None:
     from roadgpt.report.canvas import save
     from roadgpt.report.pair import pair
 
-    if out.is_dir():
-        raise UsageError(f"{out} is a folder; give the name of a picture, such as {out / PICTURE}")
+    check_file(out, "picture", PICTURE)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         save(pair(runs[0], runs[1], axes), out)

@@ -1,9 +1,9 @@
 """``roadgpt config``: lists all settings with their origin, and all plug-ins."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import click
 
@@ -12,9 +12,6 @@ from roadgpt.cli.configuration import TABLES, layers_of, settable_options
 from roadgpt.cli.installed_plugins import plugins_command
 from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
-
-if TYPE_CHECKING:
-    from roadgpt.chat.config import Layer
 
 DEFAULT = "default"
 
@@ -76,24 +73,18 @@ def _text(value: Any) -> str:
     return "-" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _of_options() -> list[ShownSetting]:
-    """Returns the settings of options other than those of language models.
+def _of_options() -> Iterator[ShownSetting]:
+    """Yields the settings of options other than those of language models.
 
     Raises:
         UsageError: One cannot be used, or must not come from its place.
     """
-    layers = layers_of()
-    return [_of_option(option, layers) for option in settable_options()]
-
-
-def _of_option(option: Option, layers: "Sequence[Layer]") -> ShownSetting:
-    setting = option.found(layers)
-    context = click.Context(click.Command(None), resilient_parsing=True)
-    if setting is None:
-        value, origin = option.get_default(context), DEFAULT
-    else:
-        value, origin = option.converted(context, setting), setting.origin
-    return ShownSetting(option.table, option.setting_name, _plain(value), origin)
+    context, layers = click.Context(click.Command(None), resilient_parsing=True), layers_of()
+    for option in settable_options():
+        setting = option.found(layers)
+        value = option.converted(context, setting) if setting else option.get_default(context)
+        origin = setting.origin if setting else DEFAULT
+        yield ShownSetting(option.table, option.setting_name, _plain(value), origin)
 
 
 def _plain(value: Any) -> Any:
@@ -105,19 +96,16 @@ def _plain(value: Any) -> Any:
     return str(value) if isinstance(value, str | Path) else None
 
 
-def _of_chat(values: dict[str, Any]) -> list[ShownSetting]:
+def _of_chat(values: dict[str, Any]) -> Iterator[ShownSetting]:
+    """Yields the settings of language models, and the masked key of their server."""
     from roadgpt.chat.config import key_for, settings_from, settings_with_origin
 
     found = settings_with_origin({flag.field: flag.read(values[flag.field]) for flag in options.CHAT})
     settings = settings_from(found)
+    for name, setting in found.items():
+        yield ShownSetting("chat", name, getattr(settings, name), setting.origin)
     key = key_for(settings.base_url)
-    shown = [
-        ShownSetting("chat", name, getattr(settings, name), setting.origin) for name, setting in found.items()
-    ]
-    return [
-        *shown,
-        ShownSetting("chat", "api_key", str(key) if key else None, key.origin if key else "nowhere"),
-    ]
+    yield ShownSetting("chat", "api_key", str(key) if key else None, key.origin if key else "nowhere")
 
 
 command.add_command(plugins_command)

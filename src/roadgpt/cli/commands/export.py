@@ -1,6 +1,7 @@
 """``roadgpt export``: writes roads in the formats of other tools."""
 
 from dataclasses import dataclass, replace
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,7 +60,7 @@ def command(
     for format_ in formats:
         exporter_of(format_)
     choice, status = options.choice_of(rest), 0
-    source, names = _source(rest, geometry, quiet), _Names()
+    source, taken = _source(rest, geometry, quiet), set[str]()
 
     def complain(error: RoadGPTError) -> None:
         nonlocal status
@@ -67,8 +68,10 @@ def command(
         status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
 
     for each in roads_named(files, choice, takes_all=True, complain=complain):
+        names = chain([each.stem], (f"{each.stem}-{number}" for number in count(2)))
+        taken.add(name := next(name for name in names if name not in taken))
         try:
-            written = export(source.run_of(each), out, formats, names.of(each))
+            written = export(source.run_of(each), out, formats, name)
         except PartError:
             raise
         except (ExportError, UsageError) as error:
@@ -131,19 +134,3 @@ def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Sour
     asked = [name for name in rest if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
     world = options.world_of(rest)
     return _Source(world, {name: getattr(world, name) for name in asked}, geometry, is_quiet)
-
-
-class _Names:
-    """Gives the files of each road a name of their own."""
-
-    def __init__(self) -> None:
-        self._taken: set[str] = set()
-
-    def of(self, named: NamedRoad) -> str:
-        """Returns the name of the source, with a number if it is taken."""
-        name, number = named.stem, 1
-        while name in self._taken:
-            number += 1
-            name = f"{named.stem}-{number}"
-        self._taken.add(name)
-        return name

@@ -1,5 +1,6 @@
 """``roadgpt film``: films drives from behind the car, from its hood, or of two roads side by side."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,10 +11,11 @@ from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.progress import watched
-from roadgpt.cli.roads import roads_named, run_of, shown_runs
+from roadgpt.cli.roads import NamedRoad, check_file, made, roads_named, run_of, shown_runs
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.selection import Choice
     from roadgpt.report.film import Settings
 
 MOST = 2  # roads in one picture
@@ -103,62 +105,40 @@ def command(
     begin, length = seconds or (0.0, None)
     settings = Settings(*size, fps, begin, length)
     choice = options.choice_of(rest)
-    if is_all and choice is None and _is_of_runs(files):
-        _film_all(files, view, out, settings, quiet)
-        return
     world = options.world_of(rest)
     if is_all or choice in ("failures", "faults"):
-        place = out or FILMS
-        if place.suffix.lower() in ENDINGS or place.is_file():
-            raise UsageError(f"this makes several films; name a folder for them, such as --out {FILMS}")
-        for each in roads_named(files, choice, takes_all=True):
-            _make(
-                [run_of(each, world, geometry)], _in(place, f"{each.stem}-{view}.mp4"), view, settings, quiet
-            )
+        for each, film in _films(files, choice, view, out):
+            run = run_of(each, world, geometry)
+            if run.road is None:
+                click.echo(f"roadgpt: {each.said} has no road to film", err=True)
+            else:
+                _make([run], film, view, settings, quiet)
         return
     out = out or FILM
-    if out.is_dir():
-        raise UsageError(f"{out} is a folder; give the name of a film, such as {out / FILM}")
-    if out.suffix.lower() not in ENDINGS:
-        raise UsageError(f"{out} does not end in .mp4; give the film such a name")
+    check_file(out, "film", FILM, ENDINGS)
     _make(shown_runs(files, choice, world, geometry, MOST, "a film"), out, view, settings, quiet)
 
 
-def _is_of_runs(files: tuple[str, ...]) -> bool:
-    """Returns whether the name is no campaign, so that films can go into its runs."""
+def _films(
+    files: tuple[str, ...], choice: "Choice | None", view: str, out: Path | None
+) -> Iterator[tuple[NamedRoad, Path]]:
+    """Yields the roads to film, each with its film; in a folder of runs, those that have no film yet."""
     from roadgpt.campaign.selection import selection_of
 
-    place = selection_of(files[0])
-    return place is None or not place.is_campaign
-
-
-def _in(place: Path, name: str) -> Path:
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"cannot make {place}: {error.strerror}; name another folder with --out") from error
-    return place / name
-
-
-def _film_all(files: tuple[str, ...], view: str, out: Path | None, settings: "Settings", quiet: bool) -> None:
-    """Films every run of a folder that has no film yet."""
-    from roadgpt.run import read_run
-    from roadgpt.run.folder import RUNS, is_run
-
-    if len(files) != 1 or out is not None:
+    first = selection_of(files[0])
+    is_of_runs = choice is None and (first is None or not first.is_campaign)
+    if is_of_runs and (len(files) != 1 or out is not None):
         raise UsageError("--all takes one folder of runs, and puts each film into its run")
-    folders = sorted(folder for folder in Path(files[0], RUNS).glob("*") if is_run(folder))
-    if not folders:
+    if is_of_runs and first is None:
         raise UsageError(f"{files[0]} holds no runs; give a folder that roadgpt run made")
-    for folder in folders:
-        film = folder / f"{view}.mp4"
-        if film.exists():
-            continue
-        run = read_run(folder)
-        if run.road is None:
-            click.echo(f"roadgpt: {folder} has no road to film", err=True)
-            continue
-        _make([run], film, view, settings, quiet)
+    place = out or FILMS
+    if not is_of_runs and (place.suffix.lower() in ENDINGS or place.is_file()):
+        raise UsageError(f"this makes several films; name a folder for them, such as --out {FILMS}")
+    for each in roads_named(files, choice, takes_all=True):
+        if not is_of_runs:
+            yield each, made(place) / f"{each.stem}-{view}.mp4"
+        elif not (film := Path(str(each.key), f"{view}.mp4")).exists():
+            yield each, film
 
 
 def _make(runs: list[Any], out: Path, view: str, settings: "Settings", quiet: bool) -> None:

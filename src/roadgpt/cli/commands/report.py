@@ -1,7 +1,6 @@
 """``roadgpt report``: writes a report on a folder of runs, a campaign or a study."""
 
 import shlex
-import webbrowser
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +12,7 @@ from roadgpt.cli.next_steps import next_steps, of_runs, of_status
 from roadgpt.cli.option import Argument
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
+from roadgpt.cli.roads import open_page
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -34,8 +34,8 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
     if junit is not None:
         write_folder(junit, folder)
     click.echo(str(page))
-    if opens and not webbrowser.open(page.resolve().as_uri()):
-        click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+    if opens:
+        open_page(page)
 
 
 def _written(folder: Path) -> Path:
@@ -49,12 +49,10 @@ def _written(folder: Path) -> Path:
         from roadgpt.campaign.status import status_of
         from roadgpt.study.campaign_report import write_store_report
 
-        quiet = of_status(status_of(folder))
-        return write_store_report(folder, command_of_many(folder), next_steps(quiet) if quiet else ())
+        return write_store_report(folder, command_of_many(folder), next_steps(of_status(status_of(folder))))
     if (folder / CARD).is_file():
-        calm = of_runs(folder)
-        steps = next_steps(calm) if calm else ()
-        return study_report.write_run_report(folder, _command(read_card(folder), folder), steps)
+        command_ = _command(read_card(folder), folder)
+        return study_report.write_run_report(folder, command_, next_steps(of_runs(folder)))
     raise UsageError(
         f"there are no runs, no campaign and no study in {folder}; give a folder that holds them"
     )

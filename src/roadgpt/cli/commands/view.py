@@ -1,6 +1,5 @@
 """``roadgpt view``: writes a page with the road in 3-D and a replay of its drive, or pictures."""
 
-import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +12,7 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
-from roadgpt.cli.roads import roads_named, run_of, shown_runs
+from roadgpt.cli.roads import check_file, open_page, roads_named, run_of, shown_runs
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -67,17 +66,14 @@ def command(
     if ctx.get_parameter_source("axes") is ParameterSource.COMMANDLINE:
         raise UsageError("--axes is for pictures; say --format png as well")
     out = out or PAGE
-    if out.is_dir():
-        raise UsageError(f"{out} is a folder; give the name of a page, such as {out / PAGE}")
-    if out.suffix.lower() not in ENDINGS:
-        raise UsageError(f"{out} does not end in .html; give the page such a name")
+    check_file(out, "page", PAGE, ENDINGS)
     from roadgpt.report.view import write
 
     page = write(shown_runs(files, choice, world, geometry, MOST, "a page"), out)
     if not quiet:
         click.echo(str(page))
-    if opens and not webbrowser.open(page.resolve().as_uri()):
-        click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+    if opens:
+        open_page(page)
     return None
 
 
