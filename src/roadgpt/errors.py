@@ -1,5 +1,8 @@
 """Defines the errors that users can cause. Every message states what is wrong and what to do."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 
 class RoadGPTError(Exception):
     """Base class of all errors that a user can cause or resolve. The message is one clear sentence."""
@@ -89,3 +92,18 @@ class RefusedError(ReplyError):
 
 class UnparsableError(ReplyError):
     """None of the model's replies matches the requested schema, in whichever way it was requested."""
+
+
+@contextmanager
+def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None]:
+    """Turns an error of the operating system in a ``with`` block into one sentence.
+
+    Args:
+        kind: the class of the error to raise.
+        what: what cannot be done, such as "cannot write FILE"; the reason follows it.
+        advice: what the user can do.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise kind(f"{what}: {error.strerror or error}; {advice}") from error

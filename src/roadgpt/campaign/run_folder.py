@@ -4,15 +4,15 @@
 ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
 """
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
 from roadgpt.chat import Meter, Spent
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.road import Design
 from roadgpt.run import Request, Run, read_run
 from roadgpt.run.atomic import LOCK, PART, json_text, missing, refuse_links, sweep, take_away, write_whole
@@ -66,16 +66,10 @@ class RunWriter:
         return FinishedRun(result, None, run.seconds, run.spent, run.trace, lost, test_text(run), entry, own)
 
 
-@contextmanager
-def writing(folder: Path) -> Iterator[None]:
-    """Turns an error of the system while writing into a folder into one clear sentence."""
-    try:
-        yield
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write into {folder}: {error.strerror or error}; make room there and continue "
-            "with the same command and --out"
-        ) from error
+def writing(folder: Path) -> AbstractContextManager[None]:
+    """Returns a context manager that turns an error while writing into a folder into one clear sentence."""
+    advice = "make room there and continue with the same command and --out"
+    return explained(RoadGPTError, f"cannot write into {folder}", advice)
 
 
 @dataclass
@@ -111,12 +105,10 @@ class RunFolder:
             path = new_folder(request.words, request.seed)
             return cls(path, request, roads, (path, *made))
         path = Path(out)
-        try:
+        with explained(UsageError, f"cannot use {path}", "name another folder"):
             made = missing(path)
             path.mkdir(parents=True, exist_ok=True)
             is_new = all(_may_lie_in_a_new_folder(each) for each in path.iterdir())
-        except OSError as error:
-            raise UsageError(f"cannot use {path}: {error.strerror}; name another folder") from error
         folder = cls(path, request, roads, made)
         if not is_new:
             folder.take_up()

@@ -15,7 +15,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import ChatError, UsageError
+from roadgpt.errors import ChatError, UsageError, explained
 from roadgpt.reading import read_json
 
 FORMAT = 1
@@ -43,14 +43,10 @@ class ExchangeStore:
         whole = {"format": FORMAT, "question": question, "answers": {**there, occasion: [*mine, answer]}}
         path = self._path(name)
         draft = path.with_name(f"{path.name}.{os.getpid()}.part")
-        try:
+        with explained(ChatError, f"cannot record into {self.folder}", "name another folder"):
             path.parent.mkdir(parents=True, exist_ok=True)
             draft.write_text(text_of(whole, indent=1) + "\n", encoding="utf-8")
             draft.replace(path)
-        except OSError as error:
-            raise ChatError(
-                f"cannot record into {self.folder}: {error.strerror}; name another folder"
-            ) from None
 
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
         """Returns the next recorded answer to a question on an occasion; None if no answer is left.

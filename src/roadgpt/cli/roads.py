@@ -12,7 +12,7 @@ import click
 from roadgpt.cli.options import WORLD
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
-from roadgpt.errors import PartError, UsageError
+from roadgpt.errors import PartError, UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
@@ -285,8 +285,6 @@ def made(folder: Path) -> Path:
     Raises:
         UsageError: It cannot be made.
     """
-    try:
+    with explained(UsageError, f"cannot make {folder}", "name another folder with --out"):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"cannot make {folder}: {error.strerror}; name another folder with --out") from error
     return folder

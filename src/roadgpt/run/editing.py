@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 from roadgpt.road import Design, World, read_blueprint
 from roadgpt.run.atomic import json_text, to_bytes
 from roadgpt.run.folder import EDIT_CARD, Draw, is_run, only_run, read_run, write_run
@@ -78,11 +78,9 @@ def folder_for(words: str, seed: int, out: Path | None) -> Path:
     """
     if out is None:
         return new_folder(words, seed)
-    try:
+    with explained(UsageError, f"cannot use {out}", "name another folder"):
         out.mkdir(parents=True, exist_ok=True)
         reject_used(out)
-    except OSError as error:
-        raise UsageError(f"cannot use {out}: {error.strerror}; name another folder") from error
     return out
 
 

@@ -4,7 +4,7 @@ import re
 import unicodedata
 from pathlib import Path
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 
 HOME = Path("roadgpt-runs")
 LONGEST = 40  # letters of a description
@@ -24,7 +24,7 @@ def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
         UsageError: the folder cannot be created.
     """
     name, number = f"{slug(words)}-{seed}", 1
-    try:
+    with explained(UsageError, f"cannot make a folder in {home}", "say --out FOLDER"):
         home.mkdir(parents=True, exist_ok=True)
         while True:
             folder = home / (name if number == 1 else f"{name}-{number}")
@@ -34,5 +34,3 @@ def new_folder(words: str, seed: int, home: Path = HOME) -> Path:
                 number += 1
             else:
                 return folder
-    except OSError as error:
-        raise UsageError(f"cannot make a folder in {home}: {error.strerror}; say --out FOLDER") from error

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
 from roadgpt.run import Run
 from roadgpt.run.atomic import json_text, missing, take_away, write_whole
@@ -42,13 +42,11 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     stamp = time.time_ns() // 1_000_000
     name = f"{experiment.module_name}_{experiment.class_name}_{stamp}".replace("/", "-").replace("\\", "-")
     folder = HOME / name if out is None else out
-    try:
+    with explained(UsageError, f"cannot use {folder}", "name another folder with --out"):
         made = missing(folder)
         folder.mkdir(parents=True, exist_ok=True)
         is_used = any(folder.iterdir())
         (folder / RUNS).mkdir(exist_ok=True)
-    except OSError as error:
-        raise UsageError(f"cannot use {folder}: {error.strerror}; name another folder with --out") from error
     if is_used:
         raise UsageError(f"{folder} is not empty; name another folder with --out")
     return folder, made

@@ -8,7 +8,7 @@ from pydantic import Field, ValidationError
 from roadgpt import plugins
 from roadgpt.brief.model import Frozen
 from roadgpt.chat import asks_a_model
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 from roadgpt.reading import read_json
 from roadgpt.road import World
 from roadgpt.run import Setup
@@ -82,15 +82,13 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
     Raises:
         UsageError: the folder contains something else, or cannot be created.
     """
-    try:
+    with explained(UsageError, f"cannot use {folder}", "name another folder"):
         folder.mkdir(parents=True, exist_ok=True)
         if (folder / CARD).is_file():
             _same(read_plan(folder), plan, folder)
         elif any(path.name not in (CARD, LOCK) and not path.name.endswith(PART) for path in folder.iterdir()):
             raise UsageError(f"{folder} is not empty and holds no study; name another folder")
         write_whole(folder / CARD, json_text(plan.model_dump(mode="json", by_alias=True)))
-    except OSError as error:
-        raise UsageError(f"cannot use {folder}: {error.strerror or error}; name another folder") from error
 
 
 def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:

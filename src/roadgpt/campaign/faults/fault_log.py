@@ -26,7 +26,7 @@ from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.numbered_test import NumberedTest
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.reading import read_json, strictly
 from roadgpt.run import Run, write_run
 from roadgpt.run.atomic import json_text, refuse_links, write_whole
@@ -156,10 +156,8 @@ def _page(folder: Path, name: NumberedTest) -> Path:
 
 def _made(place: Path) -> Path:
     refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
-    try:
+    with explained(RoadGPTError, f"cannot make {place}", "make room there"):
         place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RoadGPTError(f"cannot make {place}: {error.strerror}; make room there") from error
     return place
 
 

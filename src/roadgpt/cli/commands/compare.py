@@ -12,7 +12,7 @@ from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.roads import check_file, shown_run
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.study.similarity import Similarity
@@ -91,10 +91,6 @@ def _draw(runs: list[Any], out: Path, axes: Any) -> None:
     from roadgpt.report.pair import pair
 
     check_file(out, "picture", PICTURE)
-    try:
+    with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)
         save(pair(runs[0], runs[1], axes), out)
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write {out}: {error.strerror or error}; name another file with --out"
-        ) from error

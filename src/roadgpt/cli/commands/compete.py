@@ -15,7 +15,7 @@ from roadgpt.cli.option_types import measure, whole
 from roadgpt.cli.result_row import row_of
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.report import Scale
@@ -37,10 +37,8 @@ def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None)
 
     if path.exists():
         raise UsageError(f"{path} is there already; give another name")
-    try:
+    with explained(UsageError, f"cannot write {path}", "give another name"):
         write_whole(path, (NAMES / CLIENT).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise UsageError(f"cannot write {path}: {error.strerror or error}; give another name") from error
     click.echo(f"{path}; before it is used, set ROADGPT_PYTHON to {sys.executable}")
     ctx.exit()
 

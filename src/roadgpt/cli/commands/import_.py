@@ -11,7 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.errors import RoadGPTError
+from roadgpt.errors import RoadGPTError, explained
 
 if TYPE_CHECKING:
     from roadgpt.road import ImportedRoad, Road, World
@@ -52,11 +52,9 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
     for remark in () if quiet else (*found.remarks, *told):
         click.echo(f"roadgpt: {file}: {remark}", err=True)
     out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
-    try:
+    with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)
         out.write_text(json.dumps(road.to_json()) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise RoadGPTError(f"cannot write {out}: {error.strerror}; name another file with --out") from error
     if not quiet:
         name = f" ({found.name})" if found.name else ""
         click.echo(f"road {found.id}{name}: {sentence(describe(road))}")

@@ -14,7 +14,7 @@ matrix, or a map of cells), ``lines`` and ``bars``; ``gallery`` (small maps of r
 
 from pathlib import Path
 
-from roadgpt.errors import RoadGPTError
+from roadgpt.errors import RoadGPTError, explained
 from roadgpt.report.page.html import html_of
 from roadgpt.report.page.model import (
     Block,
@@ -68,7 +68,7 @@ def write(page: Page, folder: Path | str) -> Path:
         RoadGPTError: a file cannot be written.
     """
     folder = Path(folder)
-    try:
+    with explained(RoadGPTError, f"cannot write the report into {folder}", "name another folder"):
         refuse_links(folder / TABLES)
         (folder / TABLES).mkdir(parents=True, exist_ok=True)
         for table in page.tables():
@@ -76,8 +76,4 @@ def write(page: Page, folder: Path | str) -> Path:
             write_whole(folder / TABLES / f"{table.name}.tex", latex_of(table))
         write_whole(folder / f"{PAGE}.md", markdown_of(page))
         write_whole(folder / f"{PAGE}.html", html_of(page))
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write the report into {folder}: {error.strerror or error}; name another folder"
-        ) from error
     return folder / f"{PAGE}.html"

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.report.view.scene import scene
 from roadgpt.run import Run
 from roadgpt.run.atomic import write_whole
@@ -79,13 +79,9 @@ def write(runs: Sequence[Run], path: Path | str) -> Path:
     """
     path = Path(path)
     text = page(runs)
-    try:
+    with explained(RoadGPTError, f"cannot write {path}", "name another file with --out"):
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole(path, text)
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write {path}: {error.strerror or error}; name another file with --out"
-        ) from error
     return path
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from roadgpt import __version__
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.report.page import Block, Page, Section, write
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import report_blocks
@@ -70,14 +70,10 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
             f"{out} holds an analysis of {'people' if answers.source == 'synthetic' else 'made-up raters'}; "
             "the two are kept apart, so name another folder with --out"
         )
-    try:
+    with explained(RoadGPTError, f"cannot write into {out}", "name another folder with --out"):
         (out / FIGURES).mkdir(parents=True, exist_ok=True)
         write_whole(out / TABLES[answers.source], csv_of(answers.rows), is_private=True)
         page = page_of(answers, out / FIGURES, command)
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write into {out}: {error.strerror or error}; name another folder with --out"
-        ) from error
     return write(page, out)
 
 

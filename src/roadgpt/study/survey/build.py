@@ -11,7 +11,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.run import Run, read_run
 from roadgpt.run.atomic import json_text, sweep, write_whole
 from roadgpt.study.survey.item_criteria import criteria_of, match_scores, similarity_scores
@@ -48,7 +48,7 @@ def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lamb
     axes = Axes.of([run.road for both in runs for run in both if run.road is not None])
     films = plan.films and can_film()
     builder = _ItemBuilder(out / MEDIA, axes, films, plan.views, len(named), tell)
-    try:
+    with explained(RoadGPTError, f"cannot write into {out}", "make room there or name another folder"):
         (out / MEDIA).mkdir(parents=True, exist_ok=True)
         sweep(out / MEDIA)
         items = [builder.item(name, each, own) for (name, each), own in zip(named, runs, strict=True)]
@@ -67,10 +67,6 @@ def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lamb
             if path.name not in survey.media:
                 path.unlink()
         write_whole(out / CARD, json_text(survey.model_dump(mode="json")))
-    except OSError as error:
-        raise RoadGPTError(
-            f"cannot write into {out}: {error.strerror or error}; make room there or name another folder"
-        ) from error
     return survey
 
 

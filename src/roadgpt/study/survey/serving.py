@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.reading import read_text
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey.store import ANSWERS, MOST_RATERS, AnswerStore, new_token
@@ -106,10 +106,8 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
             [f"{there} links were made earlier, but {path}, which listed them, is missing"] if there else []
         )
     links = [f"{base}/r/{token}" for token in tokens]
-    try:
+    with explained(RoadGPTError, f"cannot write {path}", "make room there"):
         write_whole(path, "\n".join(links) + "\n", is_private=True)
-    except OSError as error:
-        raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; make room there") from error
     for token in new:  # last: a link that stands nowhere is lost, one that opens nothing is made again
         store.add_rater(token=token)
     return [*links, f"one link for each rater; {path} lists them, too"]
