@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from roadgpt import children
 from roadgpt.campaign.faults import Simplest, failures_of, fault_log, faults_in
 from roadgpt.campaign.faults.fault_log import FailureAnalysis
 from roadgpt.campaign.faults.stability import repeated
 from roadgpt.campaign.rerun import kept_run, read_trace, run_again
+from roadgpt.campaign.workers.unordered_map import unordered_map
 from roadgpt.cli import app
-from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
@@ -273,21 +274,20 @@ def twice(number: int) -> int:
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_work_is_shared_and_what_goes_wrong_comes_back(workers: int) -> None:
-    assert sorted(shared(twice, [3, 1, 2], workers)) == [2, 4, 6]
+def test_work_is_shared_and_what_goes_wrong_comes_back(workers: int, tmp_path: Path) -> None:
+    log = tmp_path / "workers.log"
+    assert sorted(unordered_map(twice, [3, 1, 2], workers, log)) == [2, 4, 6]
     with pytest.raises(UsageError, match="too large"):
-        [*shared(twice, [101, 1], workers)]
+        [*unordered_map(twice, [101, 1], workers, log)]
 
 
-def test_who_stops_listening_stops_the_workers() -> None:
-    from multiprocessing import active_children
-
-    work = shared(twice, [1, 50, 50, 50], 2)
+def test_who_stops_listening_stops_the_workers(tmp_path: Path) -> None:
+    work = unordered_map(twice, [1, 50, 50, 50], 2, tmp_path / "workers.log")
     assert next(work) == 2
     begun = time.perf_counter()
     work.close()
     assert time.perf_counter() - begun < 10
-    assert not active_children()
+    assert not children._running
 
 
 def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:

@@ -14,15 +14,14 @@ from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.scheduler import Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.workers.in_process import InProcess
+from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import ChatError, Meter
 from roadgpt.design import designer_of
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 from roadgpt.run import PLAIN, USUAL, Draw, Request, Run, Setup, brief_of, check_parts, read_run
-from roadgpt.run.atomic import alone_in
+from roadgpt.run.atomic import alone_in, refuse_links
 from roadgpt.run.folder import run_folder
-
-LOG = "workers.log"
 
 
 def work_in(
@@ -71,6 +70,7 @@ def work_in(
     ]
     writer = RunWriter({name: folder.path for name, folder in folders.items()}, draw, meter)
     setups = tuple(dict.fromkeys(folder.request.setup for folder in folders.values()))
+    refuse_links(home / LOG)
     staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)
     kind: type[Executor] = plugins.find("executors", "processes") if workers else InProcess
     left = dict(folders)

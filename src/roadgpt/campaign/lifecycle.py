@@ -20,6 +20,7 @@ from roadgpt.campaign.store import Store, refused
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
 from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
+from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.drive import refuse_ignored
@@ -30,7 +31,6 @@ from roadgpt.run import Setup, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
 from roadgpt.run.versions import versions_of
 
-LOG = "workers.log"
 USER_NAMES = {
     "prompts": "descriptions",
     "budget": "number of tests or seconds",
@@ -209,4 +209,4 @@ def _sweep(folder: Path, store: Store) -> None:
                 path.unlink()
 
 
-__all__: Sequence[str] = ("LOG", "begin", "plan_of", "work")
+__all__: Sequence[str] = ("begin", "plan_of", "work")

@@ -4,6 +4,7 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
+LOG = "workers.log"
 MOST = 4_000_000  # bytes; then only the end is kept
 KEPT = 1_000_000  # bytes of it
 NOTE = b"[what was printed before is left out]\n"

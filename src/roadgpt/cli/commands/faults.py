@@ -12,7 +12,6 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
-from roadgpt.cli.pool import shared
 from roadgpt.cli.progress import watched
 
 if TYPE_CHECKING:
@@ -80,6 +79,8 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     """
     from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
     from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.campaign.workers.unordered_map import unordered_map
+    from roadgpt.campaign.workers.worker_log import LOG
     from roadgpt.drive.permission import require_permission
 
     found = faults_in(place)
@@ -94,7 +95,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
         for each in found.them
     ]
-    steps = shared(analyse, tasks, look.workers)
+    steps = unordered_map(analyse, tasks, look.workers, place / LOG)
     try:
         looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
     except KeyboardInterrupt:
