@@ -6,9 +6,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import plugins
+from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.model import GOALS, Budget
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.status import CellStatus
 from roadgpt.cli import app
 
 PLAN = Plan(prompts=("two hairpins",), reader="grammar", budget=Budget(tests=3))

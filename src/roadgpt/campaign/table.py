@@ -16,13 +16,13 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.behaviour import BOUNDS, cell_of
+from roadgpt.campaign.cell_status import CellStatus, cell_statuses
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
 from roadgpt.run.atomic import PART
-from roadgpt.verdict.severity import MOSTLY
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
@@ -62,7 +62,8 @@ def write_tables(record: Record, folder: Path) -> None:
     features = record.feature_names()
     with reading_store(record.path):
         _write(folder / RESULTS, _lines(record.stream(EVERY), features))
-    cells = [_cell_row(record, cell) for cell in record.cells()]
+    both = zip(record.cells(), cell_statuses(record), strict=True)
+    cells = [_cell_row(record, cell, status) for cell, status in both]
     _write(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
 
 
@@ -98,22 +99,10 @@ def _written(features: Sequence[str]) -> re.Pattern[str]:
     return re.compile(rf"\{{{''.join(each)}\}}")
 
 
-def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
-    counts = Counter(
-        dict(
-            record.query(
-                "SELECT outcome, count(*) FROM tests WHERE cell = ? AND outcome IS NOT NULL GROUP BY outcome",
-                (cell.name,),
-            )
-        )
-    )
-    ((least, left, partly, mostly, most, beyond),) = record.query(
-        "SELECT min(margin) FILTER (WHERE outcome = 'PASS'), sum(outcome = 'FAIL' AND side = 'left'), "
-        "sum(outcome = 'PASS' AND max_oob > 0 AND max_oob <= ?), sum(outcome = 'PASS' AND max_oob > ?), "
-        "max(max_oob) FILTER (WHERE outcome = 'PASS'), max(beyond) FILTER (WHERE outcome = 'PASS') "
-        "FROM tests WHERE cell = ?",
-        (MOSTLY, MOSTLY, cell.name),
-    )
+def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
+    counts = Counter(status.outcomes)
+    left = "SELECT count(*) FROM tests WHERE outcome = 'FAIL' AND side = 'left' AND cell = ?"
+    ((failed_left,),) = record.query(left, (cell.name,))
     setup = cell.request.setup
     return {
         "cell": cell.name,
@@ -127,13 +116,13 @@ def _cell_row(record: Record, cell: Cell) -> dict[str, Any]:
         "tests": counts.total(),
         "valid": counts.total() - counts["INVALID"] - counts["ERROR"],
         **{name: counts[outcome] for outcome, name in OUTCOMES.items()},
-        "failed_left": left or 0,
+        "failed_left": failed_left,
         "failing_cells": _failing_cells(record, cell),
-        "least_margin_m": least,
-        "passed_partly_outside": partly or 0,
-        "passed_mostly_outside": mostly or 0,
-        "passed_max_oob": most,
-        "passed_beyond_m": beyond,
+        "least_margin_m": status.least_margin,
+        "passed_partly_outside": status.partly_outside,
+        "passed_mostly_outside": status.mostly_outside,
+        "passed_max_oob": status.max_oob,
+        "passed_beyond_m": status.beyond,
     }
 
 

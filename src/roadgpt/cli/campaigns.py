@@ -11,9 +11,10 @@ from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, metres
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.cell_status import CellStatus
     from roadgpt.campaign.faults import Faults
     from roadgpt.campaign.scheduler import Progress
-    from roadgpt.campaign.status import CellStatus, Status
+    from roadgpt.campaign.status import Status
 
 COMPARED = 500  # failures of a campaign, evenly spread, whose faults are counted: under a second
 MOST_CELLS = 40  # that are shown one by one

@@ -11,7 +11,8 @@ from roadgpt.cli.progress import duration
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from roadgpt.campaign.status import CellStatus, Status
+    from roadgpt.campaign.cell_status import CellStatus
+    from roadgpt.campaign.status import Status
 
 MOST_CELLS, MOST_WORKERS = 12, 16  # rows of the screen
 GAP = 2  # between columns

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.faults import faults_in
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.status import CellStatus, Status, status_of
+from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, linked, write

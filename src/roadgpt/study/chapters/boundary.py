@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt.campaign.boundary_pairs import BoundaryPair, pairs_of, weightiest
+from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.model import Result
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.status import CellStatus
 from roadgpt.design.elements import elements_of
 from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.campaign_tests import again

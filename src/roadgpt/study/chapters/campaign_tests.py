@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.campaign.behaviour import BOUNDS
+from roadgpt.campaign.cell_status import CellStatus
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.status import CellStatus
 from roadgpt.report.page import Block, Figure, Table, TableCell, cell
 from roadgpt.report.page.lines import bars, lines
 from roadgpt.study.chapters.roads import CELLS, MAPS, feature_map

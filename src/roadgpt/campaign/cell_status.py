@@ -1,0 +1,95 @@
+"""Counts the tests of each cell of a campaign; SQLite does the counting."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from roadgpt.campaign.model import Goal
+from roadgpt.campaign.record import Record
+from roadgpt.verdict.severity import MOSTLY
+
+ONE_SIDED = 0.05  # share of driven roads that ended otherwise, below which there is hardly a boundary
+NOTHING = (None, 0, 0, None, None)  # of a cell in which no test passed
+
+
+@dataclass(frozen=True)
+class CellStatus:
+    """The state of one cell."""
+
+    name: str
+    words: str
+    driver: str
+    generator: str
+    seed: int
+    asked: int
+    outcomes: Mapping[str, int]
+    least_margin: float | None
+    """Smallest margin of the passed tests, metres; failed drives are left out, since they all end near 0."""
+    partly_outside: int
+    """Number of passed tests in which up to half of the car was outside its lane."""
+    mostly_outside: int
+    """Number of passed tests in which more than half of the car was outside its lane."""
+    max_oob: float | None
+    """Largest share, 0 to 1, of the car that was outside its lane in any passed test."""
+    beyond: float | None
+    """Largest distance beyond the lane marking in any passed test, metres; None in stores of earlier
+    versions.
+    """
+    goal: Goal | None
+    closed: str | None
+    """Why the cell ended before its number of tests was reached; None otherwise."""
+
+    @property
+    def done(self) -> int:
+        """Number of tests that have ended."""
+        return sum(self.outcomes.values())
+
+    @property
+    def remark(self) -> str:
+        """A warning if a search for the boundary found only passing or only failing roads; else empty."""
+        kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
+        driven = kept + failed
+        if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):
+            return ""
+        if not driven:
+            return f"{self.name}: no road was driven, so nothing is known of a boundary."
+        did = f"kept its lane on {kept or 'none'}" if kept < failed else f"failed on {failed or 'none'}"
+        return (
+            f"{self.name}: of {driven:,} driven roads the car {did}, so there is hardly a boundary to find; "
+            f"make it {'easier' if kept < failed else 'harder'} for the car (friction, speed limit, driver)."
+        )
+
+
+def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
+    """Returns the state of each cell, in the order of the plan."""
+    counts: dict[str, dict[str, int]] = {}
+    passed: dict[str, tuple[Any, ...]] = {}
+    grouped = (
+        "SELECT cell, outcome, count(*), min(margin), sum(max_oob > 0 AND max_oob <= ?), sum(max_oob > ?), "
+        "max(max_oob), max(beyond) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
+    )
+    for cell, outcome, count, *rest in record.stream(grouped, (MOSTLY, MOSTLY)):
+        counts.setdefault(cell, {})[outcome] = count
+        if outcome == "PASS":
+            passed[cell] = tuple(rest)
+    asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
+    closed = dict(record.query("SELECT name, closed FROM cells"))
+    return tuple(
+        CellStatus(
+            name=cell.name,
+            words=cell.request.words,
+            driver=cell.request.setup.driver,
+            generator=cell.generator,
+            seed=cell.request.seed,
+            asked=asked.get(cell.name, 0),
+            outcomes=counts.get(cell.name, {}),
+            least_margin=passed.get(cell.name, NOTHING)[0],
+            partly_outside=passed.get(cell.name, NOTHING)[1] or 0,
+            mostly_outside=passed.get(cell.name, NOTHING)[2] or 0,
+            max_oob=passed.get(cell.name, NOTHING)[3],
+            beyond=passed.get(cell.name, NOTHING)[4],
+            goal=cell.goal,
+            closed=closed[cell.name],
+        )
+        for cell in record.cells()
+    )
