@@ -1,5 +1,6 @@
 """Works off a campaign in a process of its own, so that a test may kill it: FOLDER ROADS [--slow] [--all]."""
 
+import os
 import sys
 import time
 from collections.abc import Sequence
@@ -22,6 +23,14 @@ class Drawing:
 
     def of_campaign(self, folder: Path) -> None:
         (folder / "overview.png").write_bytes(PICTURE)
+
+
+class Deadly(Drawing):
+    """Ends the process that draws the second road."""
+
+    def of_run(self, run: Run, folder: Path) -> None:
+        if run.index == 2:
+            os._exit(9)
 
 
 def perform(index: int, earlier: Sequence[Design]) -> Run:

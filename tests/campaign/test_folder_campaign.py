@@ -2,6 +2,7 @@
 
 import csv
 import json
+import os
 import random
 import signal
 import subprocess
@@ -12,13 +13,17 @@ from pathlib import Path
 
 import pytest
 
-from campaign.folder_worker import Drawing
+from campaign.folder_worker import Deadly, Drawing
+from roadgpt import children
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
 from roadgpt.campaign.batch_scheduler import GIVE_UP
+from roadgpt.campaign.folder_campaign import work_in
+from roadgpt.campaign.run_folder import RunFolder
+from roadgpt.chat import Meter
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road
-from roadgpt.run import Request, Run, Setup, read_run, seed_in, seed_of
+from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of
 from run.doubles import Designer, Unable, a_design, folder_of, put_on_shelf
 
 TESTS = Path(__file__).resolve().parents[1]
@@ -458,3 +463,65 @@ def test_earlier_designs_come_in_their_order_also_when_a_gap_is_filled(
     (tmp_path / "test.0002.json").unlink()
     list(folder_of(request, 5, tmp_path, one, patch=monkeypatch.setattr))
     assert seen == {1: [], 2: [1], 3: [1, 2], 4: [1, 2, 3], 5: [1, 2, 3, 4]}
+
+
+def made_of(home: Path, workers: int, roads: int = 6, kills: bool = False) -> dict[str, bytes]:
+    """The files of two folders, of roads that real workers design; or those of this process, without any."""
+    setup = Setup(reader="grammar", drives=False)
+    words = {"one": "a road with two turns", "other": "a hairpin, then a straight"}
+    briefs = {name: brief_of(text, setup=setup) for name, text in words.items()}
+    folders = {
+        name: RunFolder.opened(Request(words=text, seed=3, setup=setup), roads, home / name)
+        for name, text in words.items()
+    }
+    seen, before = [], {*children._running}
+    for folder in folders.values():
+        assert not folder.begin()
+    for name, ended in work_in(home, folders, briefs, meter=None if workers else Meter(), workers=workers):
+        seen.append((name, ended.result.number))
+        assert (home / name / f"test.{ended.result.number:04d}.json").is_file()
+        assert (ended.run is None) == bool(workers)
+        if kills and len(seen) in (2, 5):
+            os.kill(({*children._running} - before).pop().pid, signal.SIGKILL)
+    for name in words:
+        assert [number for each, number in seen if each == name] == [*range(1, roads + 1)]
+        assert json.loads((home / name / "campaign.json").read_text())["is_finished"] is True
+    assert {*children._running} <= before
+    return {name: data for name, data in contents(home).items() if not name.startswith("workers.log")}
+
+
+def test_folders_do_not_depend_on_workers_nor_on_their_deaths(tmp_path: Path) -> None:
+    alone = made_of(tmp_path / "alone", 0)
+    assert len([name for name in alone if name.endswith("road.json")]) == 12
+    assert made_of(tmp_path / "workers", 2) == alone
+    assert made_of(tmp_path / "killed", 2, kills=True) == alone
+
+
+def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    put_on_shelf(monkeypatch, double=Unable(lambda seed: seed in {seed_of(7, n) for n in range(1, 5)}))
+    folders = {
+        name: RunFolder.opened(Request(words=name, seed=seed, setup=NO_DRIVE), 4, tmp_path / name)
+        for name, seed in (("able", 7), ("unable", 8))
+    }
+    for folder in folders.values():
+        folder.begin()
+    briefs = {name: Brief(words=name) for name in folders}
+    tests = [name for name, _ in work_in(tmp_path, folders, briefs, meter=Meter())]
+    assert tests == ["able"] * 4
+    assert folders["able"].failure == ""
+    assert "9 hairpins" in folders["unable"].failure
+    assert [path.name for path in tmp_path.iterdir()] == ["able"]
+
+
+def test_workers_that_die_over_a_road_leave_one_error(tmp_path: Path) -> None:
+    setup = Setup(reader="grammar", drives=False)
+    request = Request(words="a straight road", seed=1, setup=setup)
+    folder = RunFolder.opened(request, 2, tmp_path / "c")
+    folder.begin()
+    briefs = {"c": brief_of(request.words, setup=setup)}
+    ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, briefs, draw=Deadly(), workers=1)]
+    assert [one.outcome for one in ended] == ["VALID", "ERROR"]
+    assert "3 workers ended over it" in ended[1].description
+    assert read_run(tmp_path / "c" / "runs" / "0002").description == ended[1].description

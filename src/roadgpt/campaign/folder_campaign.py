@@ -75,7 +75,7 @@ def work_in(
     kind: type[Executor] = plugins.find("executors", "processes") if workers else InProcess
     left = dict(folders)
     try:
-        with FolderStore(home, folders, cells, writer) as store:
+        with FolderStore(home, folders, cells) as store:
             scheduler = Scheduler(store, staff, kind, run_test=writer)
             with closing(scheduler.run()) as steps:
                 for _ in steps:

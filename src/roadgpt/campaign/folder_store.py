@@ -21,21 +21,17 @@ class FolderStore(Store):
 
     group_seconds = 0.0
 
-    def __init__(
-        self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell], writer: RunWriter
-    ) -> None:
+    def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
         """Makes the tables of the tests that are in the folders.
 
         Args:
             home: the folder that messages name.
             folders: the folder of each cell, by the cell's name.
             cells: the cells.
-            writer: writes the Runs of tests whose workers died.
         """
         super().__init__(home / STORE, sqlite3.connect(":memory:", isolation_level=None))
         self._folders = folders
         self._cells = {cell.name: cell for cell in cells}
-        self._writer = writer
         self.written: list[tuple[str, FinishedRun]] = []
         """Tests whose files were written, with the names of their cells; whoever reads them empties it."""
         self._db.executescript(SCHEMA)
@@ -62,10 +58,10 @@ class FolderStore(Store):
         """Writes the files of tests that have ended, each as soon as a road of its cell could be designed."""
         super().keep(ended, *rest)
         for name, one in ended:
-            if not isinstance(one, FinishedRun):  # its workers died
+            if not isinstance(one, FinishedRun):  # its workers died, perhaps over its pictures
                 task = Task(one.result.number, one.result.batch, one.result.proposal)
                 run = failed_run(task, self._cells[name], one.result.description)
-                one = self._writer.written(run, task, name)
+                one = RunWriter({name: self._folders[name].path}).written(run, task, name)
             self.written += [(name, each) for each in self._folders[name].add(one)]
 
     def reopen(self, cell: str, number: int, batch: int) -> None:
