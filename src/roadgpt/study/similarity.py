@@ -16,6 +16,8 @@ same: nobody who sees one after the other would take them for two tests. Mirrori
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import combinations
+from math import nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -65,17 +67,20 @@ class Similarity:
 class Likeness:
     """The properties of one road that are compared."""
 
-    turns: int
     length: float
+    """Length in plan, metres."""
     sequence: str
     """Left turns, right turns and straights in driving order, as the letters L, R and S."""
-    sides: str
-    """The turns alone, as the letters L and R."""
     shape: PlanShape
     grades: Array
     """Grades in percent, at the middle of as many equal shares of the length as ``shape`` has points."""
     steps: Array
     """Change of direction in degrees and length in metres, every 5 m."""
+
+    @property
+    def sides(self) -> str:
+        """The turns alone, as the letters L and R."""
+        return self.sequence.replace("S", "")
 
 
 def likeness(road: Road) -> Likeness:
@@ -92,12 +97,9 @@ def likeness(road: Road) -> Likeness:
     shares = road.length * (np.arange(POINTS) + 0.5) / POINTS
     whole = road.at(np.linspace(0.0, road.length, max(3, round(road.length / STEP)) + 1))
     found = measure(points)
-    sequence = "".join(_letter(feature) for feature in found.features)
     return Likeness(
-        len(found.turns),
         found.length,
-        sequence,
-        sequence.replace("S", ""),
+        "".join(_letter(feature) for feature in found.features),
         shape_of(s, line[:, 0] + 1j * line[:, 1]),
         100 * np.asarray(road.grade(shares)),
         steps_of(whole[:, :2]),
@@ -109,7 +111,7 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
     metres = plan_apart(one.shape, other.shape, mirror)
     points = float(np.abs(one.grades - other.grades).mean())
     return Similarity(
-        turns=_ratio(one.turns, other.turns),
+        turns=_ratio(len(one.sides), len(other.sides)),
         sequence=_alike(one.sequence, other.sequence, mirror),
         direction=_alike(one.sides, other.sides, mirror),
         length=_ratio(one.length, other.length),
@@ -179,25 +181,17 @@ class Spread:
 def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
     """Compares all pairs of roads; by default, mirrored roads count as the same."""
     n = len(roads)
-    metres, general, twins = np.full((n, n), np.nan), [], []
-    furthest = np.zeros(n)
-    for i, one in enumerate(roads):
-        others = roads[i + 1 :]
-        for j, other in enumerate(others, i + 1):
-            found = similarity(one, other, mirror)
-            metres[i, j] = metres[j, i] = found.metres
-            general.append(found.general)
-            if found.is_duplicate:
-                twins.append((i, j))
-        if others:
-            apart = distances(one.steps, [other.steps for other in others])
-            furthest[i] = max(furthest[i], float(apart.max()))
-            furthest[i + 1 :] = np.maximum(furthest[i + 1 :], apart)
+    found = {(i, j): similarity(roads[i], roads[j], mirror) for i, j in combinations(range(n), 2)}
+    metres, apart = np.full((n, n), np.nan), np.zeros((n, n))
+    for (i, j), pair in found.items():
+        metres[i, j] = metres[j, i] = pair.metres
+    for i in range(n - 1):
+        apart[i, i + 1 :] = distances(roads[i].steps, [other.steps for other in roads[i + 1 :]])
     return Spread(
         metres,
-        tuple(twins),
-        float(furthest.mean()) if n > 1 else float("nan"),
-        float(np.mean(general)) if general else float("nan"),
+        tuple(pair for pair, each in found.items() if each.is_duplicate),
+        float(np.maximum(apart, apart.T).max(axis=1).mean()) if found else nan,
+        float(np.mean([each.general for each in found.values()])) if found else nan,
     )
 
 
@@ -214,10 +208,6 @@ class Between:
 def between(ones: Sequence[Likeness], others: Sequence[Likeness], mirror: bool = True) -> Between:
     """Compares every road of one description with every road of another."""
     found = [similarity(one, other, mirror) for one in ones for other in others]
-    if not found:
-        return Between(float("nan"), float("nan"), 0)
-    return Between(
-        float(np.mean([each.general for each in found])),
-        min(each.metres for each in found),
-        sum(each.is_duplicate for each in found),
-    )
+    general = float(np.mean([each.general for each in found])) if found else nan
+    nearest = min((each.metres for each in found), default=nan)
+    return Between(general, nearest, sum(each.is_duplicate for each in found))

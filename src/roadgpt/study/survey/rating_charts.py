@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Patch
 
-from roadgpt.report.canvas import BLUE, VERMILLION, dress, in_our_style, new_figure, save, save_all
+from roadgpt.report.canvas import BLUE, VERMILLION, add_axes, in_our_style, new_figure, save, save_all
 from roadgpt.report.page import Figure
 from roadgpt.report.page.chart import embedded, palette
 from roadgpt.report.text_width import fitted
@@ -39,10 +39,7 @@ def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Figure:
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
     figure = new_figure(WIDE, high)
     figure.patch.set_alpha(0)
-    axes: Axes = figure.add_axes(
-        (LEFT / WIDE, BOTTOM / high, (WIDE - LEFT - RIGHT) / WIDE, (high - TOP - BOTTOM) / high)
-    )
-    dress(axes)
+    axes = add_axes(figure, LEFT, BOTTOM, RIGHT, TOP)
     axes.patch.set_alpha(0)
     axes.set(xlim=(-100, 100), ylim=(high - TOP - BOTTOM, 0))
     axes.set_yticks([])
