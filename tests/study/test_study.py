@@ -15,6 +15,7 @@ from roadgpt.cli import app
 from roadgpt.design.designers import thesis as thesis_designer
 from roadgpt.errors import UsageError
 from roadgpt.run import Setup
+from roadgpt.run.atomic import alone_in
 from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
 from roadgpt.study.execution import work
 from roadgpt.study.plan import StudyPlan, open_folder, read_plan
@@ -130,6 +131,16 @@ def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
     work(plan, halted)
     write_study(halted)
     assert content(halted) == content(tmp_path / "one")
+
+
+def test_one_process_works_in_a_study(tmp_path: Path) -> None:
+    plan = small("a road")
+    open_folder(plan, tmp_path)
+    (part,) = plan.parts()
+    for folder in (tmp_path, tmp_path / part.name):
+        with alone_in(folder), pytest.raises(UsageError, match="another process is at work"):
+            work(plan, tmp_path)
+    assert work(plan, tmp_path) == []
 
 
 def test_another_study_is_left_alone(tmp_path: Path) -> None:

@@ -1,12 +1,13 @@
-"""Evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads.
+"""Makes and evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads.
 
-``plan``, ``execution``  what a study consists of; runs it: descriptions, designers, roads of each
-``road_record``          what a study reads from each run
-``study_report``         writes the report of a study; ``campaign_report`` that of a campaign; ``chapters``
-``truth``, ``criteria``  what a description asks for, as people wrote it down, and whether a road keeps it
-``similarity``           how similar two roads are: turns, their order and sides, length, incline, shape
-``statistics``           the tests and intervals of these reports and of the survey
-``survey``               asks people
+plan, execution   defines a study: descriptions, designers, roads of each; makes its roads
+road_record       reads from each run what reports need
+study_report      writes the report of a study and of a folder of runs, from the sections in ``chapters``
+campaign_report   writes the report of a campaign, from the sections in ``chapters``
+truth, criteria   defines what people wrote down about a description; checks whether a road meets it
+similarity        measures how similar two roads are: turns and their order, length, incline, shape
+statistics        computes the tests and intervals of the reports and of the survey
+survey            asks people to rate roads
 """
 
 from roadgpt.road import Road
@@ -21,9 +22,9 @@ def compare(one: Road, other: Road, mirror: bool = False) -> Similarity:
     Args:
         one: a road.
         other: the road to compare it with.
-        mirror: whether a road and its mirror image count as the same.
+        mirror: True if a road and its mirror image count as the same.
 
     Raises:
-        UsageError: a road has no two different points.
+        UsageError: a road has fewer than two different points.
     """
     return similarity(likeness(one), likeness(other), mirror)

@@ -1,4 +1,5 @@
-"""Contains the counts of RoadGPT's thesis, which reports show beside ours. Source: its section 6.1."""
+"""Contains the counts of RoadGPT's thesis, which reports show beside the new ones. Source: its section
+6.1."""
 
 from typing import NamedTuple
 
@@ -7,7 +8,10 @@ ROADS = 100  # of every prompt
 
 
 class Counted(NamedTuple):
-    """Of ``ROADS`` roads of one prompt: how many are valid, and on how many of these the car left."""
+    """The counts of one prompt, of which the thesis made 100 roads.
+
+    ``valid`` is the number of valid roads, and ``left`` the number of these on which the car left its lane.
+    """
 
     valid: int
     left: int
@@ -19,4 +23,4 @@ THESIS = {
     "an uphill road with 3 turns": Counted(57, 2),
     LONG: Counted(37, 5),
 }
-"""Counts by prompt, in the order of the thesis' table."""
+"""The counts of each prompt, in the order of the thesis' table."""

@@ -1,4 +1,5 @@
-"""Writes the report of a campaign; its store does the counting, so that a million tests stay in the file."""
+"""Writes the report of a campaign. The store counts the tests, so that a million of them need little
+memory."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -35,15 +36,15 @@ TABLES = ("results.csv", "cells.csv")
 
 
 def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
-    """Writes the report of a campaign and returns the path of its HTML page.
+    """Writes the report of a campaign into its folder and returns the path of the HTML page.
 
     Args:
         folder: the campaign's folder.
-        command: the command that makes the report again, for the report's card.
-        next_steps: what to try if nothing failed, as pairs of a description and a command.
+        command: the command that runs the campaign again, which the report shows; empty: none is shown.
+        next_steps: what to try if no test failed: pairs of a description and a command.
 
     Raises:
-        UsageError: there is no campaign, or it has no finished test.
+        UsageError: the folder holds no campaign, or the campaign has no finished test.
         RoadGPTError: a file cannot be written.
     """
     status = status_of(folder)

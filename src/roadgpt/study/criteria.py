@@ -1,13 +1,14 @@
-"""Checks which criteria a road keeps, as in the thesis' survey: turns, incline, order, and in general.
+"""Checks which criteria of its description a road keeps. The criteria are those of the thesis' survey and
+extent.
 
-    turns     how many, and how many to each side
-    incline   of the whole road, and of each turn and straight
-    order     sides of the turns, positions of the straights, first and last element
-    extent    degrees, radii and lengths
-    general   the whole description at once
+    turns     the number of turns, in all and to each side
+    incline   the grade of the whole road, and of each turn and straight
+    order     the sides of the turns, the positions of the straights, the first and the last element
+    extent    angles, radii and lengths
+    general   all of the description at once
 
-A criterion that a description does not mention is left out. Only a road with the right number of turns can
-keep the order and the incline of single turns.
+A criterion that the description does not mention is left out. A road with a wrong number of turns keeps
+neither the order nor the inclines of single turns.
 """
 
 from collections.abc import Callable, Mapping
@@ -44,7 +45,8 @@ KEYS: Mapping[str, Criterion] = {
     "min_radius": "extent",
     "turning": "extent",
 }
-"""The criterion of each key of a Truth. ``sequence``, ``starts`` and ``ends`` concern several criteria."""
+"""The criterion of each key of a Truth; the keys ``sequence``, ``starts`` and ``ends`` concern several
+criteria."""
 
 FIELDS: Mapping[Criterion, tuple[str, ...]] = {
     "turns": ("turns", "left", "right"),
@@ -52,13 +54,13 @@ FIELDS: Mapping[Criterion, tuple[str, ...]] = {
     "order": ("alternating",),
     "extent": ("each_turn", "length"),
 }
-"""The fields of an Outline that concern the whole road or every turn, by criterion."""
+"""The fields of an Outline that set requirements for the whole road or for every turn, by criterion."""
 
 Part = Callable[[Feature], Feature]
 
 
 def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
-    """Returns which criteria a measured road keeps, by a truth that people wrote down."""
+    """Returns for each criterion of a truth, which people wrote down, whether a measured road keeps it."""
     kept = holds(found, truth)
     out: dict[Criterion, bool] = {}
     for key, criterion in KEYS.items():
@@ -76,7 +78,7 @@ def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
 
 
 def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns which criteria a measured road keeps, by the requirements that a reader found."""
+    """Returns for each criterion of an Outline, which a reader found, whether a measured road keeps it."""
     out: dict[Criterion, bool] = {}
     for criterion, fields in FIELDS.items():
         own = {name: getattr(asked, name) for name in fields}

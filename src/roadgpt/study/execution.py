@@ -22,17 +22,17 @@ from roadgpt.study.plan import StudyPart, StudyPlan
 AT_ONCE = 200  # parts whose folders are locked together: a process may open about 1,000 files
 
 Tell = Callable[[int], object]
-"""Called with the number of finished roads of the study."""
+"""A function that is called with the number of finished roads of the study."""
 
 
 class Problem(NamedTuple):
-    """Why a part has no roads, or not all."""
+    """The reason why roads of a part are missing."""
 
     part: str
     """Name of the part's folder."""
     sentence: str
     is_of_chat: bool = False
-    """Whether a language model could not be asked."""
+    """True if the reason is that a language model could not be asked."""
 
 
 def work(
@@ -42,14 +42,14 @@ def work(
 
     Args:
         plan: the study.
-        folder: the study's folder.
-        workers: number of processes; 1: this one. Parts whose designer or reader asks a language model are
-            made in this process, one after another.
-        draw: draws pictures into the folders of runs.
-        tell: called with the progress.
+        folder: the study's folder, which exists.
+        workers: number of worker processes; 1: the roads are made in this process. Parts whose designer or
+            reader asks a language model are always made in this process, one after another.
+        draw: draws pictures into the folders of runs; None: no pictures.
+        tell: called after each road with the number of finished roads.
 
     Returns:
-        Why roads are missing; empty if all were made.
+        One Problem for each part that lacks roads; empty if all roads were made.
 
     Raises:
         GivenUpError: the simulator failed three times in a row; the same command makes these roads again.

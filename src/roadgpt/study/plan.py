@@ -1,4 +1,4 @@
-"""Defines a study and where its parts lie; ``study.json`` in its folder contains it."""
+"""Defines a study and its parts. The file ``study.json`` in a study's folder contains the definition."""
 
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -27,12 +27,12 @@ class StudyPart(NamedTuple):
 
     designer: str
     number: int
-    """Number of the prompt, from 1."""
+    """Number of the prompt in the study, from 1."""
     prompt: Prompt
 
     @property
     def name(self) -> str:
-        """The part's folder, relative to the study's, with forward slashes."""
+        """The path of the part's folder, relative to the study's folder, with forward slashes."""
         return f"{slug(self.designer)}/{self.number:02d}-{slug(self.prompt.prompt)[:LETTERS].strip('-')}"
 
 
@@ -48,14 +48,15 @@ class StudyPlan(Frozen):
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
-    """Who reads, drives and checks; ``designers`` replace its designer, and its rules are the strict ones."""
+    """Reader, driver, simulator and language model. ``setup_of`` replaces its designer and sets the
+    strict rules."""
     source: str = ""
-    """Name of the file with the prompts."""
+    """Name of the file with the prompts; empty for the thesis' prompts."""
     command: str = ""
     """The command that makes the study again."""
 
     def parts(self) -> tuple[StudyPart, ...]:
-        """Returns all parts, designer by designer."""
+        """Returns all parts: all prompts of the first designer, then those of the next."""
         return tuple(
             StudyPart(designer, number, prompt)
             for designer in self.designers
@@ -63,7 +64,8 @@ class StudyPlan(Frozen):
         )
 
     def setup_of(self, designer: str) -> Setup:
-        """Returns the setup with a designer; with a chat only if the designer or the reader asks a model."""
+        """Returns the setup for one designer, with settings of a language model only if designer or
+        reader asks one."""
         asks = asks_a_model(plugins.find("designers", designer)) or asks_a_model(
             plugins.find("readers", self.setup.reader.partition(":")[0])
         )
@@ -71,16 +73,19 @@ class StudyPlan(Frozen):
         return self.setup.model_copy(update={"designer": designer, "rules": "strict", "chat": chat})
 
     def essence(self) -> "StudyPlan":
-        """Returns the plan without what may differ when an interrupted study is resumed."""
+        """Returns the plan without the settings that may change when an interrupted study is resumed."""
         chat = self.setup.chat and self.setup.chat.essence()
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
 
 def open_folder(plan: StudyPlan, folder: Path) -> None:
-    """Creates a study's folder, or checks that an existing one belongs to the same study.
+    """Creates a study's folder, or checks that an existing folder holds the same study, and writes
+    ``study.json``.
+
+    A study that is resumed may have more roads and more designers.
 
     Raises:
-        UsageError: the folder contains something else, or cannot be created.
+        UsageError: the folder contains something else, or it cannot be created.
     """
     with explained(UsageError, f"cannot use {folder}", "name another folder"):
         folder.mkdir(parents=True, exist_ok=True)
@@ -110,10 +115,10 @@ def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:
 
 
 def read_plan(folder: Path) -> StudyPlan:
-    """Reads the plan from a study's folder.
+    """Returns the plan in a study's folder.
 
     Raises:
-        UsageError: there is no study, or its plan cannot be read.
+        UsageError: the folder holds no study, or the plan cannot be read.
     """
     try:
         card = read_json(folder / CARD, what="the card of a study")

@@ -1,4 +1,4 @@
-"""Reads files of descriptions and their truths: JSON lines with ``id``, ``prompt`` and ``truth``."""
+"""Reads files of descriptions and their truths: JSON lines with the keys ``id``, ``prompt`` and ``truth``."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -14,16 +14,16 @@ MOST = 10_000  # prompts of a file
 
 
 class Prompt(Frozen):
-    """A description and, if somebody wrote it down, what it asks for."""
+    """A description, and what it asks for if somebody wrote that down."""
 
     id: str = Field(min_length=1, max_length=80)
     prompt: str = Field(min_length=1, max_length=10_000)
     truth: Truth | None = None
-    """None: roads are checked against what the reader reads."""
+    """What the description asks for; None: roads are compared with the requirements that the reader finds."""
 
 
 def read_prompts(path: Path) -> tuple[Prompt, ...]:
-    """Returns the prompts of a file in their order.
+    """Returns the prompts of a file, in the order of the file.
 
     Raises:
         UsageError: the file cannot be read; the message names the line and the mistake.
@@ -38,7 +38,7 @@ def read_prompts(path: Path) -> tuple[Prompt, ...]:
 
 
 def thesis_prompts() -> tuple[Prompt, ...]:
-    """Returns the three descriptions of the thesis' table of validity and the two others of its survey."""
+    """Returns the three descriptions of the thesis' table of valid roads, and two more from its survey."""
     text = files("roadgpt.study").joinpath("data/thesis.jsonl").read_text(encoding="utf-8")
     return _prompts(list(enumerate(text.splitlines(), 1)), "thesis.jsonl")
 

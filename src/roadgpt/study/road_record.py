@@ -1,4 +1,5 @@
-"""Reads from each run what a report needs: validity by every set of rules, the drive, measured geometry."""
+"""Reads from each run what a report needs: validity by each set of rules, the drive, the measured
+geometry."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,7 +28,7 @@ Array = NDArray[np.float64]
 
 DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
-"""The road that is measured where there is none, to learn which criteria a description mentions."""
+"""A straight of 30 m that is measured if there is no road, to learn which criteria a description mentions."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,45 +37,43 @@ class RoadRecord:
 
     index: int
     folder: str
-    """Folder of its run, relative to the report's, with forward slashes."""
+    """The folder of the road's run, relative to the report's folder, with forward slashes."""
     outcome: str
     says: str
     """The outcome as a sentence."""
     is_valid: bool
-    """Whether the road breaks no strict rule."""
+    """True if the road breaks no strict rule."""
     is_sound: bool
-    """Whether the road breaks no strict rule except the description's requirements.
-
-    The thesis did not check these.
-    """
+    """True if the road breaks no strict rule, except that it may miss requirements of the description."""
     is_sbft: bool
-    """Whether the road passes the SBFT competition's validator."""
+    """True if the road passes the SBFT competition's validator."""
     sbft_says: str
-    """The first objection of that validator; empty if there is none."""
+    """The first objection of the competition's validator; empty if there is none."""
     has_left: bool
-    """Whether the car left its lane or fell."""
+    """True if the car left its lane or fell."""
     margin: float | None
-    """Least distance of the car to out of bounds, metres, negative if it failed; None if it did not drive."""
+    """Smallest distance of the car to out of bounds, metres, negative if it failed; None if it was not
+    driven."""
     points: Array
-    """Centre line ``(n, 2)``, metres; empty if there is no road."""
+    """Points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road."""
     failed_at: tuple[float, float] | None
-    """Where the car failed, metres; None if it did not."""
+    """Position ``(x, y)`` where the car failed, metres; None if it did not fail."""
     kept: Mapping[Criterion, bool]
-    """Whether the road keeps each criterion that the description mentions."""
+    """For each criterion that the description mentions, True if the road keeps it."""
     likeness: Likeness | None
-    """The properties that are compared with those of other roads; None if the road cannot be compared."""
+    """The properties that are compared with those of other roads; None if there is no road to compare."""
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of the competition's feature maps."""
+    """Features of the SBFT competition's feature maps, by name; empty if they are not known."""
     versions: Mapping[str, str] = field(default_factory=dict)
-    """Versions of RoadGPT and of the libraries that made the run."""
+    """Versions of RoadGPT and of the libraries that made the run, by name."""
     max_oob: float | None = None
-    """Largest share of the car outside its lane, 0 to 1; None if the road was not driven."""
+    """Largest share of the car's bounding box outside its lane, 0 to 1; None if the road was not driven."""
     beyond: float | None = None
-    """Largest distance of the car beyond the lane marking, metres."""
+    """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
 
     @property
     def is_driven(self) -> bool:
-        """Whether the road was driven to a verdict."""
+        """True if the road was driven and the drive was judged."""
         return self.outcome in ("PASS", "FAIL")
 
 
@@ -85,11 +84,11 @@ class StudyPartRecord:
     part: StudyPart
     roads: tuple[RoadRecord, ...]
     home: str = ""
-    """The part's folder, relative to the report's."""
+    """The part's folder, relative to the report's folder; empty if they are the same."""
     problem: str = ""
-    """Why roads are missing; empty if none is."""
+    """Why roads are missing; empty if none is missing."""
     picture_format: str = ""
-    """Format of the roads' pictures; empty if there are none."""
+    """Format of the roads' pictures, such as "png"; empty if there are no pictures."""
     wanted: int = 1
     """Number of roads that were asked for."""
 
@@ -104,13 +103,14 @@ class StudyPartRecord:
         return self.part.designer
 
     def count(self, which: str) -> int:
-        """Returns the number of roads with a property: is_valid, is_sound, is_sbft, has_left or is_driven."""
+        """Returns the number of roads with a property of RoadRecord, such as "is_valid" or "has_left"."""
         return sum(getattr(road, which) for road in self.roads)
 
     def kept(self, criterion: Criterion) -> list[bool]:
-        """Returns for each road whether it keeps a criterion; empty if the description does not mention it.
+        """Returns for each road whether it keeps a criterion; empty if the description does not mention
+        the criterion.
 
-        A missing road keeps nothing: a prompt without any road counts with as many roads as were asked for.
+        If no road could be made, the list for "general" contains False for each road that was asked for.
         """
         found = [road.kept[criterion] for road in self.roads if criterion in road.kept]
         return found if self.roads or criterion != "general" else [False] * self.wanted
@@ -122,7 +122,7 @@ class StudyPartRecord:
 
     @property
     def overview(self) -> str:
-        """Address of the picture or table of all roads."""
+        """The address of the picture of all roads, or of their table if no picture was drawn."""
         name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
         return f"{self.home}/{name}".lstrip("/")
 
@@ -135,8 +135,8 @@ def read_part(
     Args:
         place: the folder of runs.
         part: the description and the designer.
-        home: the folder, relative to that of the report; empty: the report lies in it.
-        problem: why roads are missing; empty if none is.
+        home: path of the folder, relative to the report's folder; empty if they are the same.
+        problem: why roads are missing; empty if none is missing.
         wanted: number of roads that were asked for.
 
     Raises:
@@ -178,13 +178,13 @@ def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, floa
 def kept_of(
     road: Road | None, brief: Brief | None, world: World, truth: Truth | None = None
 ) -> dict[Criterion, bool]:
-    """Returns whether a road keeps each criterion of a description.
+    """Returns for each criterion of a description whether a road keeps it.
 
     Args:
         road: the road; None: all criteria are False.
-        brief: what the reader read; None: only the truth counts.
-        world: the map, which limits what can be asked for.
-        truth: what people wrote down; if given, it counts, and not the Brief.
+        brief: the requirements that the reader found; None if the description was not read.
+        world: the world of the road; the size of its map affects some requirements.
+        truth: what people wrote down; if it is given, the road is compared with it and not with the brief.
     """
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1

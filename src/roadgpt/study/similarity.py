@@ -1,16 +1,19 @@
-"""Measures how similar two roads are, in the criteria of the thesis' survey, each from 0 to 1.
+"""Measures how similar two roads are, by criteria of the thesis' survey, each from 0 to 1.
 
-    turns       the smaller number of turns over the larger
-    sequence    1 less the edit distance of left turns, right turns and straights in order, over the longer
-    direction   the same of the sides of the turns alone
-    length      the shorter over the longer, in plan
-    incline     halves with every 2 percentage points between the grades at equal shares of both lengths
-    shape       halves with every 5.5 m (root mean square) between the plans at equal shares of both lengths,
-                after the best shift and turn
-    general     the mean of all six
+    turns       the smaller number of turns divided by the larger one
+    sequence    1 - d / n, where d is the edit distance between the two sequences of left turns, right turns
+                and straights, and n is the length of the longer sequence
+    direction   the same as sequence, with left and right turns only
+    length      the shorter length in plan divided by the longer one
+    incline     1 for equal grades; halves for every 2 percentage points of mean difference in grade, compared
+                at equal fractions of each road's length
+    shape       1 for equal plans; halves for every 5.5 m of distance (root mean square) between the plans,
+                compared at equal fractions of each road's length after the best shift and rotation
+    general     the mean of these six
 
-Two roads are near duplicates where shape and incline are both 0.5 or more and the number of turns is the
-same: nobody who sees one after the other would take them for two tests. Mirroring is allowed where asked.
+Two roads are near duplicates if their numbers of turns are equal and shape and incline are both at least 0.5:
+nobody who sees both would take them for two tests. Mirror images count as similar only if the caller asks for
+it.
 """
 
 from collections.abc import Sequence
@@ -38,7 +41,8 @@ CRITERIA = ("turns", "sequence", "direction", "length", "incline", "shape", "gen
 
 @dataclass(frozen=True)
 class Similarity:
-    """How similar two roads are: six criteria from 0 to 1, and the two distances behind them."""
+    """How similar two roads are: six criteria from 0 to 1, and the distances from which two of them
+    follow."""
 
     turns: float
     sequence: float
@@ -47,7 +51,7 @@ class Similarity:
     incline: float
     shape: float
     metres: float
-    """Distance between the plans, metres root mean square, after the best shift and turn."""
+    """Distance between the plans after the best shift and rotation, root mean square in metres."""
     points: float
     """Mean difference between the grades, percentage points."""
 
@@ -59,13 +63,13 @@ class Similarity:
 
     @property
     def is_duplicate(self) -> bool:
-        """Whether the two roads are near duplicates."""
+        """True if the two roads are near duplicates."""
         return self.turns == 1.0 and min(self.shape, self.incline) >= 0.5
 
 
 @dataclass(frozen=True, eq=False)
 class Likeness:
-    """The properties of one road that are compared."""
+    """The properties of one road that are compared with those of another."""
 
     length: float
     """Length in plan, metres."""
@@ -73,13 +77,13 @@ class Likeness:
     """Left turns, right turns and straights in driving order, as the letters L, R and S."""
     shape: PlanShape
     grades: Array
-    """Grades in percent, at the middle of as many equal shares of the length as ``shape`` has points."""
+    """Grades in percent ``(80,)``, in the middle of 80 equal parts of the road."""
     steps: Array
-    """Change of direction in degrees and length in metres, every 5 m."""
+    """Change of direction (degrees) and length (metres) of each step of 5 m, ``(n, 2)``."""
 
     @property
     def sides(self) -> str:
-        """The turns alone, as the letters L and R."""
+        """The turns of ``sequence`` without the straights, as the letters L and R."""
         return self.sequence.replace("S", "")
 
 
@@ -87,7 +91,7 @@ def likeness(road: Road) -> Likeness:
     """Returns the properties of a road that are compared.
 
     Raises:
-        UsageError: it has no two different points.
+        UsageError: the road has fewer than two different points.
     """
     points = road.centreline()
     if len(points) < 2:
@@ -107,7 +111,13 @@ def likeness(road: Road) -> Likeness:
 
 
 def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similarity:
-    """Returns how similar two roads are, wherever they lie and, if asked, mirrored or not."""
+    """Returns how similar two roads are; neither their position nor their orientation matters.
+
+    Args:
+        one: properties of a road.
+        other: properties of another road.
+        mirror: True if a road and its mirror image count as the same.
+    """
     metres = plan_apart(one.shape, other.shape, mirror)
     points = float(np.abs(one.grades - other.grades).mean())
     return Similarity(
@@ -123,7 +133,13 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
 
 
 def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
-    """Returns the distance between two plans after the best shift and turn, metres root mean square."""
+    """Returns the distance between two plans after the best shift and rotation, root mean square in metres.
+
+    Args:
+        one: a plan.
+        other: another plan.
+        mirror: True if a plan and its mirror image count as the same.
+    """
     turned = float(abs(np.vdot(one.shares, other.shares)))
     if mirror:
         turned = max(turned, float(abs(np.vdot(one.shares, other.shares.conj()))))
@@ -148,7 +164,8 @@ def _alike(one: str, other: str, mirror: bool) -> float:
 
 
 def edits(one: str, other: str) -> int:
-    """Returns the Levenshtein distance of two words: letters to add, remove or replace."""
+    """Returns the Levenshtein distance of two words: the least number of letters to add, remove or
+    replace."""
     row = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
         before, row[0] = row[0], i
@@ -159,27 +176,33 @@ def edits(one: str, other: str) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """How different the roads of one description are, each compared with each other one."""
+    """How different the roads of one description are."""
 
     metres: Array
-    """Distances ``(n, n)`` between plans, metres root mean square; NaN on the diagonal."""
+    """Distances ``(n, n)`` between the plans of n roads, root mean square in metres; NaN on the diagonal."""
     duplicates: tuple[tuple[int, int], ...]
-    """Indices of the pairs that are near duplicates."""
+    """Pairs of indices of roads that are near duplicates."""
     sparseness: float
-    """Mean distance of each road to the most different one, by the SBFT measure in steps of 5 m."""
+    """Mean over all roads of the distance to the most different road, by the SBFT measure in steps of 5 m."""
     general: float
-    """Mean similarity of all pairs; NaN for fewer than two roads."""
+    """Mean similarity of all pairs of roads; NaN for fewer than two roads."""
 
     @property
     def nearest(self) -> Array:
-        """Distance of each road to the one nearest to it, metres ``(n,)``; NaN if there is no other."""
+        """Distance of each road to the road most similar to it, metres ``(n,)``; NaN if there is only one
+        road."""
         if len(self.metres) < 2:
             return np.full(len(self.metres), np.nan)
         return np.asarray(np.nanmin(self.metres, axis=1))
 
 
 def spread(roads: Sequence[Likeness], mirror: bool = True) -> Spread:
-    """Compares all pairs of roads; by default, mirrored roads count as the same."""
+    """Compares all pairs of roads.
+
+    Args:
+        roads: the properties of each road.
+        mirror: True if a road and its mirror image count as the same.
+    """
     n = len(roads)
     found = {(i, j): similarity(roads[i], roads[j], mirror) for i, j in combinations(range(n), 2)}
     metres, apart = np.full((n, n), np.nan), np.zeros((n, n))
@@ -201,12 +224,12 @@ class Between:
 
     general: float
     metres: float
-    """Distance of the nearest pair, metres."""
+    """Distance between the plans of the most similar pair, root mean square in metres."""
     duplicates: int
 
 
 def between(ones: Sequence[Likeness], others: Sequence[Likeness], mirror: bool = True) -> Between:
-    """Compares every road of one description with every road of another."""
+    """Compares every road of one description with every road of another description."""
     found = [similarity(one, other, mirror) for one in ones for other in others]
     general = float(np.mean([each.general for each in found])) if found else nan
     nearest = min((each.metres for each in found), default=nan)

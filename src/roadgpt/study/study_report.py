@@ -41,16 +41,16 @@ Found = Sequence[Compared]
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
-    """Writes down why roads are missing, so that later reports can say it."""
+    """Writes why roads are missing into the study's folder, so that later reports can show it."""
     sentences = {problem.part: problem.sentence for problem in problems}
     write_whole(folder / PROBLEMS, json_text(sentences))
 
 
 def write_study(folder: Path) -> Path:
-    """Writes the report of a study and returns the path of its HTML page.
+    """Writes the report of a study into its folder and returns the path of the HTML page.
 
     Raises:
-        UsageError: there is no study, or one of its runs cannot be read.
+        UsageError: the folder holds no study, or one of its runs cannot be read.
         RoadGPTError: a file cannot be written.
     """
     plan = read_plan(folder)
@@ -72,7 +72,13 @@ def _problems(folder: Path) -> Mapping[str, str]:
 
 
 def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> Page:
-    """Returns the page with the report of a study."""
+    """Returns the page with the report of a study.
+
+    Args:
+        plan: the study.
+        parts: the roads of each part.
+        found: for each part, the compared roads and how different they are.
+    """
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
     kept, first = alignment(parts, plan.designers), overview(parts, found, plan.world.map_size)
@@ -158,15 +164,15 @@ def _different(found: Found) -> str:
 
 
 def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
-    """Writes the report of a folder of ``roadgpt run`` into it and returns the path of its HTML page.
+    """Writes the report of a folder of ``roadgpt run`` into it and returns the path of the HTML page.
 
     Args:
         folder: the folder of runs.
-        command: the command that makes the runs again, for the report's card.
-        next_steps: what to try if nothing failed, as pairs of a description and a command.
+        command: the command that makes the runs again, which the report shows; empty: none is shown.
+        next_steps: what to try if no road failed: pairs of a description and a command.
 
     Raises:
-        UsageError: there are no runs, or one of them cannot be read.
+        UsageError: the folder holds no finished run, or a run cannot be read.
         RoadGPTError: a file cannot be written.
     """
     card = read_card(folder)

@@ -1,7 +1,7 @@
-"""Defines the truth about a description: what it asks for, as people wrote it down before they saw a road.
+"""Defines a truth: what a description asks for, as people wrote it down before they saw a road.
 
-Its keys are those of the project's referee, an independent judge of roads, and mean the same: tests compare
-``holds`` with the referee, key by key. The keys are documented in docs/how-to/evaluate-roads.md.
+The keys and their meaning are those of the project's referee, an independent judge of roads; tests compare
+``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys.
 """
 
 from dataclasses import replace
@@ -24,9 +24,9 @@ SLOPES = {
     "flat": Range(nextafter(-1.0, 0.0), nextafter(1.0, 0.0)),
 }
 FREE = Outline(groups=(), turns=Range())
-"""The Outline that requires nothing."""
+"""An Outline without any requirement."""
 CALLED = {"max_grade": "steepest", "hilly": "hills"}
-"""Fields of an Outline that have another name than the key of a Truth."""
+"""The fields of an Outline whose names differ from the keys of a Truth, by key."""
 
 
 def _pair(value: Any) -> Any:
@@ -56,7 +56,7 @@ Slope = Literal["up", "down", "flat"]
 
 
 class ExpectedElement(Frozen):
-    """One turn or one straight that a description asks for."""
+    """One turn or one straight that a description asks for; a field that is None sets no requirement."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
@@ -69,35 +69,35 @@ class ExpectedElement(Frozen):
 
 
 class Truth(Frozen):
-    """What a road must keep; each key that is given is checked on its own."""
+    """What a road must keep; each key that is not None is checked separately."""
 
     turns: Bounds | None = None
     left: Bounds | None = None
     right: Bounds | None = None
     grade: Slope | None = None
     sequence: tuple[ExpectedElement, ...] | None = None
-    """All turns in their order, with the straights that were asked for among them."""
+    """All turns in their order, and the straights that were asked for between them."""
     ends: ExpectedElement | None = None
     starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
     max_grade: Bounds | None = None
-    """Grade of the steepest 10 m, percent, up or down."""
+    """Grade of the steepest 10 m, percent, uphill or downhill."""
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
-    """Number of changes between climbing and falling; a number alone is a lower bound."""
+    """Number of changes between climbing and falling; a single number is a lower bound."""
     min_radius: Bounds | None = None
     """Smallest radius of the road, metres."""
     turning: Bounds | None = None
-    """Sum of all changes of heading, degrees."""
+    """Sum of the absolute changes of heading, degrees."""
 
     def given(self) -> tuple[str, ...]:
-        """Returns the names of the keys that are given."""
+        """Returns the names of the keys that are not None."""
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
 
 def feature_of(wish: ExpectedElement | None) -> Feature | None:
-    """Returns an element as the Feature of an Outline."""
+    """Returns an expected element as a Feature of an Outline; None for None."""
     if wish is None:
         return None
     return Feature(
@@ -112,12 +112,13 @@ def feature_of(wish: ExpectedElement | None) -> Feature | None:
 
 
 def groups_of(truth: Truth) -> tuple[Group, ...]:
-    """Returns the sequence as the groups of an Outline; empty if none is given."""
+    """Returns the key ``sequence`` as the groups of an Outline; empty if the key is None."""
     return tuple(Group(feature) for wish in truth.sequence or () if (feature := feature_of(wish)))
 
 
 def holds(found: Measures, truth: Truth) -> dict[str, bool]:
-    """Returns for each key of the truth whether a measured road keeps it; a road below 20 m keeps none."""
+    """Returns for each key of a truth whether a measured road keeps it; a road shorter than 20 m keeps no
+    key."""
     return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
 
 
@@ -140,7 +141,10 @@ def _holds(found: Measures, truth: Truth, key: str) -> bool:
 
 
 def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Returns whether the groups name all turns of a road in their order, and the straights between them."""
+    """Returns whether a road has the turns of the groups in their order, and the straights between them.
+
+    If every group names exactly one element, the road must not have more turns.
+    """
     turns = sum(group.feature.kind == "turn" for group in groups)
     exact = all(group.lo == group.hi == 1 for group in groups)
     if exact and len(found.turns) != turns:

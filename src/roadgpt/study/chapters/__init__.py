@@ -1,1 +1,1 @@
-"""Makes the sections of a study's report, one file each. A section takes values and returns a Section."""
+"""The sections of the reports of studies, runs and campaigns: one file for each section or two."""

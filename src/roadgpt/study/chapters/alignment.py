@@ -1,4 +1,4 @@
-"""Makes the section on alignment: whether roads meet their descriptions, criterion by criterion."""
+"""Makes the section on alignment: how many roads meet their descriptions, criterion by criterion."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ Parts = Sequence[StudyPartRecord]
 
 
 def alignment(parts: Parts, designers: Sequence[str]) -> Section:
-    """Returns the section: shares by criterion and by prompt, and the roads that break a requirement."""
+    """Returns the section: shares by criterion and by prompt, and a list of roads that miss a requirement."""
     some = [designer for designer in designers if any(part.roads for part in _of(parts, designer))]
     prompts = [part.part.prompt for part in _of(parts, designers[0])]
     known = sum(prompt.truth is not None for prompt in prompts)

@@ -1,4 +1,4 @@
-"""Makes the section on the boundary: similar roads of which the car kept its lane on only one."""
+"""Makes the section on the boundary: pairs of similar roads, on only one of which the car kept its lane."""
 
 import shlex
 from collections.abc import Sequence
@@ -28,7 +28,8 @@ EXPLAINED = (
 
 
 class Side(NamedTuple):
-    """A nearest pair of a cell, with the results of both roads."""
+    """A pair of similar roads of one cell, with the results of both tests: ``kept`` passed, and ``lost``
+    failed."""
 
     cell: str
     pair: BoundaryPair
@@ -37,7 +38,8 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns the nearest pairs of every cell, cell by cell; see ``campaign.boundary_pairs``."""
+    """Returns the pairs with the smallest distances of every cell; ``campaign.boundary_pairs`` defines
+    the distance."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))
@@ -48,7 +50,8 @@ def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
 
 
 def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """Returns a sentence on the nearest pair, for the summary; empty if there is no pair."""
+    """Returns a sentence on the pair with the smallest distance, for the summary; empty if there is no
+    pair."""
     if not pairs:
         return []
     best = min(pairs, key=lambda side: side.pair.distance)
@@ -60,7 +63,8 @@ def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
 
 
 def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
-    """Returns a table of all pairs and of what differs most between their roads; empty if there is none."""
+    """Returns a table of the pairs that shows what differs most between their roads; empty if there is no
+    pair."""
     if not pairs:
         return []
     rows = [_row(folder, *side) for side in pairs]

@@ -1,4 +1,5 @@
-"""Makes the sections on many tests: failures, margins and coverage. The store counts."""
+"""Makes the sections on the tests of a campaign: failures, margins and feature maps. The store counts
+them."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -24,16 +25,16 @@ MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is i
 def failures(
     folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
 ) -> list[Block]:
-    """Returns when failures were found, why the car failed, and a table of single failures.
+    """Returns a chart of the failures found over time, a table of causes, and a table of single failures.
 
-    The table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
-    worse than another, and the table lists the first ones.
+    The last table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
+    worse than another, and the table lists the first failures.
 
     Args:
         folder: the campaign's folder.
         record: the campaign's tests.
-        cells: the cells whose curves are drawn.
-        drives_on: whether cars drive on after they have left their lane.
+        cells: the cells whose failures are drawn in the chart.
+        drives_on: True if cars drive on after they have left their lane.
     """
     blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
     order = "margin IS NULL, margin, cell, number" if drives_on else "cell, number"
@@ -77,7 +78,8 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
 
 
 def again(folder: Path, name: str, number: int) -> str:
-    """Returns the address of the picture of a test that was driven again; empty if it was not."""
+    """Returns the address of the picture of a test that was driven again; empty if there is no such
+    picture."""
     place = f"again/{name}/runs/{number:04d}/birds_eye.png"
     return place if (folder / place).is_file() else ""
 
@@ -126,7 +128,7 @@ def _causes(record: Record, drives_on: bool) -> Table:
 
 
 def margins(record: Record, drives_on: bool = False) -> Figure:
-    """Returns a histogram of the margins of all tests."""
+    """Returns a histogram of the margins of all tests, in metres; a margin is negative if the car failed."""
     low, high, width = MARGINS
     n = round((high - low) / width)
     found: Mapping[int, int] = dict(
@@ -150,7 +152,7 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Returns maps of two features each, from an even sample of tests; empty if no features are known."""
+    """Returns feature maps of an even sample of the tests; empty if the tests have no features."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     part = f" of every {every:,}th test" if every > 1 else ""

@@ -1,4 +1,5 @@
-"""Makes the card of a report: command, seeds, versions, and the hashes of the reader's network."""
+"""Makes the list of what is needed to repeat a report: command, seed, versions, hashes of the reader's
+network."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -16,14 +17,15 @@ UNITS = {
     "friction": (1.0, ""),
     "oob_tolerance": (1.0, ""),
 }
-"""Factor and unit in which a field is shown; fields that are not listed are in metres."""
+"""Factor and unit with which a field of the World is shown; fields that are not listed are in metres."""
 WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 
 
 def card_of(
     command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
 ) -> dict[str, str]:
-    """Returns the lines of the card by their names."""
+    """Returns what is needed to repeat a report: names and texts, in the order in which the page shows
+    them."""
     out = {"command": command} if command else {}
     out |= {
         "seed": str(seed),

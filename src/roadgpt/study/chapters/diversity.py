@@ -1,4 +1,5 @@
-"""Makes the section on diversity: how different the roads of a description are, and of two descriptions."""
+"""Makes the section on diversity: how different the roads of one description, and of two descriptions,
+are."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -19,13 +20,14 @@ MOST_DRAWN = 30  # parts whose distances are drawn
 
 
 def spread_of(part: StudyPartRecord) -> Compared:
-    """Returns the roads of a part that are compared, and how different they are."""
+    """Returns the roads of a part that are compared, 150 at most, and how different they are."""
     roads = [road for road in part.roads if road.likeness is not None][:MOST]
     return roads, spread([road.likeness for road in roads if road.likeness is not None])
 
 
 def diversity(parts: Sequence[StudyPartRecord], found: Sequence[Compared]) -> Section:
-    """Returns the section: distances within every part, near duplicates, and distances between prompts."""
+    """Returns the section: differences within every part, near duplicates, and differences between
+    descriptions."""
     blocks: list[Block] = [
         "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
         "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "

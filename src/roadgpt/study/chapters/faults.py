@@ -49,7 +49,8 @@ Steps = Sequence[tuple[str, str]]
 
 
 class FaultSummary(NamedTuple):
-    """One fault, with a typical failure and, if ``roadgpt faults`` analysed it, the analysis."""
+    """One fault, with a typical failure and the analysis that ``roadgpt faults`` made of it; None if it
+    made none."""
 
     fault: Fault
     run: Run
@@ -57,7 +58,7 @@ class FaultSummary(NamedTuple):
     name: NumberedTest
     looked: FailureAnalysis | None
     why: FailureReason | None
-    """None if the drive is not known."""
+    """Why the car failed; None if the drive cannot be read."""
 
     @property
     def reason(self) -> str:
@@ -66,7 +67,7 @@ class FaultSummary(NamedTuple):
 
 
 def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
-    """Returns a summary of each fault of a folder, up to ``LISTED`` faults.
+    """Returns a summary of each fault of a folder, for 300 faults at most.
 
     Raises:
         UsageError: a run, or a file that ``roadgpt faults`` has written, cannot be read.
@@ -91,7 +92,8 @@ def _run_of(folder: Path, name: NumberedTest) -> Run:
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
-    """Returns the first lines of a report: how many faults there are and how stable they are."""
+    """Returns the first sentences of a report: the number of faults, and how many of them fail again when
+    repeated."""
     if not found.failures:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
@@ -101,7 +103,8 @@ def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
 
 
 def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
-    """Returns the section: a gallery of the most frequent faults, and a table; None if there is no fault."""
+    """Returns the section: pictures of the most frequent faults, and a table of all; None if there is no
+    fault."""
     if not summaries:
         return None
     blocks: list[Block] = [f"{DEFINED} {DRAWN}"]
@@ -183,7 +186,7 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
 
 
 def what_to_try(steps: Steps) -> list[Section]:
-    """Returns a section with the commands to try if no road failed; empty if there are none."""
+    """Returns a section with the commands to try if no road failed; empty if no commands are given."""
     if not steps:
         return []
     caption = "No road failed; what may find one that does"

@@ -1,4 +1,4 @@
-"""Reports how far the car was outside its lane on tests that it passed, within the tolerance."""
+"""Reports how far the car was outside its lane in tests that it passed because of the tolerance."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,18 +15,20 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """Passed tests of one severity."""
+    """The passed tests of one severity: how many there are, and how far outside its lane the car was at
+    most."""
 
     severity: Severity
     tests: int
     share: float
-    """Largest share of the car that was outside its lane, 0 to 1."""
+    """Largest share of the car's bounding box outside its lane, 0 to 1."""
     beyond: float | None
-    """Largest distance beyond the lane marking, metres; None if it is not known."""
+    """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Counts the passed roads of a study by severity."""
+    """Counts the passed roads of a study by severity; returns one ``Passed`` for each severity, the
+    mildest first."""
     kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
     found = []
     for name in SEVERITIES:
@@ -38,7 +40,8 @@ def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
 
 
 def passed_tests(record: Record) -> list[Passed]:
-    """Counts the passed tests of a campaign by severity, in its store."""
+    """Counts the passed tests of a campaign by severity in its store; returns the same as
+    ``passed_roads``."""
     rows = record.query(
         "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
         "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",
@@ -49,7 +52,8 @@ def passed_tests(record: Record) -> list[Passed]:
 
 
 def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
-    """Returns a sentence for the summary; empty if no test passed."""
+    """Returns a sentence on how far the car was outside its lane, for the summary; empty if no test
+    passed."""
     inside, partly, mostly = found
     every = sum(each.tests for each in found)
     if not every:
@@ -69,7 +73,7 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
 
 
 def outside_table(found: Sequence[Passed]) -> list[Table]:
-    """Returns the counts as a table; empty if no test passed."""
+    """Returns the counts by severity as a table; empty if no test passed."""
     every = sum(each.tests for each in found)
     if not every:
         return []

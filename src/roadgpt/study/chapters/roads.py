@@ -1,4 +1,5 @@
-"""Makes the sections that show roads: the first one, every road as a small map, and feature maps."""
+"""Makes the sections that show roads: the first section of a report, all roads as thumbnails, feature
+maps."""
 
 from collections.abc import Sequence
 
@@ -17,7 +18,8 @@ SIDE = 3  # roads along each side of one of them
 MOST, MOST_PARTS = 100, 30  # roads in a picture of all roads, and such pictures
 CELLS = 25  # along each side of a feature map
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
-"""Pairs of features that are mapped: across, upwards."""
+"""Pairs of features, each shown as one map: the first along the horizontal axis, the second along the
+vertical."""
 LABELS = {
     "MAX_CURV": "largest curvature, 1/m",
     "DIR_COV": "share of directions",
@@ -25,14 +27,14 @@ LABELS = {
     "MEAN_LP": "mean distance to the lane's edge, m",
 }
 BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0), "MEAN_LP": (0.0, 2.5)}
-"""Bounds of the feature maps of studies."""
+"""Smallest and largest value of each feature on the maps of studies; values beyond count at the edge."""
 
 Compared = tuple[list[RoadRecord], Spread]
-"""The roads of a part that are compared, and how different they are."""
+"""The roads of a part that are compared with each other, and how different they are."""
 
 
 def overview(parts: Sequence[StudyPartRecord], found: Sequence[Compared], size: float) -> Section | None:
-    """Returns three pictures of roads and one table row for each description; None if there are no roads.
+    """Returns pictures of roads of three parts and a table row for every part; None if there are no roads.
 
     Args:
         parts: the parts of the study.
@@ -86,7 +88,8 @@ def _thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
 
 
 def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
-    """Returns every road as a small map that links to its run; ``size`` is the side of the map, metres."""
+    """Returns a section with a thumbnail of every road, which links to its run; ``size``: side of the
+    map, metres."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "
@@ -103,7 +106,7 @@ def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
 
 
 def coverage(parts: Sequence[StudyPartRecord]) -> Section | None:
-    """Returns feature maps of all roads together, by designer; None if no road has features."""
+    """Returns feature maps of all roads of each designer; None if no road has features."""
     blocks: list[Block] = []
     for designer in dict.fromkeys(part.designer for part in parts):
         roads = [road.features for part in parts if part.designer == designer for road in part.roads]
@@ -129,13 +132,13 @@ def feature_map(
     what: str,
     caption: str,
 ) -> list[Block]:
-    """Returns a map of two features as a figure; empty if it would show nothing.
+    """Returns a map of two features as a figure; empty if the map would show nothing.
 
     Args:
         name: first part of the name of its file.
-        counts: number in each cell ``(CELLS, CELLS)``; rows are the second feature.
-        pair: the features across and upwards.
-        bounds: the least and largest value of each feature on the map.
+        counts: number of roads or tests in each map cell, ``(CELLS, CELLS)``; rows are the second feature.
+        pair: the features along the horizontal and the vertical axis.
+        bounds: smallest and largest value of each feature on the map.
         what: what is counted, such as "roads".
         caption: its caption, in which {} stands for the number of filled cells.
     """

@@ -1,4 +1,4 @@
-"""Tests whether a count depends on the description, by a contingency table as in the thesis."""
+"""Tests whether a count depends on the description, with a contingency table as in the thesis."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -9,24 +9,24 @@ from roadgpt.study.statistics import LEVEL, ChiSquared, chi_squared, exact, tren
 
 
 class Count(NamedTuple):
-    """The number of roads of one prompt that have a property."""
+    """The number of roads of one prompt that have a property, such as being valid."""
 
     prompt: str
     hits: int
     """Number of roads with the property."""
     total: int
-    """Number of roads."""
+    """Number of roads with or without the property."""
     href: str = ""
     """Address of the picture or table of these roads; empty for no link."""
 
 
 class Source(NamedTuple):
-    """The counts of one designer, prompt by prompt in the order of the table."""
+    """The counts of one designer, or of the thesis, for each prompt in the order of the table."""
 
     name: str
     counts: tuple[Count, ...]
     slug: str
-    """Its name in the names of files."""
+    """The source's name in the names of files."""
 
     @property
     def hits(self) -> int:
@@ -44,7 +44,7 @@ class Source(NamedTuple):
 
 
 def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """Returns the contingency table with expected values and terms, and a paragraph with the test results.
+    """Returns the contingency table with expected counts and terms, and a paragraph with the test results.
 
     Args:
         source: the counts.

@@ -1,4 +1,4 @@
-"""Makes the sections that count roads by prompt: which are valid, and on which the car left its lane."""
+"""Makes the sections that count roads by prompt: valid roads, and roads on which the car left its lane."""
 
 import textwrap
 from collections.abc import Callable, Sequence
@@ -29,12 +29,13 @@ Parts = Sequence[StudyPartRecord]
 
 
 class Kind(NamedTuple):
-    """A set of rules by which roads are counted as valid."""
+    """A set of rules by which roads are counted as valid: its names in files and in reports, and its
+    property."""
 
     slug: str
     name: str
     which: str
-    """Name of the property of a RoadRecord."""
+    """Name of the boolean property of a RoadRecord."""
 
 
 STRICT = Kind("strict", "strict rules", "is_valid")
@@ -59,12 +60,12 @@ def _source(parts: Parts, designer: str, which: str, of: str, name: str, slug: s
 
 
 def valid_source(designer: str, parts: Parts, kind: Kind) -> Source:
-    """Counts the roads of a designer that are valid by one set of rules."""
+    """Counts the roads of one designer that are valid by one set of rules, for each prompt."""
     return _source(parts, designer, kind.which, "", f"{designer}, {kind.name}", f"{designer}-{kind.slug}")
 
 
 def left_source(designer: str, parts: Parts) -> Source:
-    """Counts the drives on valid roads of a designer on which the car left its lane."""
+    """Counts the drives of one designer's valid roads in which the car left its lane, for each prompt."""
     return _source(parts, designer, "has_left", "is_driven", designer, designer)
 
 
@@ -77,11 +78,12 @@ THESIS_VALID = Source(
 THESIS_LEFT = Source(
     NAME, tuple(Count(prompt, own.left, own.valid) for prompt, own in THESIS.items()), "thesis"
 )
-"""The counts of lane departures on valid roads from the thesis."""
+"""The counts of valid roads on which the car left its lane, from the thesis."""
 
 
 def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on validity by every set of rules, beside the thesis' counts if asked for."""
+    """Returns the section on validity by each set of rules; ``has_baseline`` adds the counts of the
+    thesis."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
@@ -107,7 +109,8 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
 
 
 def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on lane departures on valid roads."""
+    """Returns the section on lane departures on valid roads; ``has_baseline`` adds the counts of the
+    thesis."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]
     every = [source for source in every if source.total]

@@ -22,11 +22,12 @@ MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analy
 def load_answers(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
-    """Returns the answers of a survey, or those of made-up raters without opening the file of answers.
+    """Returns the answers to a survey, or answers of made-up raters, for which the file of answers is not
+    opened.
 
     Args:
         folder: the survey's folder.
-        number: number of made-up raters; None: the answers of people.
+        number: number of made-up raters; None: the answers of people are returned.
         seed: seed of the made-up raters.
         agreement: how often made-up raters agree, 0 to 1; see ``synthetic``.
 
@@ -53,14 +54,19 @@ def load_answers(
 
 
 def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
-    """Writes ``report.html`` and ``.md``, ``answers.csv``, ``tables/`` and ``figures/`` into a folder.
+    """Writes ``report.html``, ``report.md``, the answers as CSV, ``tables/`` and ``figures/`` into a folder.
+
+    Args:
+        answers: the answers.
+        out: the folder, which is made if it does not exist.
+        command: the command that repeats the analysis, which the report shows; empty: none is shown.
 
     Returns:
         The path of the HTML page.
 
     Raises:
-        UsageError: the folder contains an analysis of the other kind of raters; people and made-up raters are
-            never mixed.
+        UsageError: the folder contains an analysis of made-up raters and the answers are those of people, or
+            the other way round.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)
@@ -78,7 +84,7 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
 
 
 def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
-    """Returns the page with the report; its figures are drawn into an existing folder."""
+    """Returns the page with the report, and draws its figures into the existing folder ``figures``."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
     counts = about_counts(answers)

@@ -1,4 +1,4 @@
-"""Turns the answers of a survey into rows, one for each answer, which are exported and analysed."""
+"""Turns the answers to a survey into rows, one for each answer, which are exported and analysed."""
 
 import csv
 import io
@@ -25,18 +25,18 @@ class AnswerRow(NamedTuple):
     item: str
     prompt: str
     criterion: str
-    """What is rated: "overall" or a criterion; empty if the question is no rating."""
+    """The criterion that is rated, or "overall"; empty if the question is not a rating."""
     question: str
     answer: str
     score: int | None
-    """The score of a rating, 1 to 5; None for other questions."""
+    """The score of a rating, 1 to 5; None if the question is not a rating."""
     page_of_rater: int
-    """Number of the page on which this rater was asked."""
+    """Number of the page on which this rater saw the question, from 1."""
 
 
 @dataclass(frozen=True)
 class Answers:
-    """All answers to a survey."""
+    """All answers to a survey, and the numbers of raters who were invited, agreed and withdrew."""
 
     survey: Survey
     source: Source
@@ -47,7 +47,7 @@ class Answers:
 
     @property
     def failed(self) -> frozenset[str]:
-        """The raters who failed the attention check; their answers are left out of the analysis."""
+        """The raters who failed the attention check; their answers are not analysed."""
         return frozenset(row.rater for row in self.rows if row.attention == "failed")
 
     @property
@@ -57,12 +57,12 @@ class Answers:
 
     @property
     def used(self) -> tuple[AnswerRow, ...]:
-        """The rows that are analysed."""
+        """The answers that are analysed."""
         return tuple(row for row in self.rows if row.attention != "failed")
 
     @property
     def finished(self) -> int:
-        """The number of analysed raters who rated every road."""
+        """Number of raters who rated every road and whose answers are analysed."""
         asked = {
             question.id for item in self.survey.items for question in item.questions if question.is_rating
         }
@@ -73,7 +73,7 @@ class Answers:
 
 
 def answers_in(store: AnswerStore, survey: Survey) -> Answers:
-    """Returns all answers of people who did not withdraw."""
+    """Returns the answers of all people who agreed and did not withdraw."""
     raters = store.raters()
     given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
     states = [rater.state for rater in raters]
@@ -83,11 +83,11 @@ def answers_in(store: AnswerStore, survey: Survey) -> Answers:
 def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Returns the answers as rows.
+    """Returns the given answers as rows.
 
     Args:
         survey: the survey.
-        given: the answers of each rater, by the digest of their token and by question.
+        given: the answers of each rater, by the digest of the rater's token and by question.
         source: whether the raters are people or made up.
         invited: number of invited raters.
         withdrawn: number of raters who withdrew.
@@ -127,7 +127,7 @@ def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
 
 
 def csv_of(rows: Sequence[AnswerRow]) -> str:
-    """Returns all rows as CSV; an apostrophe precedes what a spreadsheet would take for a formula."""
+    """Returns the rows as CSV; text that a spreadsheet would run as a formula gets an apostrophe in front."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(AnswerRow._fields)

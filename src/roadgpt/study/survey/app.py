@@ -1,12 +1,14 @@
 """Answers requests about one survey, as a Starlette application.
 
-/static/NAME                                    the style and the script
-/join/SHARED                                    where a survey is open: makes a rater of whoever agrees
-/r/TOKEN                                        consent, or the first page that is not finished
+/static/NAME                                    the style sheet and the script
+/join/SHARED                                    adds whoever agrees as a rater, if the survey is open to all
+/r/TOKEN                                        consent, or the first page with an unanswered question
 /r/TOKEN/N             GET, POST a form         page N of this rater
-/r/TOKEN/answer        POST JSON                one answer, confirmed when it is on the disk
-/r/TOKEN/media/NAME                             a picture, a film, a 3-D view
-/r/TOKEN/done, /mine, /withdraw                 the end; what is kept; deletes it
+/r/TOKEN/answer        POST JSON                saves one answer and confirms it when it is on the disk
+/r/TOKEN/media/NAME                             a picture, a film or a 3-D view
+/r/TOKEN/done                                   thanks
+/r/TOKEN/mine                                   lists everything that is stored about this rater
+/r/TOKEN/withdraw      POST a form              deletes it
 """
 
 import hmac
@@ -63,10 +65,10 @@ class SurveyApp:
     """An ASGI application that serves one survey. Its endpoints run in several threads at once.
 
     Args:
-        folder: of the survey.
-        survey: what is shown and asked.
+        folder: the survey's folder.
+        survey: the survey.
         store: the file of answers.
-        shared: token of the link with which anyone may join; empty where nobody may.
+        shared: token of the link with which anyone may join; empty if there is no such link.
     """
 
     def __init__(self, folder: Path, survey: Survey, store: AnswerStore, shared: str = "") -> None:

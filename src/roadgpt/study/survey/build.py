@@ -1,9 +1,9 @@
 """Makes a survey's folder from runs: plots, films and 3-D views of every road, and finally ``survey.json``.
 
 DIR/
-  survey.json       what is shown and asked
+  survey.json       texts, roads and questions
   media/            plots (PNG), films (MP4) and 3-D views (HTML)
-  answers.sqlite    created when the survey is first served
+  answers.sqlite    the answers; created when the survey is first served
 """
 
 import hashlib
@@ -17,7 +17,7 @@ from roadgpt.run.atomic import json_text, sweep, write_whole
 from roadgpt.study.survey.item_criteria import criteria_of, match_scores, similarity_scores
 from roadgpt.study.survey.media import WHY_NONE, Axes, can_film, draw_plots, make_film, write_view
 from roadgpt.study.survey.plan import PairPlan, RoadPlan, SurveyPlan
-from roadgpt.study.survey.questions import ABOUT, CRITERIA
+from roadgpt.study.survey.questions import CRITERIA
 from roadgpt.study.survey.store import ANSWERS
 from roadgpt.study.survey.survey import CARD, MEDIA, Item, Medium, Survey
 
@@ -27,16 +27,16 @@ CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood ca
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Makes the folder of a survey. It keeps films that exist, so that it can be stopped and called again.
+    """Makes the folder of a survey. Films that exist are kept, so a stopped call can be repeated.
 
     Args:
         plan: the contents of SURVEY.toml.
         base: the folder to which the paths of runs are relative.
-        out: the survey's folder; another survey in it is replaced if nobody has been invited to it yet.
+        out: the survey's folder; a survey in it is replaced if nobody has been invited to it yet.
         tell: called with a sentence before every step.
 
     Raises:
-        UsageError: a run cannot be used, or the folder contains answers or something else.
+        UsageError: a run cannot be used, or the folder contains answers or other files.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)
@@ -59,7 +59,7 @@ def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lamb
             purpose=plan.said_purpose,
             keeps=plan.keeps,
             has_check=plan.attention_check,
-            about=plan.questions(ABOUT),
+            about=plan.questions,
             items=tuple(items),
             lacks=WHY_NONE if plan.films and not films else "",
         )

@@ -1,4 +1,4 @@
-"""Finds the criteria in which a road is rated, and measures it in them to compare people with the results."""
+"""Finds the criteria in which people rate a road, and measures the road in them for comparison."""
 
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.errors import UsageError
@@ -11,15 +11,15 @@ STRAIGHTS = frozenset({"straight", "crest", "dip"})
 HAVE_NO_NUMBER = frozenset({"serpentine", "zigzag", "slalom", "winding"})
 RISES = frozenset({"crest", "dip"})
 MATCH = {OVERALL: "general"} | {CRITERIA[name]: name for name in ("turns", "incline", "order")}
-"""The measured criterion of each criterion of a road and its description."""
+"""For each criterion of a road and its description, the measured criterion of ``study.criteria``."""
 ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
-"""The measured similarity of each criterion of two roads."""
+"""For each criterion of two roads, the measured criterion of ``study.similarity``."""
 
 
 def criteria_of(brief: Brief | None) -> tuple[str, ...]:
-    """Returns the criteria that a description mentions.
+    """Returns the criteria that a description mentions: "turns", "incline", "order".
 
-    It is empty for a general description such as "a road", which is rated only as a whole, as in the thesis.
+    A general description such as "a road" mentions none, and is rated only as a whole, as in the thesis.
     """
     if brief is None:
         return ()
@@ -44,9 +44,10 @@ def _has_a_number(clause: Clause) -> bool:
 
 
 def match_scores(run: Run, prompt: str) -> dict[str, float]:
-    """Returns 1 for each criterion that a road keeps, else 0; empty if it was not made from this description.
+    """Returns 1 for each criterion that a road keeps and 0 for each other one.
 
-    Criteria that a survey adds itself are not measured.
+    Criteria that a survey adds are not measured. The result is empty if the road was not made from this
+    description.
     """
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}

@@ -1,4 +1,4 @@
-"""Limits every request to the survey's server and adds the security headers to every response."""
+"""Limits every request to the survey's server and adds security headers to every response."""
 
 import json
 import re
@@ -20,7 +20,8 @@ FRAMES = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'self'; sandbox allow-scripts"
 )
-"""Policy of a 3-D view, which contains its scripts; it may not fetch anything or reach its parent page."""
+"""Content security policy of a 3-D view. The page contains its scripts; it may neither fetch anything nor
+reach the page around it."""
 HEADERS = {
     "Server": "roadgpt",
     "Cache-Control": "no-store",
@@ -32,7 +33,7 @@ HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
     "X-Robots-Tag": "noindex, nofollow",
 }
-"""Headers that every response has unless it sets them itself."""
+"""Headers of every response, unless the response sets them itself."""
 
 
 class RequestGuard:
@@ -79,9 +80,9 @@ def refusal(path: str, status: int, sentence: str = "") -> Response:
     """Returns a response of one sentence, after which the connection is closed.
 
     Args:
-        path: path of the request; the pages' script, which posts to ``/answer``, gets JSON.
+        path: path of the request; requests to ``/answer``, sent by the pages' script, are answered in JSON.
         status: HTTP status.
-        sentence: what is wrong; if empty, the status' standard phrase. It must not quote the request.
+        sentence: what is wrong; if empty, the standard phrase of the status. It must not quote the request.
     """
     sentence = sentence or f"{HTTPStatus(status).phrase}."
     if path.endswith("/answer"):

@@ -1,8 +1,8 @@
-"""Draws what raters see of a road: plots, films and a 3-D view, without verdict, measures or marks.
+"""Makes the pictures, films and 3-D views that raters see; they contain no verdict and no measurements.
 
-The plots of all roads of a survey have the same axes, as in RoadGPT's thesis: no road fills its plot more
-than another. Roads that fit are shown on the thesis' own axes: x and y from 0 to 220 m, 200 m along the road,
-20 m of height.
+The plots of all roads of a survey have the same axes, as in RoadGPT's thesis, so that no road fills its plot
+more than another. If all roads fit, these are the thesis' axes: x and y from 0 to 220 m, 200 m along the
+road, 20 m of height.
 """
 
 from collections.abc import Sequence
@@ -37,12 +37,12 @@ WHY_NONE = (
     "To add films, run python -m pip install 'roadgpt[film]' and make the survey again"
 )
 HIDDEN = {"outcome": "", "description": "", "about": "", "words": "", "places": []}
-"""What a 3-D view shows to users, but not to raters."""
+"""Replacements for what a 3-D view shows to users but must not show to raters."""
 
 
 @dataclass(frozen=True)
 class Axes:
-    """The axes of all plots of a survey, metres."""
+    """The limits of the axes of all plots of a survey, metres."""
 
     frame: Frame
     along: float
@@ -50,7 +50,8 @@ class Axes:
 
     @classmethod
     def of(cls, roads: Sequence[Road]) -> "Axes":
-        """Returns the thesis' axes if every road fits, otherwise the smallest that show every road."""
+        """Returns the thesis' axes if every road fits, otherwise the smallest axes on which every road
+        fits."""
         lines = [road.at(stations_of(road)) for road in roads]
         points = np.concatenate(lines)[:, :2]
         frame = THESIS
@@ -65,7 +66,7 @@ class Axes:
 
 @in_our_style
 def draw_plots(road: Road, world: World, axes: Axes, folder: Path, name: str) -> tuple[str, str]:
-    """Writes ``NAME-above.png`` and ``NAME-height.png``; returns the two names."""
+    """Writes ``NAME-above.png`` (bird's-eye view) and ``NAME-height.png``; returns the two file names."""
     above, height = f"{name}-above.png", f"{name}-height.png"
     save(_above(road, world, axes.frame), folder / above)
     save(_heights(road, axes), folder / height)
@@ -126,7 +127,13 @@ def can_film() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Makes a film of one drive, or of two in a split screen."""
+    """Writes a film of one drive, or of two drives in a split screen. It ends before the outcome is shown.
+
+    Args:
+        runs: one run or two, with their drives.
+        path: the MP4 file to write.
+        view: the camera, "chase" or "bonnet" (the hood camera).
+    """
     longest = max(run.drive.duration for run in runs if run.drive is not None)
     settings = Settings(seconds=max(longest - BEFORE_THE_END, BEFORE_THE_END))
     if len(runs) == 1:
@@ -136,7 +143,13 @@ def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
 
 
 def write_view(runs: Sequence[Run], titles: Sequence[str], path: Path) -> None:
-    """Writes the page of one road or of two."""
+    """Writes the 3-D view of one road or of two as an HTML page.
+
+    Args:
+        runs: one run or two.
+        titles: the title of each road.
+        path: the file to write.
+    """
     write_whole(
         path,
         page_of([scene(run) | {"title": title} | HIDDEN for run, title in zip(runs, titles, strict=True)]),

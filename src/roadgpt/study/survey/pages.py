@@ -1,4 +1,4 @@
-"""Renders the pages that raters see. They work without scripts; with them each answer is saved at once."""
+"""Renders the pages that raters see. They work without scripts; with scripts each answer is saved at once."""
 
 from pathlib import Path
 
@@ -23,7 +23,7 @@ ENVIRONMENT = Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
-"""The templates, with ``headings`` and ``most_letters`` for all of them."""
+"""The templates; all of them can use ``headings`` and ``most_letters``."""
 
 
 def _paragraphs(text: str) -> Markup:
@@ -42,6 +42,6 @@ def render(template: str, survey: Survey, **values: object) -> str:
     Args:
         template: name of a file in ``templates``.
         survey: the survey, for its title, texts and pages.
-        **values: what else the template names.
+        **values: other values that the template uses.
     """
     return ENVIRONMENT.get_template(template).render(survey=survey, **values)

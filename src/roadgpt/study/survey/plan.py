@@ -1,4 +1,4 @@
-"""Reads and writes SURVEY.toml, which says which roads people rate and what they are told."""
+"""Reads and writes SURVEY.toml, which contains the texts of a survey and names the roads that people rate."""
 
 import json
 import tomllib
@@ -10,7 +10,7 @@ from pydantic import Field, ValidationError
 from roadgpt.brief.model import Frozen
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
-from roadgpt.study.survey.questions import PAIR_CRITERIA, Question
+from roadgpt.study.survey.questions import ABOUT, PAIR_CRITERIA, Question
 
 Words = Annotated[str, Field(min_length=1, max_length=4000)]
 PURPOSE = (
@@ -26,23 +26,23 @@ PER_PAGE = 1.5  # minutes that a page takes, roughly: plots, films, a handful of
 
 
 class RoadPlan(Frozen):
-    """A road that is compared with its description."""
+    """A road that people compare with its description."""
 
     run: Words
-    """Folder of a run or its test.NNNN.json, relative to the file."""
+    """Folder of a run, or its file test.NNNN.json, relative to SURVEY.toml."""
     prompt: str = ""
-    """The description; empty: the one that the road was made from."""
+    """The description; empty: the description from which the road was made."""
     criteria: tuple[Words, ...] | None = None
-    """The criteria; None: those that the description mentions."""
+    """The criteria that are rated; None: those that the description mentions."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of its runs, of which there is one."""
+        """The paths of its runs, of which there is one."""
         return (self.run,)
 
 
 class PairPlan(Frozen):
-    """Two roads of one description, which are compared with each other."""
+    """Two roads of one description that people compare with each other."""
 
     runs: tuple[Words, Words]
     prompt: str = ""
@@ -50,12 +50,12 @@ class PairPlan(Frozen):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The names of the two runs."""
+        """The paths of the two runs."""
         return self.runs
 
 
 class AboutPlan(Frozen):
-    """A question about the rater, which replaces the standard ones."""
+    """A question about the rater, which replaces the standard questions."""
 
     text: Words
     answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]
@@ -73,22 +73,23 @@ class SurveyPlan(Frozen):
     films: bool = True
     views: bool = True
     about: Annotated[tuple[AboutPlan, ...], Field(max_length=30)] | None = None
-    """Questions about the rater; None: the thesis' six; an empty list: none."""
+    """Questions about the rater; None: the thesis' six questions; an empty list: no questions."""
     alignment: Annotated[tuple[RoadPlan, ...], Field(max_length=200)] = ()
     similarity: Annotated[tuple[PairPlan, ...], Field(max_length=200)] = ()
 
     @property
     def said_purpose(self) -> str:
-        """The purpose that raters are told."""
+        """The purpose of the survey as raters read it."""
         if self.purpose:
             return self.purpose
         minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)
         return PURPOSE.format(minutes=minutes)
 
-    def questions(self, usual: tuple[Question, ...]) -> tuple[Question, ...]:
-        """Returns the questions about the rater."""
+    @property
+    def questions(self) -> tuple[Question, ...]:
+        """The questions about the rater."""
         if self.about is None:
-            return usual
+            return ABOUT
         return tuple(
             Question(id=f"about.{number}", text=each.text, answers=each.answers)
             for number, each in enumerate(self.about, 1)
@@ -96,10 +97,10 @@ class SurveyPlan(Frozen):
 
 
 def read_plan(path: Path | str) -> SurveyPlan:
-    """Reads a SURVEY.toml.
+    """Returns the contents of a SURVEY.toml.
 
     Raises:
-        UsageError: the file does not exist, is not TOML, or has a key or value that a survey cannot have.
+        UsageError: the file does not exist, is not TOML, names no road, or has a wrong key or value.
     """
     path = Path(path)
     try:
@@ -122,7 +123,7 @@ def read_plan(path: Path | str) -> SurveyPlan:
 
 
 def plan_text(plan: SurveyPlan) -> str:
-    """Returns a plan as the text of a SURVEY.toml, to be edited."""
+    """Returns a plan as the text of a SURVEY.toml, which users can edit."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose
     lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]

@@ -1,7 +1,7 @@
-"""Defines the questions: the thesis' three parts, its answers and its criteria.
+"""Defines the questions of the three parts of the thesis' survey, with its answers and criteria.
 
-Source: RoadGPT's thesis, section 6.2. It names all five answers about a description, but of those about two
-roads only the ends and "mostly dissimilar"; the two between are ours.
+Source: RoadGPT's thesis, section 6.2. It names all five answers about a road and its description. Of the
+five answers about two roads it names the first, the second and the last; the third and the fourth are ours.
 """
 
 from typing import Literal
@@ -37,28 +37,29 @@ CRITERIA = {
     "order": "order of turns",
     "length": "length of the road",
 }
-"""Short names in a survey's file, and the texts that raters read."""
+"""The names of criteria in SURVEY.toml, and the texts that raters read."""
 PAIR_CRITERIA = tuple(CRITERIA.values())
 
 
 class Question(Frozen):
-    """One question: a choice of answers, or free text if there are none."""
+    """One question with a choice of answers, or with free text if no answers are given."""
 
     id: str
     text: str
     answers: tuple[str, ...] = ()
     criterion: str = ""
-    """What is rated: "overall" or a criterion; empty if the question is no rating."""
+    """The criterion that is rated, or "overall"; empty if the question is not a rating."""
     is_needed: bool = True
-    """Whether the page says so if the question has no answer."""
+    """True if the page reminds raters who leave the question unanswered."""
 
     @property
     def is_rating(self) -> bool:
-        """Whether it is a rating of a road."""
+        """True if the question is a rating of a road."""
         return bool(self.criterion)
 
     def takes(self, value: str) -> bool:
-        """Returns whether a value is a possible answer; an empty one always is, and deletes the answer."""
+        """Returns whether a value is a possible answer; an empty value, which deletes an answer, always
+        is."""
         return value in self.answers or not value if self.answers else len(value) <= MOST_LETTERS
 
     def score(self, value: str) -> int:
@@ -98,13 +99,14 @@ ABOUT = tuple(
         ("simulators", "How often do you use driving simulators?", HOW_OFTEN),
     )
 )
-"""The thesis' questions about the rater."""
+"""The thesis' six questions about the rater."""
 
 
 def rating_questions(item: str, part: Rated, criteria: tuple[str, ...]) -> tuple[Question, ...]:
     """Returns the questions about a road and its description, or about two roads.
 
-    The first one is about the whole, one follows for each criterion, and the last one asks for remarks.
+    The first question is about the roads in general, one question follows for each criterion, and the last
+    one asks for remarks.
 
     Args:
         item: id of the road or of the pair.
@@ -151,7 +153,8 @@ END = Question(
 
 
 def clean(text: str) -> str:
-    """Returns a text without control characters, lone surrogates and outer spaces; "\\n" ends its lines."""
+    """Returns text with plain spaces and line ends "\n", without control characters, surrogates and outer
+    spaces."""
     text = text.replace("\r\n", "\n").replace("\r", "\n").encode("utf-8", "ignore").decode()
     return "".join(map(_letter, text)).strip()
 

@@ -1,7 +1,7 @@
-"""Draws diverging stacked bars of ratings, and bars of who answered, for the report and for papers.
+"""Draws stacked bars of ratings and bars of the answers about the raters, for the report and for papers.
 
-Each bar is all answers about one road in one criterion, its middle answer centred on zero: what lies to the
-right speaks for the road.
+A bar of ratings shows all answers about one road in one criterion. The middle of the third answer is at 0, so
+the part of the bar to the right of 0 is in favour of the road.
 """
 
 from collections.abc import Sequence
@@ -34,7 +34,13 @@ MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 @in_our_style
 def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Figure:
-    """Draws all ratings of one part, item by item."""
+    """Draws all ratings of one part, a bar for each item and criterion.
+
+    Args:
+        found: the ratings.
+        folder: the folder into which the figure is written as PNG, PDF and SVG.
+        is_synthetic: True if the raters are made up; the figure then says so.
+    """
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
     figure = new_figure(WIDE, high)
@@ -103,7 +109,13 @@ def _legend(figure: Drawing, answers: Sequence[str], high: float) -> None:
 def about_bars(
     counts: Sequence[tuple[str, Sequence[tuple[str, int]]]], folder: Path, is_synthetic: bool
 ) -> Figure:
-    """Draws how often each answer was given to each question about the raters."""
+    """Draws how often each answer was given to each question about the raters.
+
+    Args:
+        counts: the text of each question, and each answer with the number of raters who gave it.
+        folder: the folder into which the figure is written as PNG, PDF and SVG.
+        is_synthetic: True if the raters are made up; the figure then says so.
+    """
     rows = -(-len(counts) // 2)
     heights = [
         max(len(each[1]) for each in counts[2 * row : 2 * row + 2]) * 0.25 + 0.62 for row in range(rows)

@@ -13,11 +13,11 @@ from roadgpt.study.survey.tally import RatingTally, Unit, agreement, score_matri
 
 NAMES = {"alignment": "road and description", "similarity": "two roads"}
 Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
-"""The text of each question about the raters, and how often each answer was given."""
+"""The text of each question about the raters, and each answer with the number of raters who gave it."""
 
 
 def marked(block: Block) -> Block:
-    """Returns a block about made-up raters, whose captions and files are marked as such."""
+    """Returns a block of a report on made-up raters with captions and file names that say "synthetic"."""
     if isinstance(block, Details):
         return replace(block, blocks=[*map(marked, block.blocks)])
     if not isinstance(block, Table | Figure):
@@ -27,7 +27,13 @@ def marked(block: Block) -> Block:
 
 
 def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[str]:
-    """Returns the sentences of the summary."""
+    """Returns the sentences of the summary.
+
+    Args:
+        answers: all answers.
+        match: the ratings of roads and descriptions.
+        alike: the ratings of two roads.
+    """
     used = len({row.rater for row in answers.used})
     lines = [
         f"The answers of {used} raters are analysed; {answers.finished} of them rated everything. "
@@ -49,7 +55,7 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
 
 
 def raters(answers: Answers) -> Table:
-    """Returns the table of how many raters were invited, agreed, withdrew and were analysed."""
+    """Returns a table with the numbers of raters who were invited, agreed, withdrew and were analysed."""
     numbers = {
         "links given or taken": answers.invited,
         "agreed to take part": answers.agreed,
@@ -63,14 +69,14 @@ def raters(answers: Answers) -> Table:
 
 
 def about(counts: Counts) -> Details:
-    """Returns the table of the answers about the raters, folded."""
+    """Returns a folded table of the answers about the raters."""
     rows = [row(text, answer, count) for text, answers in counts for answer, count in answers if count]
     table = Table("about", "Who answered", ("question", "answer", "raters"), rows)
     return Details("The same as a table", [table])
 
 
 def ratings(found: RatingTally) -> Table:
-    """Returns the table of ratings: every road in every criterion."""
+    """Returns a table with the ratings of every item in every criterion."""
     answers = found.units[0].question.answers
     firsts = {unit.item.id: unit.question.id for unit in reversed(found.units)}
     rows = [_rating(unit, firsts[unit.item.id] == unit.question.id) for unit in found.units]
@@ -97,7 +103,10 @@ def _rating(unit: Unit, is_first: bool) -> list[TableCell]:
 
 
 def differences(found: RatingTally) -> list[Block]:
-    """Tests whether the items differ: Friedman and Conover for three or more, Wilcoxon for two."""
+    """Returns a sentence on whether the items differ, by Wilcoxon's test of two items or Friedman's of more.
+
+    If three or more items differ, a table with Conover's test of every pair follows.
+    """
     units = found.overall
     if len(units) < 2 or not found.raters:
         return ["One item alone cannot be compared with others."]
@@ -127,7 +136,7 @@ def differences(found: RatingTally) -> list[Block]:
 
 
 def agreements(tallies: Sequence[RatingTally]) -> Table:
-    """Returns the table of Krippendorff's alpha, criterion by criterion."""
+    """Returns a table of Krippendorff's alpha by part and criterion."""
     rows = []
     for found in tallies:
         groups = [(criterion, found.of(criterion)) for criterion in found.criteria]
@@ -146,7 +155,7 @@ def agreements(tallies: Sequence[RatingTally]) -> Table:
 
 
 def measurements(tallies: Sequence[RatingTally]) -> list[Block]:
-    """Returns the mean scores of people beside the measured ones, with their rank correlation."""
+    """Returns tables with the mean scores of people beside the measured ones, and their rank correlations."""
     blocks: list[Block] = []
     heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
     for found in tallies:
@@ -174,7 +183,7 @@ def measurements(tallies: Sequence[RatingTally]) -> list[Block]:
 
 
 def remarks(answers: Answers) -> Block:
-    """Returns the table of remarks."""
+    """Returns a table of the raters' remarks, or a sentence if there are none."""
     rows = [
         row(each.item or "at the end", each.prompt, each.answer)
         for each in sorted(answers.used, key=lambda each: (each.item, each.rater))

@@ -1,4 +1,4 @@
-"""Draws roads for a survey from the folder of a study: one road of each description, and pairs of roads."""
+"""Draws roads for a survey from a study's folder: one road of each description, and pairs of roads."""
 
 from pathlib import Path
 
@@ -16,14 +16,14 @@ DEEPEST = 4  # folders below the study's in which campaigns are looked for
 
 
 def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
-    """Returns a plan with valid roads that are drawn at random from every folder of runs below a folder.
+    """Returns a plan with valid roads that are drawn at random from every folder of runs inside a folder.
 
     Args:
-        study: a folder of runs, or a folder that contains several.
-        asks: who asks.
-        contact: where raters may ask questions.
+        study: a folder of runs, or a folder that contains several folders of runs.
+        asks: who conducts the survey.
+        contact: where raters can send questions.
         seed: seed of the draw; the same seed draws the same roads.
-        pairs: number of descriptions of which two more roads are drawn to be compared.
+        pairs: number of descriptions of which two more roads are drawn, to be compared with each other.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.

@@ -1,4 +1,4 @@
-"""Serves the survey by uvicorn, with limits on connections that uvicorn lacks."""
+"""Serves a survey by uvicorn, with limits on connections that uvicorn does not have."""
 
 import logging
 import socket
@@ -24,14 +24,14 @@ WAITS_FOR_CLIENT = (h11.IDLE, h11.SEND_BODY)
 
 
 class LimitedConnection(H11Protocol):
-    """One connection of a rater. It is closed if the other side takes too long to send or to receive."""
+    """One connection of a rater. It is closed if the rater's side takes too long to send or to receive."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
         super().__init__(*args, **more)
         self._timers: dict[str, TimerHandle] = {}
 
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
-        """Accepts a connection, or answers with status 503 if there are too many."""
+        """Accepts a connection, or answers with status 503 if too many are open."""
         super().connection_made(transport)
         # else an answer, whose head and body are sent apart, waits 40 ms for the other side's kernel
         transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
@@ -42,28 +42,28 @@ class LimitedConnection(H11Protocol):
             self._watch()
 
     def data_received(self, data: bytes) -> None:
-        """Takes a piece of a request."""
+        """Receives a piece of a request."""
         super().data_received(data)
         self._watch()
 
     def on_response_complete(self) -> None:
-        """Waits for the next request."""
+        """Starts to wait for the next request."""
         self._stop("request")
         super().on_response_complete()
         self._watch()
 
     def pause_writing(self) -> None:
-        """Waits for the other side to receive what was sent."""
+        """Starts to wait until the rater's side has received what was sent."""
         super().pause_writing()
         self._start("answer", PATIENCE)
 
     def resume_writing(self) -> None:
-        """Sends more, since the other side has received most of what was sent."""
+        """Sends more, since the rater's side has received most of what was sent."""
         self._stop("answer")
         super().resume_writing()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Forgets the connection."""
+        """Stops the timers of a closed connection."""
         self._stop("request")
         self._stop("answer")
         super().connection_lost(exc)
@@ -84,10 +84,10 @@ class LimitedConnection(H11Protocol):
 
 
 class Server:
-    """Serves one survey. It listens from the start, and answers while ``serve_forever`` runs.
+    """Serves one survey. It listens when it is made, and answers requests while ``serve_forever`` runs.
 
     Raises:
-        UsageError: nobody can listen on this host and port.
+        UsageError: the server cannot listen on this host and port.
     """
 
     def __init__(
@@ -123,10 +123,10 @@ class Server:
         self._has_ended = Event()
 
     def serve_forever(self) -> None:
-        """Answers requests until ``stop`` is called, or a KeyboardInterrupt is raised here.
+        """Answers requests until ``stop`` is called or a KeyboardInterrupt is raised in this thread.
 
-        uvicorn runs in a thread of its own, since it would take a KeyboardInterrupt that is raised within a
-        request for an error of the application, and go on.
+        uvicorn runs in a thread of its own, because it would treat a KeyboardInterrupt that is raised within
+        a request as an error of the application, and continue.
         """
         thread = Thread(target=self._run, daemon=True)
         try:
@@ -149,7 +149,7 @@ class Server:
             self._has_ended.set()
 
     def stop(self) -> None:
-        """Makes ``serve_forever`` return soon, without waiting for raters; may be called by any thread."""
+        """Makes ``serve_forever`` return soon, without waiting for raters. Any thread may call it."""
         self._uvicorn.should_exit = self._uvicorn.force_exit = True
 
     def close(self) -> None:

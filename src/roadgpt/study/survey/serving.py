@@ -25,11 +25,17 @@ Tell = Callable[[str], None]
 
 
 def open_server(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
-    """Returns a server of the survey in a folder; it listens already, and ``serve_forever`` makes it answer.
+    """Returns a server for the survey in a folder. It listens; ``serve_forever`` makes it answer requests.
+
+    Args:
+        folder: the survey's folder.
+        host: address to listen on.
+        port: port to listen on; 0: a free port.
+        is_open: True if anyone may join by a shared link.
 
     Raises:
-        UsageError: there is no survey, nobody can listen there, or the extra ``survey`` is not installed.
-        RoadGPTError: its answers cannot be opened.
+        UsageError: there is no survey, the server cannot listen there, or the extra ``survey`` is missing.
+        RoadGPTError: the file of answers cannot be opened.
     """
     try:
         from roadgpt.study.survey.app import SurveyApp
@@ -55,20 +61,20 @@ def serve(
     is_open: bool = False,
     url: str = "",
 ) -> None:
-    """Serves a survey until Ctrl-C. It reports the links of raters and writes them into ``links.txt``.
+    """Serves a survey until Ctrl-C. It reports the raters' links and writes them into ``links.txt``.
 
     Args:
         folder: the survey's folder.
         tell: called with each line of output.
         host: address to listen on.
-        port: port to listen on; 0: a free one.
-        raters: how many raters have a link of their own, including those from earlier.
-        is_open: whether anyone may join by a shared link.
-        url: address at which raters reach the server, if not at host and port.
+        port: port to listen on; 0: a free port.
+        raters: number of raters who have a link of their own, including those who were invited earlier.
+        is_open: True if anyone may join by a shared link.
+        url: address at which raters reach the server; empty: host and port.
 
     Raises:
-        UsageError: as for ``open_server``, or there are too many raters.
-        RoadGPTError: as for ``open_server``, or the links cannot be written.
+        UsageError: as ``open_server``; also if there are too many raters.
+        RoadGPTError: as ``open_server``; also if the links cannot be written.
     """
     server = open_server(folder, host, port, is_open)
     store = server.app.store

@@ -1,9 +1,10 @@
-"""Stores the answers of a survey in one SQLite file. A confirmed answer is on the disk, even after a crash.
+"""Stores the answers to a survey in one SQLite file. An answer is confirmed after it is on the disk.
 
-raters   digest (SHA-256 of the token: the token itself is not kept here), state, day on which they agreed,
-         whether they joined by the shared link
-doors    the token of the shared link, where the survey is open
-answers  rater, question, value
+The tables are:
+raters   the SHA-256 digest of each rater's token (the token itself is not stored), the rater's state, the
+         day on which the rater agreed, and whether the rater joined by the shared link
+doors    the token of the shared link, if the survey has one
+answers  rater, question and value of each answer
 """
 
 import hashlib
@@ -39,16 +40,16 @@ CREATE TABLE IF NOT EXISTS answers (
 
 @dataclass(frozen=True)
 class Rater:
-    """An invited person, known only by the digest of their token."""
+    """An invited person, who is known only by the digest of a token."""
 
     digest: str
     state: State
     agreed_on: str | None = None
-    """The day on which they agreed, as 2026-01-31."""
+    """The day on which the rater agreed, such as 2026-01-31; None if the rater has not agreed."""
 
     @property
     def code(self) -> str:
-        """Their name in tables."""
+        """The rater's name in tables."""
         return code_of(self.digest)
 
 
@@ -64,7 +65,7 @@ def _private(path: Path) -> None:
 
 
 class AnswerStore:
-    """The file of answers. Several threads and several processes may use it at once."""
+    """The file of answers. Several threads and several processes may use it at the same time."""
 
     def __init__(self, path: Path | str) -> None:
         self._lock = threading.Lock()
@@ -86,21 +87,27 @@ class AnswerStore:
             self._file.close()
 
     def add_rater(self, joined: bool = False, token: str = "") -> str:
-        """Adds a rater and returns their token, which is not stored."""
+        """Adds a rater and returns the rater's token, which is not stored.
+
+        Args:
+            joined: True if the rater joined by the shared link.
+            token: the token; empty: a new one.
+        """
         token = token or new_token()
         with self._writing() as file:
             file.execute("INSERT INTO raters (digest, joined) VALUES (?, ?)", (digest_of(token), joined))
         return token
 
     def rater_of(self, token: str) -> Rater | None:
-        """Returns the rater of a token; None if there is none. Unknown tokens all take the same time."""
+        """Returns the rater with a token; None if there is none. The time it takes does not depend on the
+        token."""
         digest = digest_of(token)
         found = self._read("SELECT digest, state, agreed_on FROM raters WHERE digest = ?", digest)
         rater = Rater(*found[0]) if found else NOBODY
         return rater if hmac.compare_digest(rater.digest, digest) else None
 
     def shared(self) -> str:
-        """Returns the token of the shared link, which stays the same."""
+        """Returns the token of the shared link, which is made at the first call and then stays the same."""
         with self._writing() as file:
             row = file.execute("SELECT token FROM doors").fetchone()
             token = str(row[0]) if row else new_token()
@@ -109,16 +116,16 @@ class AnswerStore:
         return token
 
     def links(self) -> int:
-        """Returns the number of raters with a link of their own."""
+        """Returns the number of raters who have a link of their own."""
         return int(self._read("SELECT count(*) FROM raters WHERE NOT joined")[0][0])
 
     def raters(self) -> list[Rater]:
-        """Returns all invited raters."""
+        """Returns all invited raters, also those who withdrew."""
         rows = self._read("SELECT digest, state, agreed_on FROM raters ORDER BY digest")
         return [Rater(*row) for row in rows]
 
     def agree(self, rater: Rater) -> None:
-        """Records that a rater agrees today; no effect for one who withdrew."""
+        """Records that a rater agrees today; does nothing for a rater who agreed before or withdrew."""
         with self._writing() as file:
             file.execute(
                 "UPDATE raters SET state = 'agreed', agreed_on = ? WHERE digest = ? AND state = 'invited'",
@@ -126,10 +133,14 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Saves all answers or none; an empty one deletes an earlier one. They are on disk when this returns.
+        """Saves either all answers or none; they are on disk when this returns.
+
+        Args:
+            rater: the rater.
+            answers: the answers by question; an empty answer deletes the earlier answer to the same question.
 
         Returns:
-            Whether they were saved. Answers of a rater who has not agreed, or who withdrew, are not.
+            True if the answers were saved; False if the rater has not agreed or has withdrawn.
         """
         with self._writing() as file:
             state = file.execute("SELECT state FROM raters WHERE digest = ?", (rater.digest,)).fetchone()
@@ -141,11 +152,12 @@ class AnswerStore:
         return True
 
     def answers_of(self, rater: Rater) -> dict[str, str]:
-        """Returns a rater's answers, by question."""
+        """Returns a rater's answers by question."""
         return dict(self._read("SELECT question, value FROM answers WHERE rater = ?", rater.digest))
 
     def withdraw(self, rater: Rater) -> None:
-        """Deletes all answers of a rater for good: their bytes are overwritten in file and journal."""
+        """Deletes all answers of a rater for good: their bytes in the file and in its journal are
+        overwritten."""
         with self._writing() as file:
             file.execute("DELETE FROM answers WHERE rater = ?", (rater.digest,))
             file.execute(
@@ -176,10 +188,11 @@ def new_token() -> str:
 
 
 def code_of(digest: str) -> str:
-    """Returns a short name; two of 10,000 raters share one in one of five million surveys."""
+    """Returns a short name for a digest. In one of five million surveys, two of 10,000 raters share a
+    name."""
     return digest[:12]
 
 
 def digest_of(token: str) -> str:
-    """Returns the SHA-256 of a token, hexadecimal."""
+    """Returns the SHA-256 digest of a token as hexadecimal text."""
     return hashlib.sha256(token.encode("utf-8", "surrogatepass")).hexdigest()

@@ -1,4 +1,4 @@
-"""Defines a survey as it is served: its texts, roads and questions, kept in ``survey.json``."""
+"""Defines a survey as it is served: its texts, roads and questions, which ``survey.json`` contains."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -29,7 +29,7 @@ class Medium(Frozen):
     """A picture, a film or a 3-D view for raters."""
 
     name: str
-    """Name of its file in the folder of media."""
+    """Name of its file in the folder ``media``."""
     kind: Literal["picture", "film", "view"]
     title: str
 
@@ -43,9 +43,9 @@ class Item(Frozen):
     criteria: tuple[str, ...] = ()
     media: tuple[Medium, ...] = ()
     roads: tuple[str, ...] = ()
-    """Paths of the roads' runs; not shown to raters."""
+    """Paths of the roads' runs; raters do not see them."""
     machine: Mapping[str, float] = {}
-    """Measured scores, 0 to 1, by criterion; not shown to raters."""
+    """Measured scores, 0 to 1, by criterion; raters do not see them."""
 
     @property
     def questions(self) -> tuple[Question, ...]:
@@ -54,7 +54,7 @@ class Item(Frozen):
 
 
 class QuestionPage(Frozen):
-    """One page of the questionnaire."""
+    """One page of the questionnaire; ``item`` is None if the page is not about roads."""
 
     part: Part
     questions: tuple[Question, ...]
@@ -67,16 +67,16 @@ class Survey(Frozen):
     format: Literal[1] = 1
     title: str
     asks: str
-    """Who asks: names and institute."""
+    """Who conducts the survey: names and institute."""
     contact: str
     purpose: str
     keeps: str
-    """What happens to the answers, and for how long they are kept."""
+    """What happens to the answers, and how long they are kept."""
     has_check: bool = True
     about: tuple[Question, ...] = ABOUT
     items: tuple[Item, ...]
     lacks: str = ""
-    """Which media are missing, in a sentence."""
+    """A sentence on the media that are missing; empty if none is missing."""
 
     def of_part(self, part: Part) -> tuple[Item, ...]:
         """Returns the items of one part, in the order of the file."""
@@ -84,7 +84,7 @@ class Survey(Frozen):
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """All pages in the order of the file; ``pages_for`` gives each rater another order."""
+        """All pages in the order of the file; ``pages_for`` returns them in the order of a rater."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         pages += [
             QuestionPage(part=item.part, questions=item.questions, item=item)
@@ -98,7 +98,7 @@ class Survey(Frozen):
         """Returns all pages in the order of one rater, which is always the same for this rater.
 
         The page about the rater comes first, then the roads in random order, then the pairs in random order,
-        then the end. The attention check is put among the roads; if there are two or more, it is neither
+        then the last page. The attention check is among the roads; if there are two or more, it is neither
         first nor last.
 
         Args:
@@ -123,15 +123,15 @@ class Survey(Frozen):
 
     @cached_property
     def media(self) -> Mapping[str, Medium]:
-        """All files that may be sent, by their names."""
+        """All files that may be sent to raters, by their names."""
         return {medium.name: medium for item in self.items for medium in item.media}
 
 
 def read_survey(folder: Path | str) -> Survey:
-    """Reads the survey in a folder.
+    """Returns the survey in a folder.
 
     Raises:
-        UsageError: there is none, or it cannot be read.
+        UsageError: there is no survey, or it cannot be read.
     """
     path = Path(folder) / CARD
     try:

@@ -1,4 +1,5 @@
-"""Makes up raters, to try out the analysis before people answer. They are never mixed with people."""
+"""Makes up raters, to try out the analysis before people answer. Their answers are never mixed with
+people's."""
 
 import hashlib
 from collections.abc import Mapping
@@ -18,17 +19,18 @@ REMARK = "synthetic remark of a made-up rater"
 def synthetic(
     survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
 ) -> Answers:
-    """Returns the answers of raters who do not exist.
+    """Returns the answers of made-up raters.
 
-    Every rating has a hidden true answer, which differs from road to road. A rater gives it with the
-    probability ``agreement``, and otherwise any answer of the scale: 1 gives an alpha of 1, and 0 one near 0.
+    Every rating has a hidden true answer, which differs from road to road. A rater gives the true answer with
+    the probability ``agreement`` and otherwise a random answer: Krippendorff's alpha is 1 with ``agreement``
+    1, and near 0 with 0.
 
     Args:
         survey: the survey.
         number: number of raters.
         seed: seed of the answers.
         agreement: probability of the true answer, 0 to 1.
-        failing: share of raters who fail the attention check and answer at random.
+        failing: share of raters who fail the attention check and answer at random, 0 to 1.
 
     Raises:
         UsageError: the number or a share is out of range.

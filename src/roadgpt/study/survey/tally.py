@@ -1,4 +1,4 @@
-"""Counts ratings: how each road was rated in each criterion, and by whom."""
+"""Counts ratings: how raters rated each road in each criterion."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -20,36 +20,36 @@ FAVOURABLE = 4  # a score from which an answer speaks for the road, or for liken
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """The ratings of one road, or pair, in one criterion by all raters."""
+    """The ratings of one item (a road or a pair) in one criterion by all raters."""
 
     item: Item
     question: Question
     scores: Array
-    """Scores of all raters, 1 to 5; NaN where one is missing."""
+    """Scores of all raters, 1 to 5; NaN if a rater did not answer."""
 
     @property
     def criterion(self) -> str:
-        """The criterion that was rated."""
+        """The criterion that was rated, or "overall"."""
         return self.question.criterion
 
     @property
     def given(self) -> Array:
-        """Scores without gaps."""
+        """The scores without gaps."""
         return self.scores[np.isfinite(self.scores)]
 
     @property
     def number(self) -> int:
-        """Number of raters."""
+        """Number of raters who rated the item."""
         return len(self.given)
 
     @property
     def counts(self) -> tuple[int, ...]:
-        """How often each answer of the scale was given."""
+        """Number of raters who gave each answer of the scale."""
         return tuple(int((self.given == score).sum()) for score in range(1, len(self.question.answers) + 1))
 
     @property
     def quartiles(self) -> tuple[float, float, float]:
-        """Lower quartile, median and upper quartile; NaN if nobody rated."""
+        """Lower quartile, median and upper quartile of the scores; NaN if nobody rated the item."""
         if not self.number:
             return (float("nan"),) * 3
         low, middle, high = np.quantile(self.given, [0.25, 0.5, 0.75])
@@ -57,19 +57,19 @@ class Unit:
 
     @property
     def favourable(self) -> tuple[int, Interval]:
-        """Number of answers 4 or 5, and Wilson's interval of their share."""
+        """Number of scores 4 and 5, and Wilson's interval of their share."""
         count = int((self.given >= FAVOURABLE).sum())
         return count, wilson(count, self.number) if self.number else Interval(float("nan"), float("nan"))
 
     @property
     def measured(self) -> float | None:
-        """The measured score, 0 to 1; None if it was not measured."""
+        """The measured score of the item in the criterion, 0 to 1; None if it was not measured."""
         return self.item.machine.get(self.criterion)
 
 
 @dataclass(frozen=True, eq=False)
 class RatingTally:
-    """All ratings of one part."""
+    """All ratings of one part of the survey."""
 
     part: Rated
     raters: tuple[str, ...]
@@ -77,12 +77,12 @@ class RatingTally:
 
     @property
     def overall(self) -> tuple[Unit, ...]:
-        """The overall question about each item."""
+        """The units of the overall question, one for each item."""
         return self.of(OVERALL)
 
     @property
     def criteria(self) -> tuple[str, ...]:
-        """All rated criteria, the overall one first."""
+        """All rated criteria, "overall" first."""
         return tuple(dict.fromkeys(unit.criterion for unit in self.units))
 
     def of(self, criterion: str) -> tuple[Unit, ...]:
@@ -91,7 +91,8 @@ class RatingTally:
 
 
 def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
-    """Returns the text of every question about the raters, and how often each answer was given."""
+    """Returns the text of each question about the raters, and each answer with the number of raters who
+    gave it."""
     given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
     return [
         (question.text, [(answer, given[question.id, answer]) for answer in question.answers])
@@ -101,7 +102,7 @@ def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
 
 
 def tally(answers: Answers, part: Rated) -> RatingTally:
-    """Returns the ratings of one part by all analysed raters."""
+    """Returns the ratings of one part by all raters whose answers are analysed."""
     scores = {
         (row.rater, row.question): row.score
         for row in answers.used
@@ -118,12 +119,13 @@ def tally(answers: Answers, part: Rated) -> RatingTally:
 
 
 def score_matrix(units: Sequence[Unit]) -> Array:
-    """Returns the scores ``(people, units)``."""
+    """Returns the scores of several units as an array ``(raters, units)``; NaN if a rater did not answer."""
     return np.stack([unit.scores for unit in units], axis=1)
 
 
 def agreement(units: Sequence[Unit]) -> float:
-    """Returns Krippendorff's alpha of ordinal ratings; NaN if it is undefined, as for a single unit."""
+    """Returns Krippendorff's alpha of the ratings as ordinal data; NaN if it is undefined, as for a
+    single unit."""
     if len(units) < 2 or not len(units[0].scores):
         return float("nan")
     return krippendorff(score_matrix(units))
