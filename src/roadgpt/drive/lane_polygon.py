@@ -1,8 +1,8 @@
-"""Computes how much of the car lies outside the right lane, by clipping two polygons exactly.
+"""Computes how much of the car lies outside its lane, by clipping two polygons exactly.
 
-The lane is a strip of quadrilaterals between the centre line and a line one lane width to its right. Only the
-part of the strip near the car's own station counts, so that other parts of the same road nearby, or crossing
-above or below, are ignored.
+The lane is a strip of quadrilaterals between the edges of the driven lane. Only the part of the strip near
+the car's own station counts, so that other parts of the same road nearby, or crossing above or below, are
+ignored.
 """
 
 import math
@@ -21,21 +21,20 @@ REACH = 8.0  # m along the road on both sides of the car in which its box can li
 
 
 class LanePolygon(NamedTuple):
-    """The right lane in plan, as a strip of quadrilaterals."""
+    """The driven lane in plan, as a strip of quadrilaterals."""
 
     edges: FloatArray
-    """Shape (n, 4): x and y of the left edge (the centre line), x and y of the right edge, in metres."""
+    """Shape (n, 4): x and y of the left edge, x and y of the right edge, in metres."""
     step: float
     """Distance between rows in metres along the centre line."""
 
     @classmethod
     def along(cls, road: "Road", world: "World") -> "LanePolygon":
-        """Returns the right lane of a road, from its start to its end."""
+        """Returns the driven lane of a road, from its start to its end."""
         count = max(2, math.ceil(road.length / STEP))
         s = np.linspace(0.0, road.length, count + 1)
-        left = np.asarray(road.at(s))[:, :2]
-        right = np.asarray(road.at(s, -world.lane_width))[:, :2]
-        edges = np.ascontiguousarray(np.hstack([left, right]), dtype=np.float64)
+        sides = [np.asarray(road.at(s, t))[:, :2] for t in world.profile_of(road).lane(s)]
+        edges = np.ascontiguousarray(np.hstack(sides), dtype=np.float64)
         return cls(edges, road.length / count)
 
     def outside(self, corners: FloatArray, s: float) -> float:

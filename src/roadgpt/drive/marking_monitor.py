@@ -12,9 +12,16 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.compiled import compiled, inlined
+from roadgpt.drive.compiled import compiled
 from roadgpt.drive.drive import Box, FloatArray
-from roadgpt.drive.sampled_road import CURVATURE, SampledRoad, locate_on, sample_road
+from roadgpt.drive.sampled_road import (
+    CURVATURE,
+    SampledRoad,
+    locate_on,
+    sample_road,
+    stations_of,
+    value_at,
+)
 
 if TYPE_CHECKING:
     from roadgpt.drive.drive import Drive
@@ -60,8 +67,7 @@ class MarkingMonitor(NamedTuple):
     @classmethod
     def _of(cls, road: "Road", world: "World", points: list[tuple[float, float, float]]) -> "MarkingMonitor":
         sampled = sample_road(road)
-        s = np.clip(sampled.first + sampled.step * np.arange(len(sampled.table)), 0.0, sampled.length)
-        left, right = world.profile_of(road).marking_limits(s)
+        left, right = world.profile_of(road).marking_limits(stations_of(sampled))
         return cls(sampled, left, right, np.array(points))
 
     def beyond(self, poses: FloatArray, floor: float = -math.inf) -> FloatArray:
@@ -80,15 +86,6 @@ class MarkingMonitor(NamedTuple):
     def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
         """Returns ``beyond`` for every step of a drive."""
         return self.beyond(np.stack([drive[name] for name in POSE], axis=-1), floor)
-
-
-@inlined
-def _at(values: FloatArray, first: float, step: float, s: float) -> float:
-    """Returns the value at station ``s``, interpolated between the rows of the table."""
-    at = min(max((s - first) / step, 0.0), values.shape[0] - 1.0)
-    i = min(int(at), values.shape[0] - 2)
-    found: float = values[i] + (values[i + 1] - values[i]) * (at - i)
-    return found
 
 
 @compiled
@@ -110,11 +107,11 @@ def farthest(
     bend = np.abs(table[:, CURVATURE]).max()
     for i in range(poses.shape[0]):
         x, y, heading = poses[i, 0], poses[i, 1], poses[i, 2]
-        s, t, _, _, way = locate_on(table, first, step, x, y, poses[i, 5])
+        s, t, _, _, _, way = locate_on(table, first, step, x, y, poses[i, 5])
         reach = abs(math.sin(heading - way)) * long + abs(math.cos(heading - way)) * wide
         reach += abs(math.sin(poses[i, 4])) * tall + SLACK
         reach += 0.5 * (long * long + wide * wide) * bend / max(1.0 - bend * abs(t), LEAST_STRETCH)
-        found[i] = max(t - _at(left, first, step, s), _at(right, first, step, s) - t) + reach
+        found[i] = max(t - value_at(left, first, step, s), value_at(right, first, step, s) - t) + reach
         if found[i] < floor:
             continue
         ch, sh = math.cos(heading), math.sin(heading)
@@ -128,7 +125,8 @@ def farthest(
             a, b, c = points[k, 0], points[k, 1], points[k, 2]
             px = x + ch * cp * a + lx * b + ux * c
             py = y + sh * cp * a + ly * b + uy * c
-            at, across, _, _, _ = locate_on(table, first, step, px, py, s + a)
-            best = max(best, across - _at(left, first, step, at), _at(right, first, step, at) - across)
+            at, across, _, _, _, _ = locate_on(table, first, step, px, py, s + a)
+            over_left = across - value_at(left, first, step, at)
+            best = max(best, over_left, value_at(right, first, step, at) - across)
         found[i] = best
     return found

@@ -2,7 +2,8 @@
 computed at any point.
 
 Between stations the centre line is a cubic in x, y and z, continuous in its direction, so that there are no
-kinks. The table continues straight beyond both ends.
+kinks. The table continues straight beyond both ends. On a road with superelevation, the surface is rotated
+about the pitched centre line, as ``Road.at`` does it.
 """
 
 import math
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 STEP = 0.25  # m, desired distance of stations; the cubic is then within 1 micrometre of a 14 m arc
 BEYOND = 30.0  # m of straight road in the table before the start and after the end
 
-# Columns of the table.
-X, Y, Z, HEADING, GRADE, CURVATURE, COS, SIN = range(8)
+# Columns of the table. The last two exist only on roads with superelevation.
+X, Y, Z, HEADING, GRADE, CURVATURE, COS, SIN, BANK, TWIST = range(10)
 
 
 class SampledRoad(NamedTuple):
@@ -28,7 +29,8 @@ class SampledRoad(NamedTuple):
 
     table: FloatArray
     """Shape (n, 8): x, y, z (m), heading (rad, unwrapped), grade, curvature (1/m), cosine and sine of the
-    heading."""
+    heading. On a road with superelevation (n, 10): also the tangent of the superelevation, and its change
+    per metre."""
     first: float
     """Station of row 0 in metres; negative."""
     step: float
@@ -46,7 +48,12 @@ def sample_road(road: "Road") -> SampledRoad:
     x, y, z = np.asarray(road.at(s)).T
     heading = np.unwrap(np.asarray(road.heading(s), dtype=np.float64))
     cos, sin = np.cos(heading), np.sin(heading)
-    inner = np.column_stack([x, y, z, heading, road.grade(s), road.curvature(s), cos, sin])
+    columns = [x, y, z, heading, road.grade(s), road.curvature(s), cos, sin]
+    if road.profile is not None and road.profile.superelevation_angle is not None:
+        angle = road.profile.superelevation_angle
+        bank = np.tan(angle.height(s))
+        columns += [bank, angle.grade(s) * (1 + bank * bank)]
+    inner = np.column_stack(columns)
     extra = math.ceil(BEYOND / step)
     out = step * np.arange(1, extra + 1, dtype=np.float64)
     before, after = _straight_on(inner[0], -out[::-1]), _straight_on(inner[-1], out)
@@ -60,7 +67,23 @@ def _straight_on(row: FloatArray, along: FloatArray) -> FloatArray:
     rows[:, Y] += along * math.sin(row[HEADING])
     rows[:, Z] += along * row[GRADE]
     rows[:, CURVATURE] = 0.0
+    rows[:, TWIST:] = 0.0
     return rows
+
+
+def stations_of(sampled: SampledRoad) -> FloatArray:
+    """Returns the station of each row of the table; beyond the ends of the road, that of the nearer end."""
+    s = sampled.first + sampled.step * np.arange(len(sampled.table))
+    return np.clip(s, 0.0, sampled.length)
+
+
+@inlined
+def value_at(values: FloatArray, first: float, step: float, s: float) -> float:
+    """Returns the value at station ``s``, interpolated between those of the rows of the table."""
+    at = min(max((s - first) / step, 0.0), values.shape[0] - 1.0)
+    i = min(int(at), values.shape[0] - 2)
+    found: float = values[i] + (values[i + 1] - values[i]) * (at - i)
+    return found
 
 
 @inlined
@@ -74,15 +97,16 @@ def _cubic(u: float, step: float, p0: float, p1: float, d0: float, d1: float) ->
 @inlined
 def locate_on(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
-) -> tuple[float, float, float, float, float]:
-    """Returns station, offset, height, slope and heading of the road at the point (x, y), searching near
+) -> tuple[float, float, float, float, float, float]:
+    """Returns station, offset, height, slopes and heading of the road at the point (x, y), searching near
     station s.
 
-    The slope is measured along the road at this offset. The search uses Newton's method; if s is the station
-    of the previous time step, two iterations are enough.
+    The offset is measured along the surface. The slopes are those of the surface at this point, in the
+    direction of the heading and to its left. The search uses Newton's method; if s is the station of the
+    previous time step, two iterations are enough.
     """
     last = table.shape[0] - 2
-    t = height = slope = heading = 0.0
+    t = height = slope = lateral = heading = 0.0
     for _ in range(6):
         at = (s - first) / step
         i = min(max(int(at), 0), last)
@@ -98,10 +122,42 @@ def locate_on(
         t = dy * c - dx * n
         s = first + (i + u) * step
         # Far inside a tight bend, stations lie close together; the lower bound keeps the step finite.
-        crowd = max(1.0 - (b[HEADING] - a[HEADING]) / step * t, 0.2)
+        bend = (b[HEADING] - a[HEADING]) / step
         height = _cubic(u, step, a[Z], b[Z], a[GRADE], b[GRADE])
-        slope = (a[GRADE] + (b[GRADE] - a[GRADE]) * u) / crowd
+        slope = a[GRADE] + (b[GRADE] - a[GRADE]) * u
+        if table.shape[1] <= BANK:
+            crowd = max(1.0 - bend * t, 0.2)
+            slope /= crowd
+        else:
+            t, back, rise, crowd, slope, lateral = _banked(a, b, u, step, t, bend, slope)
+            along += back
+            height += rise
         if abs(along) < 1e-7:
             break
         s += min(max(along / crowd, -5.0), 5.0)
-    return s, t, height, slope, heading
+    return s, t, height, slope, lateral, heading
+
+
+@inlined
+def _banked(
+    a: FloatArray, b: FloatArray, u: float, step: float, t: float, bend: float, grade: float
+) -> tuple[float, float, float, float, float, float]:
+    """Computes the surface of a road with superelevation, ``t`` metres in plan to the left of its centre.
+
+    A point of the surface that is ``t`` metres to the left in plan is ``rise * t`` above the centre line and
+    ``rise * grade * t`` behind its station, because the section is rotated about the pitched centre line.
+
+    Returns:
+        The offset along the surface; how far the point is back from its station and above the centre line;
+        the metres of its path per metre of road; the slopes along the heading and to its left.
+    """
+    tangent = _cubic(u, step, a[BANK], b[BANK], a[TWIST], b[TWIST])
+    twist = a[TWIST] + (b[TWIST] - a[TWIST]) * u
+    kink = (b[GRADE] - a[GRADE]) / step
+    long = math.sqrt(1.0 + grade * grade)
+    rise = tangent / long
+    more = (twist - rise * grade * kink / long) / long
+    lag, lag_more = rise * grade, more * grade + rise * kink
+    crowd = max(1.0 - t * (bend + lag_more + lag * lag * bend), 0.2)
+    slope = (grade + t * (more + rise * lag * bend)) / crowd
+    return t * math.sqrt(1.0 + tangent * tangent), t * lag, t * rise, crowd, slope, rise + lag * slope

@@ -22,6 +22,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     MujocoHandles,
     step_once,
 )
+from roadgpt.drive.simulators.mujoco.hull import normal_of
 from roadgpt.drive.simulators.mujoco.model import BODY, STEP
 
 STEPS = 10  # physics steps in a control step
@@ -47,7 +48,9 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
     m = mj.xmat[BODY]
     x, y, z = mj.qpos[0], mj.qpos[1], mj.qpos[2]
     vx, vy, vz = mj.qvel[0], mj.qvel[1], mj.qvel[2]
-    s, t, height, slope, heading = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
+    s, t, height, slope, lateral, heading = locate_on(
+        sampled.table, sampled.first, sampled.step, x, y, state[STATION]
+    )
     state[STATION] = s
     row[X], row[Y], row[Z] = x, y, z
     row[HEADING] = math.atan2(m[3], m[0])
@@ -59,7 +62,8 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
     row[YAW_RATE] = mj.qvel[5]
     row[SPEED] = math.sqrt(vx * vx + vy * vy + vz * vz)
     row[STEERED] = state[STEER]
-    row[S], row[T] = s, t
+    # The offset of the point of the surface below the car, at a right angle to the inclined section.
+    row[S], row[T] = s, t + (z - height) * lateral / math.sqrt(1.0 + lateral * lateral)
     # Corners of the car's floor, counter-clockwise in plan.
     front = car.box_offset + 0.5 * car.length
     for k in range(4):
@@ -68,8 +72,8 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
         box[k, 0] = x + m[0] * bx + m[1] * by - m[2] * car.cg_height
         box[k, 1] = y + m[3] * bx + m[4] * by - m[5] * car.cg_height
     row[OUTSIDE] = share_outside(ground.lane.edges, ground.lane.step, box, s, car_state.scratch)
-    upright = m[8] - slope * (m[2] * math.cos(heading) + m[5] * math.sin(heading))
-    upright /= math.sqrt(1.0 + slope * slope)
+    nx, ny, nz = normal_of(slope, lateral, heading)
+    upright = m[2] * nx + m[5] * ny + m[8] * nz
     fell: bool = z - car.cg_height < height - FALLEN or upright < FALLEN_OVER
     return fell
 

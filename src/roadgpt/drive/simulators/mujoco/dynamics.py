@@ -18,7 +18,7 @@ from roadgpt.drive.simulators.mujoco.chassis_control import (
     expected_yaw_rate,
     slip_valve,
 )
-from roadgpt.drive.simulators.mujoco.hull import hull_forces
+from roadgpt.drive.simulators.mujoco.hull import hull_forces, normal_of, over_edges
 from roadgpt.drive.simulators.mujoco.model import (
     BODY,
     CARRIER,
@@ -62,8 +62,14 @@ class Ground(NamedTuple):
     """The surface under the wheels: a road or a plane."""
 
     sampled: SampledRoad
-    edge: float
-    """Distance in m from the centre line to the edge of the ground."""
+    left: FloatArray
+    """Offset of the left edge of the ground in m to the left of the centre line.
+
+    There is one for each row of the table in ``sampled``."""
+    right: FloatArray
+    """Offset of its right edge, likewise; negative."""
+    beyond: float
+    """Length in m by which the ground continues before the start and after the end of the road."""
     friction: float
     lane: LanePolygon
 
@@ -187,12 +193,13 @@ def _wheel(
     cx, cy, cz = centre[0], centre[1], centre[2]
     k = mj.xmat[CARRIER[i]]
     ax, ay, az = k[1], k[4], k[7]
-    s, t, height, slope, heading = locate_on(sampled.table, sampled.first, sampled.step, cx, cy, wheel[AT])
+    s, t, height, slope, lateral, heading = locate_on(
+        sampled.table, sampled.first, sampled.step, cx, cy, wheel[AT]
+    )
     wheel[AT] = s
-    nz = 1.0 / math.sqrt(1.0 + slope * slope)
-    nx, ny = -slope * math.cos(heading) * nz, -slope * math.sin(heading) * nz
+    nx, ny, nz = normal_of(slope, lateral, heading)
     gap = (cz - height) * nz
-    over = min(ground.edge - abs(t), s + ground.edge, sampled.length + ground.edge - s)
+    over = min(over_edges(ground, s, t), s + ground.beyond, sampled.length + ground.beyond - s)
     share = min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
     state[SUPPORT] = min(state[SUPPORT], share)
 
@@ -274,7 +281,7 @@ def _lies_low(mj: MujocoHandles, car: Any, ground: Ground, state: FloatArray) ->
     """Returns whether the underbody could touch the road."""
     sampled = ground.sampled
     x, y, z = mj.xpos[BODY, 0], mj.xpos[BODY, 1], mj.xpos[BODY, 2]
-    s, _, height, _, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
+    s, _, height, _, lateral, _ = locate_on(sampled.table, sampled.first, sampled.step, x, y, state[STATION])
     state[STATION] = s
-    low: bool = z - height < car.cg_height - 0.6 * car.ground_clearance
+    low: bool = (z - height) / math.sqrt(1.0 + lateral * lateral) < car.cg_height - 0.6 * car.ground_clearance
     return low

@@ -11,7 +11,7 @@ import numpy as np
 
 from roadgpt.drive.compiled import inlined
 from roadgpt.drive.drive import FloatArray
-from roadgpt.drive.sampled_road import locate_on
+from roadgpt.drive.sampled_road import locate_on, value_at
 from roadgpt.drive.simulators.mujoco.car import Car
 from roadgpt.drive.simulators.mujoco.model import BODY
 
@@ -39,6 +39,23 @@ def hull_points(car: Car) -> FloatArray:
 
 
 @inlined
+def normal_of(slope: float, lateral: float, heading: float) -> tuple[float, float, float]:
+    """Returns the unit normal of a surface from its slopes in the direction of a heading and to its left."""
+    nz = 1.0 / math.sqrt(1.0 + slope * slope + lateral * lateral)
+    cos, sin = math.cos(heading), math.sin(heading)
+    return (lateral * sin - slope * cos) * nz, -(slope * sin + lateral * cos) * nz, nz
+
+
+@inlined
+def over_edges(ground: Any, s: float, t: float) -> float:
+    """Returns the distance in metres of a point to the nearer edge of the ground; negative outside."""
+    sampled = ground.sampled
+    left = value_at(ground.left, sampled.first, sampled.step, s)
+    right = value_at(ground.right, sampled.first, sampled.step, s)
+    return min(left - t, t - right)
+
+
+@inlined
 def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
     """Adds the contact forces at the hull's points to the forces and moments on the body; moments are in
     world axes."""
@@ -52,16 +69,15 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         by = m[3] * hx + m[4] * hy + m[5] * hz
         bz = m[6] * hx + m[7] * hy + m[8] * hz
         px, py, pz = mj.xpos[BODY, 0] + bx, mj.xpos[BODY, 1] + by, mj.xpos[BODY, 2] + bz
-        s, t, height, slope, heading = locate_on(
+        s, t, height, slope, lateral, heading = locate_on(
             sampled.table, sampled.first, sampled.step, px, py, station + hx
         )
-        nz = 1.0 / math.sqrt(1.0 + slope * slope)
+        nx, ny, nz = normal_of(slope, lateral, heading)
         depth = (height - pz) * nz
-        if depth <= 0.0 or depth > DEEP or abs(t) > ground.edge:
+        if depth <= 0.0 or depth > DEEP or over_edges(ground, s, t) < 0.0:
             continue
-        if s < -ground.edge or s > sampled.length + ground.edge:
+        if s < -ground.beyond or s > sampled.length + ground.beyond:
             continue
-        nx, ny = -slope * math.cos(heading) * nz, -slope * math.sin(heading) * nz
         rx, ry, rz = px - mj.com[BODY, 0], py - mj.com[BODY, 1], pz - mj.com[BODY, 2]
         ux, uy, uz = v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
         up = ux * nx + uy * ny + uz * nz

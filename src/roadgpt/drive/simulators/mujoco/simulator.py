@@ -41,7 +41,8 @@ class MujocoSimulator:
         monitor = DriveMonitor(road, world, self.car.box, keep_driving)
         with guard.watched():
             guard.start(road, world, seed)
-            vehicle.put(monitor.start, -world.lane_width / 2 + self.start_offset)
+            middle = float(world.profile_of(road).middle(monitor.start))
+            vehicle.put(monitor.start, middle + self.start_offset)
             rows, ended = _drive(vehicle, guard, monitor, sensor, road, world)
         columns = Columns({name: rows[:, place] for place, name in enumerate(_NAMES)})
         return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box)

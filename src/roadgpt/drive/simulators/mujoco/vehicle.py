@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
-from roadgpt.drive.sampled_road import SampledRoad, sample_road
+from roadgpt.drive.sampled_road import BANK, GRADE, SampledRoad, sample_road, stations_of
 from roadgpt.drive.simulators.mujoco import bridge
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
 from roadgpt.drive.simulators.mujoco.control import STEPS, control_step
@@ -41,16 +41,14 @@ _PLACE = {name: place for place, name in enumerate(COLUMNS)}
 class Vehicle:
     """One car on a road or a plane; its state changes as it moves."""
 
-    def __init__(
-        self, car: Car, sampled: SampledRoad, lane: LanePolygon, edge: float, friction: float
-    ) -> None:
+    def __init__(self, car: Car, ground: Ground) -> None:
         """Prepares a car on this ground; call `put` to place it."""
         self.car = car
         self._model = model_of(car)
         self._data = mujoco.MjData(self._model)
         self._handles = _handles(self._model, self._data)
         self._cars, self._axles = tables(car)
-        self._ground = Ground(sampled, edge, friction, lane)
+        self._ground = ground
         self._state = np.zeros(STATE)
         self.wheels: FloatArray = np.zeros((4, WHEEL_STATE))
         """The state of the wheels, in the order of `dynamics`: slips, valves, station, load and forces."""
@@ -63,9 +61,11 @@ class Vehicle:
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
-        """Returns a car on a road, with the lanes, shoulder and friction of the world."""
-        edge = world.lane_width + world.verge
-        return cls(car, sample_road(road), LanePolygon.along(road, world), edge, world.friction)
+        """Returns a car on a road with its lanes and shoulders, and the friction of the world."""
+        sampled, profile = sample_road(road), world.profile_of(road)
+        rims = profile.rims(stations_of(sampled))
+        lane = LanePolygon.along(road, world)
+        return cls(car, Ground(sampled, *rims, profile.reach, world.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         """Places the car on its springs at station s and offset t, facing along the road, and starts the
@@ -135,15 +135,29 @@ class Vehicle:
 
     def _point(self, s: float, t: float) -> tuple[float, float, float]:
         x, y, z, heading, *_ = self._row_at(s).tolist()
+        if self._is_banked:
+            left = self._frame(s)[:, 1]
+            return x + t * left[0], y + t * left[1], z + t * left[2]
         return x - t * math.sin(heading), y + t * math.cos(heading), z
 
     def _frame(self, s: float) -> FloatArray:
         """Returns the axes forward, left and up of the road at s, as columns."""
-        _, _, _, heading, grade, *_ = self._row_at(s).tolist()
+        _, _, _, heading, grade, *more = self._row_at(s).tolist()
         along = np.array([math.cos(heading), math.sin(heading), grade])
         along /= np.linalg.norm(along)
         left = np.array([-math.sin(heading), math.cos(heading), 0.0])
-        return np.column_stack([along, left, np.cross(along, left)])
+        up = np.cross(along, left)
+        if self._is_banked:
+            angle = math.atan(more[BANK - GRADE - 1])
+            left, up = (
+                math.cos(angle) * left + math.sin(angle) * up,
+                math.cos(angle) * up - math.sin(angle) * left,
+            )
+        return np.column_stack([along, left, up])
+
+    @property
+    def _is_banked(self) -> bool:
+        return self._ground.sampled.table.shape[1] > BANK
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
@@ -156,9 +170,9 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
     table = np.zeros((3, 8))
     table[:, 0], table[:, 2], table[:, 4], table[:, 6] = s - size / 2, (s - size / 2) * grade, grade, 1.0
     edges = np.column_stack([s - size / 2, np.full(3, size), s - size / 2, np.full(3, -size)])
-    vehicle = Vehicle(
-        car, SampledRoad(table, 0.0, size / 2, size), LanePolygon(edges, size / 2), size, friction
-    )
+    side = np.full(3, size)
+    sampled, lane = SampledRoad(table, 0.0, size / 2, size), LanePolygon(edges, size / 2)
+    vehicle = Vehicle(car, Ground(sampled, side, -side, size, friction, lane))
     vehicle.put(size / 2, 0.0)
     return vehicle
 
