@@ -154,12 +154,13 @@ def on_ribbon(x, y, near):
 def test_the_ribbon_knows_the_road(share, t, off):
     s = share * ROAD.length
     x, y, z = ROAD.at(s, t).tolist()
-    s_found, t_found, height, slope, heading = locate_on(
+    s_found, t_found, height, slope, lateral, heading = locate_on(
         RIBBON.table, RIBBON.first, RIBBON.step, x, y, s + off
     )
     assert s_found == pytest.approx(s, abs=5e-4)
     assert t_found == pytest.approx(t, abs=1e-4)
     assert height == pytest.approx(z, abs=1e-4)
+    assert lateral == 0.0
     assert math.remainder(heading - float(ROAD.heading(s)), math.tau) == pytest.approx(0.0, abs=1e-3)
     # The slope along a line beside the centre line: the same rise over a shorter or longer way.
     crowd = 1 - float(ROAD.curvature(s_found)) * t

@@ -1,9 +1,10 @@
 """Features of a road that predict, without a drive, how close a car will come to leaving its lane.
 
-The best predictor of recorded outcomes is the curvature of the right lane's middle, k / (1 + 2k), averaged
-over some metres, outside the first 25 m and the last 8 m: the car starts from rest, and the test ends 8 m
-before the road does. The features are the largest such curvature to either side over windows of several
-lengths, how fast it changes, the length of the straight before the tightest place, and slopes and crests.
+The best predictor of recorded outcomes is the curvature of the middle of the driven lane, k / (1 + 2k) on a
+road with lanes of 4 m, averaged over some metres, outside the first 25 m and the last 8 m: the car starts
+from rest, and the test ends 8 m before the road does. The features are the largest such curvature to either
+side over windows of several lengths, how fast it changes, the length of the straight before the tightest
+place, and slopes and crests.
 """
 
 from collections.abc import Sequence
@@ -46,7 +47,8 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
     if np.count_nonzero(kept) < 2:
         kept = np.ones(len(samples.s), bool)
     bend, grade = samples.curvature[kept], samples.grade[kept]
-    lane = bend / np.maximum(1 + world.lane_width / 2 * bend, TIGHTEST)
+    middle = world.profile_of(road).middle(samples.s[kept])
+    lane = bend / np.maximum(1 - middle * bend, TIGHTEST)
     means = [_mean(lane, window) for window in WINDOWS]
     crest = -np.gradient(_mean(grade, WINDOWS[1]))
     tight = int(np.abs(means[1]).argmax())

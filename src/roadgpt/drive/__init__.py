@@ -69,7 +69,7 @@ class Simulator(Protocol):
         """Drives from the start of the road until the drive ends.
 
         At every control step the simulator checks these conditions in this order: the car has reached the
-        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside the right lane or,
+        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside its lane or,
         with ``world.lane_departure``, a front tyre is beyond a marking (both unless ``keep_driving``); the
         car has fallen; the time is up. The first condition that holds ends the drive.
 
@@ -104,7 +104,7 @@ def simulate(
     Raises:
         PartError: there is no simulator or driver of that name.
         UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
-            world.
+            world or the superelevation of the road.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
         SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
     """
@@ -114,26 +114,35 @@ def simulate(
     engine: Any = plugins.find("simulators", simulator) if isinstance(simulator, str) else simulator
     if isinstance(engine, type):
         engine = engine()
-    refuse_ignored(engine, world)
+    refuse_ignored(engine, world, road)
     drive: Drive = engine.simulate(world.lay(road), world, made, seed, keep_driving)
     check_motion(drive)
     return drive
 
 
-def refuse_ignored(simulator: Any, world: "World") -> None:
-    """Checks that the world sets nothing that the simulator cannot apply.
+def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -> None:
+    """Checks that the world and the road have nothing that the simulator cannot apply.
 
     Args:
         simulator: the simulator or its class.
         world: a field with its default value counts as not set.
+        road: the road, if it is known; its own superelevation counts as ``World.bank``.
 
     Raises:
-        UsageError: the world sets such a field; the message names it.
+        UsageError: the world sets such a field, or the road has such a property; the message names it.
     """
     from roadgpt.road import World
 
     usual = World()
-    for name in getattr(simulator, "ignores", ()):
+    ignored = getattr(simulator, "ignores", ())
+    profile = None if road is None else road.profile
+    is_banked = profile is not None and profile.superelevation_angle is not None
+    if "bank" in ignored and (is_banked or world.bank != usual.bank):
+        raise UsageError(
+            "this simulator cannot incline roads towards the inside of their bends (superelevation): they "
+            "are level across there; leave out --bank, or drive in the simulator mujoco"
+        )
+    for name in ignored:
         if (value := getattr(world, name)) != getattr(usual, name):
             said = name.replace("_", " ")
             raise UsageError(

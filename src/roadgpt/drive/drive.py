@@ -36,8 +36,8 @@ COLUMNS = {
     "throttle": "0..1, as commanded",
     "brake": "0..1, as commanded",
     "s": "m, along the centre line",
-    "t": "m, left of the centre line",
-    "outside": "0..1, share of the car's box outside the right lane",
+    "t": "m, left of the centre line; with superelevation along the surface, of the point under the car",
+    "outside": "0..1, share of the car's box outside its lane",
 }
 """Names of the columns in their order, each with its unit and meaning."""
 
@@ -139,7 +139,7 @@ class Drive:
 
     @property
     def max_outside(self) -> float:
-        """Largest share of the car's box outside the right lane, 0..1, over the steps that ``lane_steps``
+        """Largest share of the car's box outside its lane, 0..1, over the steps that ``lane_steps``
         counts."""
         return float(self.columns["outside"][: self.lane_steps].max())
 

@@ -57,6 +57,8 @@ class DrivingLine:
     """Grade of the road as a ratio."""
     crest: list[float]
     """Vertical curvature of the road in 1/m, negative on a crest."""
+    superelevation: list[float]
+    """Superelevation of the road in radians, positive where the surface falls to the right."""
 
     def place(self, s: float) -> tuple[int, float]:
         """Returns the index of the last listed station at or before ``s``, and the fraction of the step from
@@ -81,13 +83,16 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
 
     Args:
         road: the road.
-        offset: metres to the left; one number, or one number per station of ``stations(road)``.
+        offset: metres to the left; one number, or one number per station of ``stations(road)``. On a road
+            with superelevation it is measured along the surface.
     """
     s = stations(road)
     step = float(s[1])
     t = np.broadcast_to(np.asarray(offset, float), s.shape)
-    turning = np.gradient(t, step)
-    along = np.maximum(1 - road.curvature(s) * t, LEAST_STRETCH)
+    angle = np.zeros(s.shape) if road.profile is None else road.profile.superelevation(s)
+    across = t * np.cos(angle)
+    turning = np.gradient(across, step)
+    along = np.maximum(1 - road.curvature(s) * across, LEAST_STRETCH)
     stretch = np.hypot(along, turning)
     heading = np.unwrap(road.heading(s)) + np.arctan2(turning, along)
     curvature = np.gradient(heading, step) / stretch
@@ -105,6 +110,7 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
         _longer(stretch, more, 1.0),
         _longer(road.grade(s), more, float(road.grade(s[-1]))),
         _longer(road.vertical_curvature(s), more, 0.0),
+        _longer(angle, more, float(angle[-1])),
     )
 
 

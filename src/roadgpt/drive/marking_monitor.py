@@ -35,7 +35,7 @@ LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per met
 
 
 class MarkingMonitor(NamedTuple):
-    """The markings of the right lane of one road, and the points of a car whose distance to them is
+    """The markings of the driven lane of one road, and the points of a car whose distance to them is
     computed."""
 
     sampled: SampledRoad

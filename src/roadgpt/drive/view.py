@@ -30,8 +30,9 @@ class View(NamedTuple):
     s: float
     """Station of the car, in metres along the road's centre line."""
     t: float
-    """Offset of the car in metres to the left of the centre line; the middle of the right lane is
-    ``-world.lane_width / 2``."""
+    """Offset of the car in metres to the left of the centre line; the middle of its lane is
+    ``world.profile_of(road).middle(s)``. On a road with superelevation it is measured along the surface, to
+    the point at a right angle below the centre of gravity."""
     road: "Road"
     world: "World"
     steer: float

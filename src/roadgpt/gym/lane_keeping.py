@@ -1,4 +1,4 @@
-"""The environment ``roadgpt/LaneKeeping-v0``: keep the right lane of a road that meets a description."""
+"""The environment ``roadgpt/LaneKeeping-v0``: keep the lane of a road that meets a description."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -119,8 +119,9 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
         self._monitor = DriveMonitor(road, self._world, ETK_LIKE.box)
-        self._vehicle.put(self._monitor.start, -self._world.lane_width / 2)
-        self._preview = Preview(road)
+        self._profile = self._world.profile_of(road)
+        self._vehicle.put(self._monitor.start, float(self._profile.middle(self._monitor.start)))
+        self._preview = Preview(road, self._world)
         self._sensor = None if self._camera is None else CameraSensor(self._camera, road, self._world)
         self._scene: Any = None
         self._step, self._row, self._gain = 0, self._vehicle.see(), 0.0
@@ -163,7 +164,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
                 self._vehicle.row, self._step * CONTROL, self._vehicle.has_fallen
             )
         self._row = row = self._vehicle.see()
-        aside = abs(row["t"] + self._world.lane_width / 2)
+        aside = abs(row["t"] - float(self._profile.middle(row["s"])))
         self._gain = row["s"] - before
         reward = self._gain - ASIDE * aside - ROUGH * abs(row["steer"] - steer) / (STEPS * CONTROL)
         reward += {None: 0.0, "goal": ARRIVED, "timeout": 0.0}.get(self._ended, FAILED)

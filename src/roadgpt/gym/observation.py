@@ -24,9 +24,9 @@ MOST = 20.0  # limit of each number after the division
 
 
 class Preview:
-    """Table of curvature and grade of one road, for quick lookup."""
+    """Table of curvature, grade and the middle of the lane of one road, for quick lookup."""
 
-    def __init__(self, road: Road, step: float = 0.5) -> None:
+    def __init__(self, road: Road, world: World, step: float = 0.5) -> None:
         """Samples the road every ``step`` metres; beyond its end the road continues straight and level."""
         s = np.arange(0.0, road.length + max(AHEAD) + step, step)
         on = s <= road.length
@@ -35,6 +35,7 @@ class Preview:
         self._bends = np.where(on, road.curvature(held), 0.0)
         self._grades = np.where(on, road.grade(held), 0.0)
         self._headings = road.heading(held)
+        self._middles = world.profile_of(road).middle(held)
         self._ahead = np.round(np.array(AHEAD) / step).astype(int)
 
     def numbers(self, row: dict[str, float], world: World) -> Floats:
@@ -45,7 +46,7 @@ class Preview:
         car = (
             row["speed"],
             world.speed_limit,
-            row["t"] + world.lane_width / 2,
+            row["t"] - self._middles[here],
             float(wrap_angle(row["heading"] - self._headings[here])),
             row["yaw_rate"],
             row["steer"],

@@ -5,7 +5,9 @@ r"""Plans a driver's speed along its path, limited by the friction circle, in tw
     corner                \______arc_______/                  forward sweep: no faster than the engine allows
 
 Source: the usual quasi-steady method, for example Kapania, Subosits, Gerdes (2016),
-https://doi.org/10.1115/1.4033311.
+https://doi.org/10.1115/1.4033311. On a road that is inclined by the angle e towards the inside of a bend of
+curvature k, the tyres carry ``v^2 k cos e - g sin e`` per mass across the road, and the wheel load per mass
+is ``g cos e + v^2 k sin e``.
 """
 
 import math
@@ -17,6 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.geometry.curve import Array
+from roadgpt.road.profile import Profile
+from roadgpt.road.superelevation import superelevation_for
 from roadgpt.road.world import World
 
 GRAVITY = 9.81  # m/s^2
@@ -49,6 +53,10 @@ class PathGeometry(Protocol):
     def crest(self) -> Sequence[float]:
         """Vertical curvature in 1/m, negative on a crest."""
 
+    @property
+    def superelevation(self) -> Sequence[float]:
+        """Superelevation in radians, positive where the surface falls to the right."""
+
 
 @dataclass(frozen=True)
 class DrivingLimits:
@@ -74,24 +82,40 @@ class _LanePath(NamedTuple):
     curvature: Sequence[float]
     grade: Sequence[float]
     crest: Sequence[float]
+    superelevation: Sequence[float]
 
 
-def expected_speed(curvature: ArrayLike, grade: ArrayLike, step: float, world: World) -> Array:
+def expected_speed(
+    curvature: ArrayLike, grade: ArrayLike, step: float, world: World, profile: Profile | None = None
+) -> Array:
     """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
-    The car drives on dry asphalt in the middle of the right lane, within the speed limit and the default
-    driver's limits of acceleration. Arguments are as for ``lane_speed``.
+    The car drives on dry asphalt in the middle of its lane, within the speed limit and the default driver's
+    limits of acceleration. Arguments are as for ``lane_speed``, and ``profile`` is the road's own
+    cross-section; with None the road has the lanes and the superelevation that the World gives it.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     s = step * np.arange(np.size(curvature))
-    offset = world.usual_profile(float(s[-1]) or step).middle(s)
-    return lane_speed(curvature, grade, step, offset, limits)
+    if profile is not None:
+        angle: ArrayLike = profile.superelevation(s)
+    elif world.bank != "none":
+        ratio = None if world.bank == "auto" else world.bank
+        angle = superelevation_for(np.asarray(curvature, float), world.speed_limit, ratio)
+    else:
+        angle = 0.0
+    lanes = profile or world.usual_profile(float(s[-1]) or step)
+    return lane_speed(curvature, grade, step, lanes.middle(s), limits, angle)
 
 
 def lane_speed(
-    curvature: ArrayLike, grade: ArrayLike, step: float, offset: ArrayLike, limits: DrivingLimits
+    curvature: ArrayLike,
+    grade: ArrayLike,
+    step: float,
+    offset: ArrayLike,
+    limits: DrivingLimits,
+    superelevation: ArrayLike = 0.0,
 ) -> Array:
-    """Returns the speeds in m/s, from a standing start, of a car in the middle of the right lane.
+    """Returns the speeds in m/s, from a standing start, of a car in the middle of its lane.
 
     The car slows down for bends but not for crests. Otherwise a more abrupt crest would have a lower planned
     speed, and would appear gentler than it is.
@@ -102,20 +126,23 @@ def lane_speed(
         step: Distance between stations in metres.
         offset: Offset of the middle of the lane in metres to the left of the centre line, ``(n,)``.
         limits: The limits of acceleration, speed and power that the driver respects.
+        superelevation: Superelevation in radians, positive where the surface falls to the right, ``(n,)`` or
+            one value for all stations.
     """
     bend = np.asarray(curvature, float)
-    along = np.maximum(1 - bend * offset, LEAST_STRETCH)
+    angle = np.broadcast_to(np.asarray(superelevation, float), bend.shape)
+    along = np.maximum(1 - bend * offset * np.cos(angle), LEAST_STRETCH)
     grades = np.broadcast_to(np.asarray(grade, float), bend.shape)
     level = [0.0] * len(bend)
-    lane = _LanePath(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level)
+    lane = _LanePath(step, along.tolist(), (bend / along).tolist(), grades.tolist(), level, angle.tolist())
     return np.array(plan_speed(lane, limits))
 
 
 def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
     """Returns the speed in m/s at every station of the path.
 
-    The wheel load per mass includes the slope and the crest or dip:
-    ``g cos(slope angle) + v^2 * vertical curvature``.
+    The wheel load per mass includes the slope, the crest or dip, and the superelevation in a bend:
+    ``g cos(slope angle) + v^2 * vertical curvature`` on a road that is level across.
     """
     top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
     _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)
@@ -127,13 +154,20 @@ def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
     """Returns the speed at which a bend uses all of the lateral limit, or a crest too much of the load."""
     steep = 1 / math.hypot(1.0, line.grade[i])
     crest = line.crest[i] * steep**3
-    needed = abs(line.curvature[i]) - limits.lateral * crest
+    cos, sin = _inwards(line, i)
+    needed = abs(line.curvature[i]) * (cos - limits.lateral * sin) - limits.lateral * crest
     square = limits.speed**2
     if needed > 1e-9:
-        square = min(square, limits.lateral * GRAVITY * steep / needed)
+        square = min(square, (limits.lateral * cos + sin) * GRAVITY * steep / needed)
     if crest < -1e-9:
         square = min(square, (1 - LIGHTEST) * GRAVITY * steep / -crest)
     return math.sqrt(max(square, SLOWEST**2))
+
+
+def _inwards(line: PathGeometry, i: int) -> tuple[float, float]:
+    """Returns cosine and sine of the superelevation, positive where it falls to the inside of the bend."""
+    angle = line.superelevation[i]
+    return math.cos(angle), -math.copysign(1.0, line.curvature[i]) * math.sin(angle)
 
 
 def _sweep(
@@ -146,8 +180,10 @@ def _sweep(
     for i in order:
         v2 = before * before
         steep = 1 / math.hypot(1.0, line.grade[i])
-        load = max(GRAVITY * steep + v2 * line.crest[i] * steep**3, LIGHTEST * GRAVITY)
-        used = min(v2 * abs(line.curvature[i]) / (lateral * load), 1.0)
+        (cos, sin), bend = _inwards(line, i), v2 * abs(line.curvature[i])
+        load = GRAVITY * steep * cos + bend * sin + v2 * line.crest[i] * steep**3
+        load = max(load, LIGHTEST * GRAVITY)
+        used = min(abs(bend * cos - GRAVITY * steep * sin) / (lateral * load), 1.0)
         pull = min(along * load * math.sqrt(1 - used * used), power / max(before, 1.0))
         pull -= way * GRAVITY * line.grade[i] * steep
         reached = math.sqrt(max(v2 + 2 * pull * line.step * line.stretch[i], SLOWEST**2))

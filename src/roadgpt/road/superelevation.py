@@ -54,8 +54,8 @@ def _of_pieces(plan: PieceCurve, reach: float, speed: float, ratio: float | None
     """Returns knots at both ends of each run-in, and at the ends of the road."""
     pieces = [piece for piece in plan.pieces if piece.length > SHORTEST]
     s = np.r_[0.0, np.cumsum([piece.length for piece in pieces])].tolist()
-    starts = _angles(np.array([piece.k0 for piece in pieces]), speed, ratio).tolist()
-    ends = _angles(np.array([piece.k1 for piece in pieces]), speed, ratio).tolist()
+    starts = superelevation_for(np.array([piece.k0 for piece in pieces]), speed, ratio).tolist()
+    ends = superelevation_for(np.array([piece.k1 for piece in pieces]), speed, ratio).tolist()
     level = [abs(b - a) < EQUAL for a, b in zip(starts, ends, strict=True)]
     spare = [(s[i + 1] - s[i]) / 2 if level[i] else 0.0 for i in range(len(pieces))]
     knots: Knots = [(0.0, starts[0])]
@@ -78,7 +78,11 @@ def _run_in(
     return [(s0 - min(lacking, spare[0]), start), (s1 + min(lacking, spare[1]), end)]
 
 
-def _angles(curvature: Array, speed: float, ratio: float | None) -> Array:
+def superelevation_for(curvature: Array, speed: float, ratio: float | None = None) -> Array:
+    """Returns the angles in radians for curvatures in 1/m, positive to the left, without a run-in.
+
+    Speed and ratio are as for ``superelevation``.
+    """
     bend = np.abs(curvature)
     if ratio is None:
         sizes = np.minimum((speed * 3.6) ** 2 * bend / (100 * SHARE), MOST)
@@ -90,7 +94,9 @@ def _angles(curvature: Array, speed: float, ratio: float | None) -> Array:
 def _smoothed(plan: PlanCurve, s: Array, speed: float, ratio: float | None) -> Array:
     """Returns the mean angle over the run-in length about each station."""
     fine = np.linspace(0.0, plan.length, max(2, math.ceil(plan.length)) + 1)
-    total = np.r_[0.0, np.cumsum(np.diff(fine) * _between(_angles(plan.curvature(fine), speed, ratio)))]
+    total = np.r_[
+        0.0, np.cumsum(np.diff(fine) * _between(superelevation_for(plan.curvature(fine), speed, ratio)))
+    ]
     low, high = np.clip(s - RUN_IN / 2, 0.0, plan.length), np.clip(s + RUN_IN / 2, 0.0, plan.length)
     return np.asarray((np.interp(high, fine, total) - np.interp(low, fine, total)) / (high - low))
 

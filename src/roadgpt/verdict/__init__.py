@@ -1,9 +1,9 @@
 """Judges a Drive on a road, and returns a Verdict. Main function: ``judge``.
 
 The test oracle is that of the SBFT tool competition. The car fails if the share of its
-bounding box outside the right lane exceeds the tolerance at any control step, if it falls off the road, if it
+bounding box outside its lane exceeds the tolerance at any control step, if it falls off the road, if it
 moves less than 1 m in 10 s, or if a time limit is exceeded. It passes if it comes within 8 m of the end of
-the road. The left lane and the shoulder both count as outside. If ``World.lane_departure`` is set, the car
+the road. Any other lane and the shoulder count as outside. If ``World.lane_departure`` is set, the car
 also fails as soon as a front tyre crosses a lane marking. Every verdict states how far outside its lane the
 car was, on the scale of ``roadgpt.verdict.severity``.
 """

@@ -57,7 +57,7 @@ def judge(
     step, cause = known or _first_failure(road, drive, world)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
-    left = _left(drive, step, world)
+    left = _left(road, drive, step, world)
     side: Side | None = ("left" if left else "right") if cause in ("out of lane", "fell") else None
     if cause == "fell":
         least = min(least, -EPSILON)
@@ -107,8 +107,8 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
     return last, CAUSES.get(drive.ended)
 
 
-def _left(drive: "Drive", step: int, world: "World") -> bool:
-    return bool(drive["t"][step] > -world.lane_width / 2)
+def _left(road: "Road", drive: "Drive", step: int, world: "World") -> bool:
+    return bool(drive["t"][step] > world.profile_of(road).middle(drive["s"][step]))
 
 
 def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
@@ -131,7 +131,9 @@ def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Caus
     if cause == "out of lane":
         crossed = has_departed(road, drive, world)[step]
         how = ": a front tyre passed the marking" if crossed else ""
-        return f"left its lane to the {side} {reached} {fast}{how}"
+        is_beside = side == "left" and world.profile_of(road).driven > 0
+        where = ", into the next lane of its direction," if is_beside else ""
+        return f"left its lane to the {side}{where} {reached} {fast}{how}"
     if cause == "fell":
         return f"fell off the road to the {side} {reached} {fast}"
     if cause == "stuck":

@@ -2,7 +2,7 @@ r"""Computes the margin of a drive at every step: the distance to failure in met
 
     margin = how far the car could be shifted sideways, with its heading unchanged, before it fails
 
-The car fails if the share of its bounding box outside the right lane exceeds the tolerance, or if the box
+The car fails if the share of its bounding box outside its lane exceeds the tolerance, or if the box
 extends beyond the outer edge of carriageway and shoulder. Seen across the lane, the area of a rotated box has
 a trapezoidal density, so the position at which the share equals the tolerance is computed exactly. The
 curvature of the lane under the box is taken into account to second order. If lane departures count, the car
@@ -80,9 +80,10 @@ def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
 
     It is negative exactly where the car is out of its lane or off the ground."""
     box = lateral_extent(road, drive)
-    half = world.lane_width / 2
-    in_lane = half + allowed_overhang(world.oob_tolerance, box) - np.abs(box.middle + half)
-    ground = world.lane_width + world.verge - np.abs(box.middle) - box.long - box.short
+    s, profile = drive["s"], world.profile_of(road)
+    half, middle, rims = profile.width(s) / 2, profile.middle(s), profile.rims(s)
+    in_lane = half + allowed_overhang(world.oob_tolerance, box) - np.abs(box.middle - middle)
+    ground = np.minimum(rims.left - box.middle, box.middle - rims.right) - box.long - box.short
     if world.lane_departure:
         from roadgpt.drive.marking_monitor import MarkingMonitor
 

@@ -1,6 +1,6 @@
 """Computes the SBFT competition's out-of-bounds values at every control step of a drive.
 
-Source: SBFT tool competition, self_driving/oob_monitor.py, applied to the right lane. If
+Source: SBFT tool competition, self_driving/oob_monitor.py, applied to the driven lane. If
 ``World.lane_departure`` is set, the car is also out of bounds while a front tyre is beyond a lane marking.
 """
 
@@ -33,9 +33,9 @@ class Oracle(NamedTuple):
     It is 0 before the first time, and earlier times are forgotten, as in the competition's code.
     """
     oob_distance: NDArray[np.float64]
-    """Half the lane width minus the distance of the car's centre from the lane's middle, in metres."""
+    """Half the width of the lane minus the distance of the car's centre from the lane's middle, in metres."""
     oob_percentage: NDArray[np.float64]
-    """Share of the car's bounding box outside the right lane, 0 to 1."""
+    """Share of the car's bounding box outside its lane, 0 to 1."""
 
 
 def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
@@ -50,8 +50,8 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
         if out[i]:
             best = share[i] if went[i] else max(best, share[i])
         largest[i] = best
-    half = world.lane_width / 2
-    distance = half - np.abs(drive["t"] + half)
+    s, profile = drive["s"], world.profile_of(road)
+    distance = profile.width(s) / 2 - np.abs(drive["t"] - profile.middle(s))
     return Oracle(out, counter.astype(np.int64), largest, distance, share)
 
 

@@ -29,7 +29,7 @@ class Verdict:
     sbft_description: str
     """The text that the SBFT competition would give as ``description``, without the simulation's name."""
     max_oob: float
-    """Largest share of the car's bounding box outside the right lane during the drive, 0 to 1.
+    """Largest share of the car's bounding box outside its lane during the drive, 0 to 1.
 
     The step at which the car reached the goal or was stuck is not included.
     """

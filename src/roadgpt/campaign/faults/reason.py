@@ -2,7 +2,7 @@
 
 The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
 g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
-Control, 2nd ed., 2.6; k is the curvature of the right lane's middle, not of the centre line.
+Control, 2nd ed., 2.6; k is the curvature of the middle of the driven lane, not of the centre line.
 """
 
 import math
@@ -84,11 +84,12 @@ def reason_of(run: Run) -> FailureReason:
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:
-    """Returns the curvature, 1/m, of the middle of the right lane at stations of the centre line, in their
+    """Returns the curvature, 1/m, of the middle of the driven lane at stations of the centre line, in their
     shape.
     """
     bend = road.curvature(stations)
-    return np.asarray(bend / np.maximum(1 + bend * world.lane_width / 2, 0.2))
+    middle = world.profile_of(road).middle(stations)
+    return np.asarray(bend / np.maximum(1 - bend * middle, 0.2))
 
 
 def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:

@@ -30,7 +30,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     if not suspects.size:
         return ()
     s = np.linspace(0.0, road.length, max(1, round(road.length / STEP)) + 1)
-    speed = expected_speed(road.curvature(s), road.grade(s), float(s[1]), world)
+    speed = expected_speed(road.curvature(s), road.grade(s), float(s[1]), world, road.profile)
     fastest = np.array([_fastest(s, speed, begin[i], end[i]) for i in suspects])
     felt = fastest**2 * np.abs(bend[suspects])
     if felt.max() <= MOST * (1 + ROUNDING):

@@ -12,12 +12,13 @@ from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
+    from roadgpt.road.profile import Profile
 
 USUAL = 70 / 3.6  # m/s, the limit under which BeamNG's AI was recorded
 BRAKING = 0.9  # g; recordings of BeamNG's AI: 8.5 to 10.8 m/s^2
 TRACTION = 0.7  # g; recordings: 6.7 to 7.2 m/s^2
 SMOOTHING = 5.0  # m, half-width of the Hann window over the lane's curvature
-HALF_TRACK = 0.90  # m from the car's middle to the outer edge of its right wheels
+HALF_TRACK = 0.90  # m from the car's middle to the outer edge of the wheels of one side
 PURSUIT_CUTS = 8.5  # m^2: the car runs inside its line by this times its curvature (measured: 8.0, r = 0.995)
 TIGHTEST = 0.2  # lower bound of 1 + 2k, for centre lines that turn more tightly than the lane can
 
@@ -26,7 +27,7 @@ class BeamngLike:
     """Cuts the inside of every bend, as BeamNG's AI did in recordings.
 
     Its planned line is shifted from the lane's middle towards the inside of the bend by ``cut * tanh(k /
-    sharpness)`` metres, where k is the curvature of the middle of the right lane. It steers towards a point
+    sharpness)`` metres, where k is the curvature of the middle of its lane. It steers towards a point
     of this line ahead of the car, and limits its speed in bends to a given lateral acceleration.
 
     It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
@@ -53,8 +54,9 @@ class BeamngLike:
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
-        edge_room: distance in metres that the right wheels keep from the edge of the carriageway if the world
-            has no shoulder (a floating mesh road); with None the driver ignores the edge and may fall off.
+        edge_room: distance in metres that the right wheels keep from the right edge of the carriageway where
+            it has no shoulder (a floating mesh road), and on a one-way road the left wheels from the left
+            edge; with None the driver ignores the edges and may fall off.
         assumed_friction: friction that it plans for; None: the friction of the world.
         wheelbase: metres.
     """
@@ -93,7 +95,7 @@ class BeamngLike:
         limits = DrivingLimits(
             min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.speed_limit
         )
-        # Like BeamNG's, its plan knows slopes, and no crests.
+        # Like BeamNG's, its plan knows slopes, and no crests; that it knows superelevation is assumed.
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
@@ -101,20 +103,28 @@ class BeamngLike:
         short bends vanish."""
         s = stations(road)
         bend = road.curvature(s)
-        stretch = np.maximum(1 + world.lane_width / 2 * bend, TIGHTEST)
+        stretch = np.maximum(1 - world.profile_of(road).middle(s) * bend, TIGHTEST)
         return _smoothed(bend / stretch, float(s[1]))
 
     def offsets(self, road: "Road", world: "World") -> FloatArray:
         """Returns the offsets of the planned line at its stations, in metres to the left of the road's centre
         line."""
-        s, bend = stations(road), self.bend(road, world)
-        middle = -world.lane_width / 2
+        s, bend, profile = stations(road), self.bend(road, world), world.profile_of(road)
+        middle = profile.middle(s)
         cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
-        offset = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
-        if world.verge == 0 and self.edge_room is not None:
-            inside = np.maximum(-bend, 0.0) * PURSUIT_CUTS
-            offset = np.maximum(offset, HALF_TRACK + self.edge_room + inside - world.lane_width)
-        return np.asarray(offset, float)
+        offset: FloatArray = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
+        return offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
+
+    def _kept_on(self, profile: "Profile", s: FloatArray, bend: FloatArray, offset: FloatArray) -> FloatArray:
+        """Returns the offsets, moved away from edges of the carriageway that have no shoulder."""
+        assert self.edge_room is not None
+        room, edges, rims = HALF_TRACK + self.edge_room, profile.edges(s), profile.rims(s)
+        most = np.maximum(offset, room + np.maximum(-bend, 0.0) * PURSUIT_CUTS + edges.right)
+        kept = np.where(rims.right < edges.right, offset, most)
+        if profile.count[1]:
+            return kept
+        least = np.minimum(kept, edges.left - room - np.maximum(bend, 0.0) * PURSUIT_CUTS)
+        return np.where(rims.left > edges.left, kept, least)
 
     def _joined(self, s: FloatArray) -> FloatArray:
         """Returns the share, 0..1, of the lateral move from the lane's middle, where the car is parked, to

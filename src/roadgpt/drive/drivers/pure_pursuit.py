@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature
+from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature, stations
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -32,9 +32,9 @@ class PurePursuit:
         self.risk, self.headway, self.nearest, self.wheelbase = risk, headway, nearest, wheelbase
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Plans the speed along the middle of the right lane."""
+        """Plans the speed along the middle of the lane."""
         del seed  # the same road is driven the same way every time
-        line = line_along(road, -world.lane_width / 2)
+        line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, 0.95 * world.friction)
         limits = DrivingLimits(lateral, lateral, lateral, world.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits)

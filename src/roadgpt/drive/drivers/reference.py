@@ -1,12 +1,12 @@
-"""The reference driver: steers along the middle of the right lane with feed-forward and look-ahead
+"""The reference driver: steers along the middle of its lane with feed-forward and look-ahead
 feedback."""
 
 import math
 from typing import TYPE_CHECKING
 
-from roadgpt.drive.driving_line import line_along, pedals
+from roadgpt.drive.driving_line import line_along, pedals, stations
 from roadgpt.drive.view import Command, View
-from roadgpt.road.speed_profile import DrivingLimits, plan_speed
+from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -15,13 +15,13 @@ TURN = 2 * math.pi
 
 
 class Reference:
-    """Keeps to the middle of the right lane; a road on which it fails can hardly be driven.
+    """Keeps to the middle of its lane; a road on which it fails can hardly be driven.
 
     Steering follows N. R. Kapania, J. C. Gerdes, "Design of a feedback-feedforward steering controller for
     accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015): the
     steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
-    car, with the slip angle taken into account. Speed is planned on the friction circle, with grades and
-    crests.
+    car, with the slip angle taken into account. Speed is planned on the friction circle, with grades, crests
+    and superelevation.
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
@@ -59,7 +59,7 @@ class Reference:
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
-        line = line_along(road, -world.lane_width / 2)
+        line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, FRICTION_USED * world.friction)
         limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits)
@@ -68,12 +68,13 @@ class Reference:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
         line, v = self._line, max(view.vx, 0.0)
         i, share = line.place(view.s)
-        error = view.t - line.offset[i]
+        error = view.t - line.offset[i] - share * (line.offset[i + 1] - line.offset[i])
         heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
         turned = math.remainder(view.heading - heading, TURN)
         j, share = line.place(view.s + self.lag * v)
         bend = line.curvature[j] + share * (line.curvature[j + 1] - line.curvature[j])
-        lateral = v * v * bend
+        # A road that falls to the right needs force to the left, as a bend to the left does.
+        lateral = v * v * bend + GRAVITY * math.sin(line.superelevation[j])
         drift = self.to_rear * bend - self.slip * lateral
         steer = self.wheelbase * bend + self.understeer * lateral
         steer -= self.gain * (error + (self.ahead + self.headway * v) * (turned + drift))

@@ -73,7 +73,7 @@ def risk_features(points: Sequence[Sequence[float]], world: World = PLAIN) -> Ri
 def _features(road: Road, world: World) -> RiskFeatures:
     s, driver = stations(road), BeamngLike()
     bend = np.abs(road.curvature(s))
-    aside = driver.offsets(road, world) + world.lane_width / 2
+    aside = driver.offsets(road, world) - world.profile_of(road).middle(s)
     away = np.abs(aside + PURSUIT_CUTS * driver.bend(road, world))
     counts = (s >= GETTING_GOING) & (s <= road.length - ARRIVED)
     away = away[counts] if counts.any() else away

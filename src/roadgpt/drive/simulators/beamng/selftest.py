@@ -115,10 +115,10 @@ class Selftest:
         )
 
     def _ai(self, road: Road) -> tuple[bool, str]:
-        return self._told(self.simulator.simulate(road, WORLD, BeamngLike(), 0))
+        return self._told(road, self.simulator.simulate(road, WORLD, BeamngLike(), 0))
 
-    def _told(self, drive: Drive) -> tuple[bool, str]:
-        off = drive["t"] + WORLD.lane_width / 2
+    def _told(self, road: Road, drive: Drive) -> tuple[bool, str]:
+        off = drive["t"] - WORLD.profile_of(road).middle(drive["s"])
         way, fast = drive["s"][-1], drive["speed"].max() * 3.6
         said = (
             f"{drive.driver} ended with '{drive.ended}' after {drive.duration:.1f} s and {way:.0f} m, "
@@ -144,10 +144,11 @@ class Selftest:
         return len(ends) == 1, said
 
     def _driver(self) -> tuple[bool, str]:
-        drive = self.simulator.simulate(bent(-10.0, 0.0), WORLD, Reference(), 0)
+        road = bent(-10.0, 0.0)
+        drive = self.simulator.simulate(road, WORLD, Reference(), 0)
         gain = self._session.gain or 0.0
         side = "left" if gain > 0 else "right"
-        is_fine, said = self._told(drive)
+        is_fine, said = self._told(road, drive)
         turned = f"steering input +1 turns the wheels {np.degrees(abs(gain)):.0f} degrees to the {side}"
         return is_fine, f"{said}; {turned}"
 

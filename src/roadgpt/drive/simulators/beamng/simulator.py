@@ -28,7 +28,8 @@ class BeamngSimulator:
     BeamNG; a second failure is a SimulatorError of that road.
     """
 
-    ignores = ("friction",)  # the surfaces are those of the level's materials
+    # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.
+    ignores = ("friction", "bank")
 
     def __init__(self, settings: BeamngSettings | None = None) -> None:
         """Uses these settings; None stands for those of the environment.

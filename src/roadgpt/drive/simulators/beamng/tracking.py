@@ -144,7 +144,7 @@ class RoadTracker:
         return s, t, height
 
     def outside(self, now: CarSample, s: float) -> float:
-        """Returns the share of the box outside the right lane, 0..1."""
+        """Returns the share of the box outside its lane, 0..1."""
         ch, sh = math.cos(now.heading), math.sin(now.heading)
         cp, sp = math.cos(now.pitch), math.sin(now.pitch)
         cr, sr = math.cos(now.roll), math.sin(now.roll)
@@ -160,7 +160,7 @@ def station_of(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float]:
     """Returns station, offset and height of the road at a point, searching near station s."""
-    at, t, height, _, _ = locate_on(table, first, step, x, y, s)
+    at, t, height, _, _, _ = locate_on(table, first, step, x, y, s)
     return at, t, height
 
 

@@ -157,7 +157,7 @@ class Vehicle:
 
     @property
     def _is_banked(self) -> bool:
-        return self._ground.sampled.table.shape[1] > BANK
+        return bool(self._ground.sampled.table.shape[1] > BANK)
 
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
