@@ -289,6 +289,18 @@ def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
         assert (place / target).is_file(), target
 
 
+def test_a_report_names_the_lanes_and_banks_of_its_roads(tmp_path: Path) -> None:
+    words = ["run", "two left turns", "-n", "1", "--seed", "4", "--no-plot", "--reader", "grammar", "-q"]
+    for bank, said in (("auto", "bank auto"), ("5", "bank 5 %")):
+        place = tmp_path / bank
+        lanes = ["--lanes", "2+1", "--lane-width", "3.5", "--bank", bank, "--out", str(place)]
+        assert CliRunner().invoke(app, [*words, *lanes]).exit_code == 0
+        assert CliRunner().invoke(app, ["report", str(place)]).exit_code == 0
+        text = (place / "report.md").read_text()
+        for each in ("lanes 2+1", "lane width 3.5 m", said):
+            assert each in text
+
+
 def test_folders_that_hold_nothing(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(tmp_path)])
     assert result.exit_code == 2

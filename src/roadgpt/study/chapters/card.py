@@ -14,6 +14,7 @@ DIGITS = 16  # of a hash
 UNITS = {
     "speed_limit": (3.6, " km/h"),
     "max_grade": (100.0, " %"),
+    "bank": (100.0, " %"),
     "friction": (1.0, ""),
     "oob_tolerance": (1.0, ""),
 }
@@ -41,12 +42,13 @@ def card_of(
     return out | {"versions": _versions(parts)}
 
 
-def _said(name: str, value: float) -> str:
+def _said(name: str, value: float | str) -> str:
     """Returns a field of a World as a sentence shows it, in the unit in which users give it."""
-    if isinstance(value, bool):
-        return f"{name.replace('_', ' ')} {'counted' if value else 'not counted'}"
     factor, unit = UNITS.get(name, (1.0, " m"))
-    return f"{name.replace('_', ' ')} {value * factor:.4g}{unit}"
+    shown = value if isinstance(value, str) else f"{value * factor:.4g}{unit}"
+    if isinstance(value, bool):
+        shown = "counted" if value else "not counted"
+    return f"{name.replace('_', ' ')} {shown}"
 
 
 def _versions(parts: Sequence[StudyPartRecord]) -> str:
