@@ -46,7 +46,8 @@ class Commands(click.Group):
         """Imports and returns the command of that name; None if there is none."""
         if name not in COMMANDS:
             return None
-        command: click.Command = import_module(f"roadgpt.cli.commands.{_module(name)}").command
+        module = f"{name}_" if iskeyword(name) else name
+        command: click.Command = import_module(f"roadgpt.cli.commands.{module}").command
         return command
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -70,19 +71,15 @@ class Commands(click.Group):
         if told and not ctx.resilient_parsing:
             click.echo(f"roadgpt: {told}", err=True)
         name = args[0]
-        if name not in COMMANDS and " " in name.strip():
-            raise click.UsageError(f'to make roads from a description, say: roadgpt run "{name}"', ctx)
+        if name in COMMANDS or (name.startswith("-") and " " not in name.strip()):
+            return super().resolve_command(ctx, args)
         near = get_close_matches(name.lower(), [*COMMANDS, *(words[0] for words in EARLIER)], 1)
-        if name not in COMMANDS and near and not name.startswith("-"):
+        advice = f"No such command '{name}'; there are: {', '.join(COMMANDS)}. Is it a description? Say:"
+        if " " in name.strip():
+            advice = "to make roads from a description, say:"
+        elif near:
             raise click.UsageError(f"No such command '{name}'. Did you mean '{near[0]}'?", ctx)
-        if name not in COMMANDS and not name.startswith("-"):
-            known = ", ".join(COMMANDS)
-            raise click.UsageError(
-                f"No such command '{name}'; there are: {known}. Is it a description? "
-                f'Say: roadgpt run "{name}"',
-                ctx,
-            )
-        return super().resolve_command(ctx, args)
+        raise click.UsageError(f'{advice} roadgpt run "{name}"', ctx)
 
     def parse_args(self, ctx: click.Context, args: list[str]) -> list[str]:
         """Parses the arguments after ``roadgpt``.
@@ -157,11 +154,6 @@ def _confirm(question: str) -> bool:
     if not (sys.stdin and sys.stdin.isatty() and sys.stderr.isatty()):
         return False
     return click.confirm(f"roadgpt: {question}", default=False, err=True)
-
-
-def _module(name: str) -> str:
-    """Returns the module of a command; a keyword of Python gets an underscore."""
-    return f"{name}_" if iskeyword(name) else name
 
 
 def _with_advice(error: click.ClickException) -> click.ClickException:

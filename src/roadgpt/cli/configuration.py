@@ -12,6 +12,7 @@ option.
 
 from collections.abc import Callable, Sequence
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -124,21 +125,15 @@ def path_guard(value: str, place: str) -> str:
     return place_guard(value, place)
 
 
-def reader_guard(value: str, place: str) -> str:
-    """Refuses a reader that has a path or asks a language model if a file of the working folder names it."""
-    return _plugin_refusal("readers", value, place)
-
-
-def designer_guard(value: str, place: str) -> str:
-    """Refuses a designer that asks a language model if a file of the working folder names it."""
-    return _plugin_refusal("designers", value, place)
-
-
-def _plugin_refusal(shelf: str, value: str, place: str) -> str:
+def _plugin_guard(kind: str, value: str, place: str) -> str:
+    """Refuses a plug-in that has a path or asks a language model if a file of the working folder names it."""
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model
 
     name, colon, _ = value.partition(":")
-    if place == OF_FOLDER and (colon or asks_a_model(plugins.find(shelf, name))):
+    if place == OF_FOLDER and (colon or asks_a_model(plugins.find(kind, name))):
         return YOURSELF
     return ""
+
+
+reader_guard, designer_guard = partial(_plugin_guard, "readers"), partial(_plugin_guard, "designers")

@@ -6,7 +6,7 @@ import sys
 import click
 
 from roadgpt import stopping
-from roadgpt.cli import edit_job
+from roadgpt.cli.commands.edit import edit_road
 from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.run_job import carry_out
 from roadgpt.cli.screen import Screen
@@ -85,8 +85,7 @@ def _changed(screen: Screen) -> bool:
             continue
         number, words = _numbered(answer, len(roads))
         try:
-            job = edit_job.EditJob(roads[number], words, None, "planner", World())
-            roads[number] = str(edit_job.edit_road(job, Screen(1)))
+            roads[number] = str(edit_road(Screen(1), roads[number], words, World()))
         except RoadGPTError as error:
             click.echo(f"roadgpt: {error}", err=True)
     return True

@@ -1,7 +1,7 @@
 """``--junit``: writes tests as JUnit XML, for continuous integration."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,28 +15,21 @@ LONGEST = 120  # letters of a suite's name
 UNKNOWN = "roads that were given"
 
 
-@dataclass(frozen=True)
-class Junit:
-    """A JUnit file, and the properties that its tests share."""
+def junit_writer(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], object] | None":
+    """Returns a function that writes one test case for each row; None if no path is given.
 
-    path: Path
-    name: str
-    properties: "Properties"
+    Args:
+        path: The JUnit file to write.
+        request: The request that all the tests share.
 
-    @classmethod
-    def of(cls, path: Path | None, request: "Request") -> "Junit | None":
-        """Returns the JUnit file for the tests of one request; None if no path is given."""
-        return None if path is None else cls(path, _named(request.words), common(request))
+    The function raises RoadGPTError if the file cannot be written.
+    """
+    if path is None:
+        return None
+    from roadgpt.report.junit import Suite, write_junit
 
-    def write(self, rows: Sequence[Row]) -> None:
-        """Writes one test case for each row.
-
-        Raises:
-            RoadGPTError: The file cannot be written.
-        """
-        from roadgpt.report.junit import Suite, write_junit
-
-        write_junit(self.path, [Suite(self.name, self.properties, lambda: map(_case, rows))])
+    name, shared = _named(request.words), common(request)
+    return lambda rows: write_junit(path, [Suite(name, shared, lambda: map(_case, rows))])
 
 
 def write_folder(path: Path, folder: Path) -> None:
@@ -73,13 +66,12 @@ def _of_runs(folder: Path) -> "Suite":
     from roadgpt.run.sbft_json import test_name
 
     request = read_card(folder).request
-
-    def cases() -> Iterator["Case"]:
-        for index in finished(folder):
-            name = test_name(index)
-            yield _case(row_of(read_run(run_folder(folder, index)), str(folder / name), name))
-
-    return Suite(_named(request.words), common(request), cases)
+    names = [(test_name(index), run_folder(folder, index)) for index in finished(folder)]
+    return Suite(
+        _named(request.words),
+        common(request),
+        lambda: (_case(row_of(read_run(place), str(folder / name), name)) for name, place in names),
+    )
 
 
 def _of_campaign(folder: Path) -> Iterator["Suite"]:
@@ -93,10 +85,7 @@ def _of_campaign(folder: Path) -> Iterator["Suite"]:
             name = _named(cell.request.words)
             shown = name if len(cells) == 1 else f"{cell.name}: {name}"
             told = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
-
-            def cases(cell: str = cell.name, words: str = cell.request.words) -> Iterator["Case"]:
-                return _of_cell(folder, cell, words)
-
+            cases = partial(_of_cell, folder, cell.name, cell.request.words)
             yield Suite(shown, {**common(cell.request), **told}, cases)
 
 
@@ -154,20 +143,8 @@ def common(request: "Request") -> "Properties":
 def _case(row: Row) -> "Case":
     from roadgpt.report.junit import Case
 
+    numbers = {name: getattr(row, name) for name in ("seed", "max_oob", "beyond_m", "margin_m", "length_m")}
     return Case(
-        name=row.name or row.file,
-        outcome=row.test_outcome,
-        says=row.description,
-        kind=row.cause or "",
-        seconds=row.seconds,
-        file=row.file,
-        trace=row.trace,
-        properties={
-            "words": row.words or None,
-            "seed": row.seed,
-            "max_oob": row.max_oob,
-            "beyond_m": row.beyond_m,
-            "margin_m": row.margin_m,
-            "length_m": row.length_m,
-        },
-    )
+        row.name or row.file, row.test_outcome, row.description, row.cause or "", row.seconds, row.file,
+        row.trace, {"words": row.words or None, **numbers},
+    )  # fmt: skip

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from roadgpt.cli.crash import crashes_go_to
-from roadgpt.cli.junit import Junit
+from roadgpt.cli.junit import junit_writer
 from roadgpt.cli.next_steps import lines, of_rows
 from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
@@ -66,7 +66,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, beside, meter)
-    screen.junit = Junit.of(job.junit, work.request)
+    screen.junit = junit_writer(job.junit, work.request)
     screen.say(understood(brief, job.world.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)

@@ -15,7 +15,7 @@ from roadgpt.cli.result_row import WIDEST, Row, colour_of, summary
 from roadgpt.cli.streams import is_coloured
 
 if TYPE_CHECKING:
-    from roadgpt.cli.junit import Junit
+    from collections.abc import Callable, Sequence
 
 
 class Screen:
@@ -31,7 +31,7 @@ class Screen:
         as_json: bool = False,
         quiet: bool = False,
         verbose: bool = False,
-        junit: "Junit | None" = None,
+        junit: "Callable[[Sequence[Row]], object] | None" = None,
     ) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
         self.junit = junit
@@ -83,7 +83,7 @@ class Screen:
     def close(self) -> None:
         """Prints the table of outcomes, and writes the JUnit file if one was requested."""
         if self.junit is not None:
-            self.junit.write(self.rows)
+            self.junit(self.rows)
         if self.quiet or self.as_json or not self.rows:
             return
         _show("")

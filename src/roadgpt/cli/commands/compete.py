@@ -124,16 +124,12 @@ def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
             if work.ending is not None:
                 screen.say(f"the generator: {work.ending.sentence}")
             if screen.rows and formats:
-                _overview(work.folder, formats)
+                from roadgpt.report import overview
+
+                overview(work.folder, formats)
             if work.folder.is_dir():
                 screen.say(f"tests and tables: {work.folder}")
     return 0 if work.ending is None or work.ending.is_fine else FAILED
-
-
-def _overview(folder: Path, formats: Any) -> None:
-    from roadgpt.report import overview
-
-    overview(folder, formats)
 
 
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"

@@ -80,7 +80,7 @@ def examined() -> Iterator[CheckResult]:
     for name in LIBRARIES:
         yield _library(name)
     yield from _shelves()
-    yield _model()
+    yield _tried("model", _model)
     yield _tried("numba", _numba)
     yield _tried("test drive", _drive)
     for place in (Path.cwd(), Path(tempfile.gettempdir())):
@@ -111,20 +111,19 @@ def _shelves() -> Iterator[CheckResult]:
     )
 
 
-def _model() -> CheckResult:
+def _model() -> str:
     """Checks that the language model of the settings can be asked; naming none is fine."""
     from roadgpt.chat.diagnosis import diagnose
 
-    try:
-        return CheckResult("model", True, diagnose())
-    except RoadGPTError as error:
-        return CheckResult("model", False, str(error))
+    return diagnose()
 
 
 def _tried(about: str, look: Callable[[], str]) -> CheckResult:
     """Returns the result of a check; whatever the check raises becomes its result."""
     try:
         return CheckResult(about, True, look())
+    except RoadGPTError as error:
+        return CheckResult(about, False, str(error))
     except Exception as error:
         return CheckResult(about, False, f"{type(error).__name__}: {error}")
 

@@ -1,6 +1,7 @@
 """``roadgpt drive``: drives roads from files, or tests of a campaign again."""
 
 import sys
+from collections.abc import Sequence
 from contextlib import redirect_stdout
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,17 +10,19 @@ import click
 from click.core import ParameterSource
 
 from roadgpt.cli import options
-from roadgpt.cli.drive_again import drive_again
-from roadgpt.cli.junit import Junit
+from roadgpt.cli.campaigns import one_line
+from roadgpt.cli.junit import junit_writer
 from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver_again, folder
 from roadgpt.cli.result_row import Row, row_of
-from roadgpt.cli.roads import blueprint_of, each_road
+from roadgpt.cli.roads import blueprint_of, each_road, made
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.selection import Choice, Selection
+    from roadgpt.report import Format, Scale
     from roadgpt.road import World
     from roadgpt.run.lost_drives import LostDrives
     from roadgpt.run.model import Setup
@@ -82,7 +85,7 @@ def command(
     with redirect_stdout(sys.stderr):
         check_parts(setup, world)  # a driver that does not exist is told of before any road is looked at
     asked = Request(seed=seed, world=world, setup=setup)
-    screen = Screen(len(files), as_json, quiet, verbose, Junit.of(junit, asked))
+    screen = Screen(len(files), as_json, quiet, verbose, junit_writer(junit, asked))
     losses: LostDrives[str] = LostDrives()
     each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0
@@ -125,3 +128,87 @@ def _driven(
             run.description, f"see to it and drive the roads from {losses.lost[0]} on again"
         )
     return row_of(run, file)
+
+
+AGAIN = "again"  # folder of a campaign
+
+
+def drive_again(
+    names: Sequence[str],
+    choice: "Choice | None",
+    out: Path | None,
+    driver: str | None,
+    axes: "Scale",
+    formats: "tuple[Format, ...]",
+) -> None:
+    """Drives tests of a campaign again, writes their runs, and prints which results differ from the stored
+    ones.
+
+    Args:
+        names: A campaign and numbers of its tests, or tests with the folders of their campaigns.
+        choice: Which tests to drive if a name means a whole campaign.
+        out: Folder for the runs; None: ``again`` in the campaign's folder.
+        driver: The campaign's driver as given with ``--driver``; None if it was not given.
+        axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
+        formats: Formats of the pictures; none are drawn if empty.
+
+    Raises:
+        UsageError: A name is wrong, or the driver is not that of the campaign.
+    """
+    from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.campaign.rerun import is_same, run_again
+    from roadgpt.drive.permission import check_named_driver
+    from roadgpt.report import drawing
+    from roadgpt.run import write_run
+
+    tests = _named(names, choice)
+    for folder_ in {place.folder for place in tests}:
+        check_named_driver(driver, drivers_of(folder_), folder_)
+    draw = drawing(axes, formats) if formats else None
+    for place in tests:
+        cell, number = place.cell, place.number or 0
+        run, result = run_again(place.folder, cell, number)
+        home = (out or place.folder / AGAIN) / cell
+        written = write_run(run, _made(home), draw)
+        click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
+        if not is_same(run, result):
+            said = f"{result.outcome} in the campaign ({one_line(result.description)})"
+            click.echo(
+                f"roadgpt: test {number} of {cell} was {said}; it was driven with another version of roadgpt "
+                "or on another machine",
+                err=True,
+            )
+
+
+def _made(path: Path) -> Path:
+    from roadgpt.run.atomic import refuse_links
+
+    refuse_links(*([path.parent] if path.parent.name == AGAIN else []), path)
+    return made(path)
+
+
+def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
+    """Returns the tests that the names mean; numbers belong to the campaign that comes first."""
+    from roadgpt.campaign.record import no_campaign
+    from roadgpt.campaign.selection import chosen, selection_of
+
+    first = selection_of(names[0])
+    if first is None or not first.is_campaign:
+        raise no_campaign(Path(names[0]))
+    if first.number is None and choice is None and len(names) == 1:
+        raise UsageError(
+            f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or --worst, --faults or "
+            "--failures"
+        )
+    out = [] if first.number is None and choice is None else chosen(first, choice)
+    for name in names[1:]:
+        is_number = name.rpartition("/")[2].isdecimal()
+        place = (
+            (selection_of(f"{first.folder}/{name}") or selection_of(name)) if is_number or choice else None
+        )
+        if place is None or not place.is_campaign or (place.number is None and choice is None):
+            raise UsageError(f"'{one_line(name, 40)}' is not a test; give its number, such as 17 or c02/17")
+        out += chosen(place, choice)
+    if not out:
+        raise UsageError(f"{first.said} has no test for --{choice}")
+    return out

@@ -1,14 +1,25 @@
 """``roadgpt edit``: changes a road as a request in words says."""
 
-from typing import Any
+import json
+import sys
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.edit_job import EditJob, edit_road
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
+from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
+
+if TYPE_CHECKING:
+    from roadgpt.chat import ChatSettings
+    from roadgpt.design.edit import Edited
+    from roadgpt.report import Format
+    from roadgpt.road import World
+    from roadgpt.run.editing import Original
 
 PARAMETERS = (
     Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
@@ -39,13 +50,100 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
     The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
     a road that cannot be valid. In these cases nothing is written.
     """
-    job = EditJob(
+    edit_road(
+        Screen(1, as_json, quiet),
         run,
         " ".join(words),
-        world=options.world_of(rest),
+        options.world_of(rest),
         chat=options.chat_of(rest, designer=rest["designer"]),
         pictures=options.pictures_of(rest),
         drives=not rest.pop("no_drive"),
         **rest,
     )
-    edit_road(job, Screen(1, as_json, quiet))
+
+
+def edit_road(
+    screen: Screen, road: str, words: str, world: "World", out: Path | None = None, designer: str = "planner",
+    chat: "ChatSettings | None" = None, driver: str | None = None, drives: bool = True,
+    pictures: "tuple[Format, ...]" = ("png",),
+) -> Path:  # fmt: skip
+    """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
+
+    Args:
+        screen: Prints the result.
+        road: The folder of a run, a test of a campaign, or a file with a design.
+        words: The change request.
+        world: The World of a design that belongs to no run.
+        out: The folder for the changed road; None: a new one.
+        designer: The plug-in that changes the road.
+        chat: The settings of its language model; None if it asks none.
+        driver: The run's driver as given with ``--driver``; None if it was not given.
+        drives: Whether to drive the changed road, if the run was driven.
+        pictures: The formats of the pictures; none are drawn if empty.
+
+    Raises:
+        RoadGPTError: The request or the road cannot be used; nothing is written.
+    """
+    from roadgpt.drive.permission import check_named_driver, require_permission
+    from roadgpt.run import Setup, prove
+    from roadgpt.run.editing import folder_for, original, reject_used, write_edit
+    from roadgpt.run.sbft_json import test_name
+
+    if out is not None:
+        reject_used(out)
+    before = _of_test(road) or original(road, world, Setup())
+    for remark in before.remarks:
+        screen.say(f"{road}: {remark}")
+    check_named_driver(driver, {before.setup.driver}, road)
+    if drives and before.setup.drives:
+        require_permission(before.setup.driver)
+    made = _edited(before, words, designer, chat, screen)
+    drives = drives and before.setup.drives
+    setup = before.setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
+    old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
+    with redirect_stdout(sys.stderr):  # a user's driver may print
+        run = prove(made.design, before.seed, before.world, setup)
+    folder = folder_for(words, before.seed, out)
+    draw = options.drawing_of(pictures)
+    place = write_edit(run, old, words, made.changes, before.path, folder, draw)
+    row = row_of(run, str(folder / test_name(1)), test_name(1))
+    if screen.as_json:
+        told = {"request": words, "of": before.path, "changes": made.changes, "unused": made.unused}
+        print(json.dumps({**told, **json.loads(row.to_json())}, ensure_ascii=False))
+        return place
+    for sentence in made.changes:
+        screen.say(sentence)
+    if made.unused:
+        screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
+    with screen:
+        screen.row(row)
+    screen.say(f"changed road: {place}")
+    if pictures:
+        kind = pictures[0]
+        screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
+    return place
+
+
+def _of_test(road: str) -> "Original | None":
+    """Returns the design of a test or of a run by its number; None if the name is something else."""
+    from roadgpt.campaign.selection import selection_of
+    from roadgpt.run.editing import original_of
+
+    place = selection_of(road)
+    return None if place is None or place.number is None else original_of(place.run(), place.said)
+
+
+def _edited(
+    before: "Original", words: str, designer: str, chat: "ChatSettings | None", screen: Screen
+) -> "Edited":
+    """Returns the changed design, and prints what a language model has cost even if the change failed."""
+    from roadgpt.chat import Meter, counting
+    from roadgpt.design.edit import edit
+
+    meter = Meter.of(chat)
+    try:
+        with counting(meter, "edit"):
+            return edit(before.design, words, before.world, before.setup.geometry, designer, chat)
+    finally:
+        if meter.spent.calls:
+            screen.say(f"language model: {spending(meter.spent)}")

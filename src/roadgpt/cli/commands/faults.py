@@ -90,7 +90,9 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     for driver in sorted(drivers_of(place)):
         require_permission(driver)  # here, where the user can be asked, and not in each of the workers
     look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-    draw = _draws(bool(look.formats))
+    draw: FailureDrawing | None = None
+    if look.formats:
+        from roadgpt.report.fault import draw_fault as draw
     tasks = [
         fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
         for each in found.them
@@ -107,14 +109,6 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
     look.say(f"tables: {table} and {table.with_name(fault_log.FAILURES)}")
     if look.formats:
         look.say(f"pictures: {_pictures(place, found, look.formats)}")
-
-
-def _draws(has_pictures: bool) -> "FailureDrawing | None":
-    if not has_pictures:
-        return None
-    from roadgpt.report.fault import draw_fault
-
-    return draw_fault
 
 
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
