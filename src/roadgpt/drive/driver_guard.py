@@ -20,7 +20,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from roadgpt.drive.view import View
@@ -83,7 +83,9 @@ class DriverGuard:
         """
         start = getattr(self._driver, "start", None)
         if start is not None:
-            self.guarded(0.0, self._before_start, lambda: start(road, world, seed))
+            limit = self._before_start
+            late = f"was not ready within {limit:g} s: make start() return sooner"
+            self._timed(start, (road, world, seed), limit, 0.0, late)
 
     def ask(self, view: View) -> tuple[float, float, float]:
         """Asks the driver for a command and returns it as (steer, throttle, brake): finite numbers, steer in
@@ -93,16 +95,7 @@ class DriverGuard:
             DriverError: the driver raised an exception or hung, or its answer is not a command.
         """
         begun = time.perf_counter()
-        self._due = begun + self._one_answer
-        try:
-            answer = self._steer(view)  # type: ignore[misc]
-            self._due = math.inf
-        except (KeyboardInterrupt, RemoteDriverError):
-            raise
-        except BaseException as error:  # a driver may raise anything; it costs this drive only
-            raise self._failure(error, view.time) from error
-        finally:
-            self._due = math.inf
+        answer = self._timed(self._steer, (view,), self._one_answer, view.time)
         self._used += time.perf_counter() - begun
         if self._used > self._whole_drive:
             raise DriverError(
@@ -111,23 +104,19 @@ class DriverGuard:
             )
         return self._checked(answer, view.time)
 
-    def guarded(self, at: float, limit: float, action: Callable[[], Any]) -> None:
-        """Runs an action of the driver before its drive; error messages give ``at`` as its time in seconds.
-
-        Raises:
-            DriverError: the action raised an exception, or took longer than ``limit`` seconds.
-        """
+    def _timed(self, method: Any, given: tuple[Any, ...], limit: float, at: float, late: str = "") -> Any:
+        """Calls a method of the driver, at time ``at`` of its drive, and stops it after ``limit`` seconds."""
         self._due = time.perf_counter() + limit
         try:
-            action()
+            answer = method(*given)
             self._due = math.inf
         except (KeyboardInterrupt, RemoteDriverError):
             raise
-        except BaseException as error:  # as in `ask`
-            late = f"was not ready within {limit:g} s: make start() return sooner"
+        except BaseException as error:  # a driver may raise anything; it costs this drive only
             raise self._failure(error, at, late) from error
         finally:
             self._due = math.inf
+        return answer
 
     def _checked(self, answer: Any, at: float) -> tuple[float, float, float]:
         try:

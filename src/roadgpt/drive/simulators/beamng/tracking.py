@@ -132,10 +132,6 @@ class RoadTracker:
         self._underside = body.underside
         self._near = 0.0
 
-    def begin(self, s: float) -> None:
-        """Sets the station from which the next search for the car starts."""
-        self._near = s
-
     def place(self, x: float, y: float) -> tuple[float, float, float]:
         """Returns station, offset and height of the road at a point."""
         sampled = self._sampled
