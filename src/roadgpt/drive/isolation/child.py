@@ -18,8 +18,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from roadgpt.children import private_streams
 from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.driver_guard import DriverGuard
@@ -27,7 +25,7 @@ from roadgpt.drive.isolation import protocol
 from roadgpt.drive.loading import load_driver
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError, UsageError
-from roadgpt.road import Road, World  # noqa: F401 - now, and not while the driver's time counts
+from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
 LOOK = 1.0  # s between two checks that the asking process still exists
 ALONE = 90.0  # s without any Python running here, in which nothing can check; longer than a driver may take
@@ -69,7 +67,7 @@ class _InitialState:
 
 
 class _DriverHost:
-    """Holds one driver at a time."""
+    """Holds one driver at a time; its methods answer the requests of the same names."""
 
     def __init__(self) -> None:
         self._start = _InitialState()
@@ -78,33 +76,31 @@ class _DriverHost:
         self._world: Any = None
         self._picture: Any = None
 
-    def answer(self, kind: int, body: bytes) -> protocol.Packet:
-        """Returns the answer to a packet."""
-        if kind == protocol.VIEW:
-            return protocol.Packet(protocol.COMMAND, protocol.ANSWER.pack(*self._guard.ask(self._seen(body))))
-        if kind == protocol.MAKE:
-            return protocol.Packet(protocol.MADE, json.dumps(self._make(*pickle.loads(body))).encode())  # noqa: S301 - ours
-        if kind == protocol.SCENE:
-            self._road, self._world = pickle.loads(body)  # noqa: S301 - ours
-        else:
-            self._guard.start(self._road, self._world, pickle.loads(body))  # noqa: S301 - ours
-        return protocol.Packet(protocol.MADE, b"{}")
-
-    def _make(self, spec: str, *surroundings: Any) -> dict[str, Any]:
+    def make(self, spec: str, *surroundings: Any) -> dict[str, Any]:
+        """Creates a driver; folder, environment and module path are those of the process that asks."""
         self._start.restore(*surroundings)
         driver = load_driver(spec)
         camera = camera_of(driver)
         self._guard = DriverGuard(driver)
         return {"name": self._guard.name, "camera": camera}
 
-    def _seen(self, body: bytes) -> View:
-        *numbers, state, height, width = protocol.SEEN.unpack_from(body)
-        if state == protocol.NEW_PICTURE:
-            pixels = np.frombuffer(bytearray(memoryview(body)[protocol.SEEN.size :]), np.uint8)
-            self._picture = pixels.reshape(height, width, 3)
-        image = None if state == protocol.NO_PICTURE else self._picture
-        place, motion = numbers[:9], numbers[9:]
-        return View._make((*place, self._road, self._world, *motion, image))
+    def show(self, road: Road, world: World) -> dict[str, Any]:
+        """Keeps the road and the world for the views to come."""
+        self._road, self._world = road, world
+        return {}
+
+    def start(self, seed: int) -> dict[str, Any]:
+        """Calls the driver's ``start``."""
+        self._guard.start(self._road, self._world, seed)
+        return {}
+
+    def steer(self, place: tuple[float, ...], motion: tuple[float, ...], image: Any) -> dict[str, Any]:
+        """Asks the driver for a command; place and motion are the fields of a View around road and world."""
+        if image is not None and not isinstance(image, str):
+            self._picture = image
+        picture = None if image is None else self._picture
+        view = View._make((*place, self._road, self._world, *motion, picture))
+        return {"command": self._guard.ask(view)}
 
     def forget(self) -> None:
         """Discards the driver; if it has left threads running, ends the process."""
@@ -114,7 +110,7 @@ class _DriverHost:
 
 
 def main() -> None:
-    """Serves packets until the other end is closed."""
+    """Answers requests until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process handles Ctrl-C and ends this one
     heard, said = private_streams()
     up, down = said.fileno(), heard.fileno()
@@ -125,29 +121,28 @@ def main() -> None:
     host = _DriverHost()
     while True:
         try:
-            kind, body = protocol.receive(down)
+            what, *given = pickle.loads(protocol.receive(down))  # noqa: S301 - ours
         except (EOFError, OSError):
             _leave()
-        if kind == protocol.FORGET:
+        if what == "forget":
             host.forget()
             continue
         try:
-            answer = host.answer(kind, body)
+            answer = getattr(host, what)(*given)
         except (DriverError, UsageError) as error:
             answer = _failed(error, str(error), isinstance(error, UsageError))
         except BaseException as error:  # also KeyboardInterrupt, which is the driver's own here
-            what = f"the driver raised {type(error).__name__}: {error}".rstrip(": ")
-            answer = _failed(error, what, is_users=kind == protocol.MAKE)
+            what_failed = f"the driver raised {type(error).__name__}: {error}".rstrip(": ")
+            answer = _failed(error, what_failed, is_users=what == "make")
         try:
-            protocol.send(up, *answer)
+            protocol.send(up, json.dumps(answer).encode())
         except OSError:
             _leave()
 
 
-def _failed(error: BaseException, said: str, is_users: bool) -> protocol.Packet:
+def _failed(error: BaseException, said: str, is_users: bool) -> dict[str, Any]:
     trace = "".join(traceback.format_exception(error))
-    told = {"said": said[:MOST_SAID], "is_users": is_users, "trace": trace[-MOST_TRACE:]}
-    return protocol.Packet(protocol.FAILED, json.dumps(told).encode())
+    return {"said": said[:MOST_SAID], "is_users": is_users, "trace": trace[-MOST_TRACE:]}
 
 
 def _leave() -> None:

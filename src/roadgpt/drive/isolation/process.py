@@ -1,13 +1,16 @@
 """Manages the processes in which drivers run: sends requests to them, limits their time and memory, ends
 them, and keeps them for reuse."""
 
+import json
 import os
+import pickle
 import sys
 import threading
 import time
 from contextlib import suppress
 from pathlib import Path
 from subprocess import PIPE, SubprocessError, run
+from typing import Any
 
 from roadgpt import children
 from roadgpt.drive.isolation import protocol
@@ -48,8 +51,11 @@ class DriverProcess:
         self._ends = threading.Event()
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
-    def ask(self, kind: int, body: bytes, seconds: float) -> protocol.Packet:
-        """Sends a packet to the driver's process and returns the answer.
+    def ask(self, seconds: float, what: str, *given: Any) -> dict[str, Any]:
+        """Sends a request to the driver's process: the name of a method of its host, and arguments.
+
+        Returns:
+            The answer; after an error, with the keys ``said``, ``is_users`` and ``trace``.
 
         Raises:
             GoneError: the process ended, or did not answer within ``seconds``; in the second case it is
@@ -57,9 +63,9 @@ class DriverProcess:
         """
         self._due = time.monotonic() + seconds
         try:
-            protocol.send(self._down, kind, body)
-            answer = protocol.receive(self._up, protocol.MOST)
-        except (OSError, EOFError):
+            protocol.send(self._down, pickle.dumps((what, *given)))
+            answer: dict[str, Any] = dict(json.loads(protocol.receive(self._up, protocol.MOST)))
+        except (OSError, EOFError, ValueError, TypeError, RecursionError):
             self.end()
             status = children.ending(self._process.returncode)
             raise GoneError(self._why or f"ended its own process (it {status})", self._is_late) from None
@@ -69,10 +75,10 @@ class DriverProcess:
         self._due = None
         return answer
 
-    def tell(self, kind: int) -> None:
-        """Sends a packet to the driver's process without waiting for an answer."""
+    def forget(self) -> None:
+        """Makes the process discard its driver; does not wait for that."""
         with suppress(OSError):
-            protocol.send(self._down, kind)
+            protocol.send(self._down, pickle.dumps(("forget",)))
 
     def end(self) -> None:
         """Ends the process immediately."""
@@ -156,7 +162,7 @@ def give_back(process: DriverProcess) -> None:
     if not process.is_alive:
         process.end()
         return
-    process.tell(protocol.FORGET)
+    process.forget()
     with _lock:
         if len(_idle) < MOST_IDLE:
             _idle.append(process)

@@ -1,57 +1,42 @@
-"""Defines the packets between RoadGPT and a driver's process: one byte for the kind, a length, and the body.
+"""Defines the messages between RoadGPT and a driver's process: four bytes with a length, and the body.
 
-Packets to the driver's process contain pickles made by RoadGPT, or views as packed numbers. Packets from the
-driver's process contain three numbers or JSON, so that RoadGPT can read them without running the driver's
-code.
+RoadGPT sends requests as pickles. The driver's process answers in JSON, so that RoadGPT can read the answers
+without running the driver's code.
 """
 
 import os
 import struct
-from typing import NamedTuple
 
-MAKE, SCENE, START, VIEW, FORGET = range(5)  # kinds of packets to the driver's process
-MADE, COMMAND, FAILED = range(3)  # kinds of packets from it
-
-HEAD = struct.Struct("<BI")
-SEEN = struct.Struct("<13dBHH")
-"""Format of a View without its road and world: 13 numbers; a code for no image, the previous image, or a new
-image that follows; and the height and width of the image."""
-ANSWER = struct.Struct("<3d")
-NO_PICTURE, SAME_PICTURE, NEW_PICTURE = range(3)
+HEAD = struct.Struct("<I")
 ROOM = 1 << 16  # bytes that are read at once, as many as a pipe holds
-MOST = 1 << 20  # bytes, the largest packet that the driver's process may send
+MOST = 1 << 20  # bytes, the largest answer that the driver's process may send
+SAME_PICTURE = "same"
+"""Stands for the image of the previous request."""
 
 
-class Packet(NamedTuple):
-    """One packet: its kind and its body."""
-
-    kind: int
-    body: bytes
-
-
-def send(number: int, kind: int, body: bytes = b"") -> None:
-    """Writes a packet to the file descriptor ``number``.
+def send(number: int, body: bytes) -> None:
+    """Writes a message to the file descriptor ``number``.
 
     Raises:
         OSError: the other end is closed.
     """
-    data = HEAD.pack(kind, len(body)) + body
+    data = HEAD.pack(len(body)) + body
     done = os.write(number, data)
     while done < len(data):
         done += os.write(number, memoryview(data)[done:])
 
 
-def receive(number: int, most: int = 1 << 32) -> Packet:
-    """Reads the next packet from the file descriptor ``number``; its body may have at most ``most`` bytes.
+def receive(number: int, most: int = 1 << 32) -> bytes:
+    """Reads the next message from the file descriptor ``number``; it may have at most ``most`` bytes.
 
     Raises:
         EOFError: the other end is closed, or sent invalid data.
         OSError: reading failed.
     """
-    kind, length = HEAD.unpack(_exactly(number, HEAD.size))
+    (length,) = HEAD.unpack(_exactly(number, HEAD.size))
     if length > most:
         raise EOFError
-    return Packet(kind, _exactly(number, length))
+    return _exactly(number, length)
 
 
 def _exactly(number: int, length: int) -> bytes:

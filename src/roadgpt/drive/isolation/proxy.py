@@ -1,8 +1,6 @@
 """Represents a driver that runs in another process; simulators use it like any other driver."""
 
-import json
 import os
-import pickle
 import sys
 import weakref
 from pathlib import Path
@@ -71,7 +69,7 @@ class IsolatedDriver:
         weakref.finalize(self, give_back, self._process).atexit = False
 
     def _made(self, spec: str, limit: float) -> DriverProcess:
-        task = pickle.dumps((spec, str(Path.cwd()), {**os.environ}, [*sys.path]))
+        task = (spec, str(Path.cwd()), {**os.environ}, [*sys.path])
         while True:
             try:
                 process = take()
@@ -79,7 +77,7 @@ class IsolatedDriver:
                 raise RoadGPTError(f"no process for a driver can be started: {error.strerror}") from error
             is_used = process.has_served
             try:
-                answer = process.ask(protocol.MAKE, task, limit + (0.0 if is_used else MAKING))
+                answer = process.ask(limit + (0.0 if is_used else MAKING), "make", *task)
             except GoneError as error:
                 if is_used and not error.is_late:
                     continue  # something that the previous driver left behind has ended it
@@ -88,12 +86,11 @@ class IsolatedDriver:
                 process.end()
                 raise
             process.has_served = True
-            told = json.loads(answer.body)
-            if answer.kind == protocol.FAILED:
+            if "said" in answer:
                 give_back(process)
-                raise _error(told) from _TraceError(told["trace"])
-            self.name: str = told["name"]
-            self.camera = None if told["camera"] is None else CameraSpec(*told["camera"])
+                raise _error(answer) from _TraceError(answer["trace"])
+            self.name: str = answer["name"]
+            self.camera = None if answer["camera"] is None else CameraSpec(*answer["camera"])
             return process
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
@@ -103,7 +100,7 @@ class IsolatedDriver:
             DriverError: the driver raised an exception, hung or ended its process.
         """
         self._show(road, world)
-        self._asked(protocol.START, pickle.dumps(seed), BEFORE_START, 0.0)
+        self._asked(BEFORE_START, 0.0, "start", seed)
 
     def steer(self, view: View) -> Command:
         """Returns the driver's command.
@@ -114,49 +111,36 @@ class IsolatedDriver:
         """
         if view.road is not self._road or view.world is not self._world:
             self._show(view.road, view.world)
-        answer = self._asked(protocol.VIEW, self._packed(view), ONE_ANSWER, view.time)
-        return Command(*protocol.ANSWER.unpack(answer))
+        image = view.image
+        if image is not None and image is self._picture:
+            image = protocol.SAME_PICTURE
+        elif image is not None:
+            self._picture, image = image, np.array(image, np.uint8)
+        answer = self._asked(ONE_ANSWER, view.time, "steer", view[:9], view[11:15], image)
+        return Command(*answer["command"])
 
     def _show(self, road: "Road", world: "World") -> None:
-        self._asked(protocol.SCENE, pickle.dumps((road, world)), BEFORE_START, 0.0)
+        self._asked(BEFORE_START, 0.0, "show", road, world)
         self._road, self._world = road, world
 
-    def _packed(self, view: View) -> bytes:
-        image = view.image
-        state, height, width, pixels = protocol.NO_PICTURE, 0, 0, b""
-        if image is not None and image is self._picture:
-            state = protocol.SAME_PICTURE
-        elif image is not None:
-            height, width, _ = image.shape
-            state, pixels = protocol.NEW_PICTURE, np.asarray(image, np.uint8).tobytes()
-            self._picture = image
-        (time, x, y, z, heading, speed, yaw_rate, s, t, _, _, steer, dt, vx, vy, _) = view
-        return (
-            protocol.SEEN.pack(
-                time, x, y, z, heading, speed, yaw_rate, s, t, steer, dt, vx, vy, state, height, width
-            )
-            + pixels
-        )
-
-    def _asked(self, kind: int, body: bytes, seconds: float, at: float) -> bytes:
+    def _asked(self, seconds: float, at: float, what: str, *given: Any) -> dict[str, Any]:
         try:
-            answer = self._process.ask(kind, body, seconds)
+            answer = self._process.ask(seconds, what, *given)
         except GoneError as error:
             why = str(error)
             if error.is_late:
                 why = (
                     f"gave no answer within {seconds:g} s at {at:.2f} s of its drive: "
                     "make steer() return at once"
-                    if kind == protocol.VIEW
+                    if what == "steer"
                     else f"was not ready within {seconds:g} s: make start() return sooner"
                 )
-            elif kind == protocol.VIEW:
+            elif what == "steer":
                 why += f", at {at:.2f} s of its drive"
             raise RemoteDriverError(f"driver '{self.name}' {why}") from None
-        if answer.kind == protocol.FAILED:
-            told = json.loads(answer.body)
-            raise _error(told) from _TraceError(told["trace"])
-        return answer.body
+        if "said" in answer:
+            raise _error(answer) from _TraceError(answer["trace"])
+        return answer
 
 
 def _not_made(spec: str, limit: float, error: GoneError) -> RoadGPTError:
