@@ -67,25 +67,22 @@ def _page(folder: Path, record: Record, status: Status, command: str, next_steps
     sections += [Section("Feature map", covered)] if covered else []
     sections += what_to_try(next_steps)
     sections.append(Section("Outcomes", _outcomes(record, status, fields)))
-    if any(c.outcomes.get("PASS") or c.outcomes.get("FAIL") for c in fields):
+    if any(_driven(each)[1] for each in fields):
         goes_on = _drives_on(record)
         sections.append(Section("Failures", failures(folder, record, fields[:MOST_CELLS], goes_on)))
         near: list[Block] = [*outside_table(passed_tests(record)), margins(record, goes_on)]
         sections.append(Section("How near to failing", near))
     sections += [Section("At the boundary", boundary(folder, pairs))] if pairs else []
-    driven = status.outcomes.get("PASS", 0) + status.outcomes.get("FAIL", 0)
-    summary = headline(found, summaries) if driven else []
+    summary = headline(found, summaries) if _driven(status)[1] else []
     summary += [*_summary(record, status, fields), *nearest_sentence(pairs)]
     return Page(title, summary, sections, _card(command, record, status), lead)
 
 
 def _summary(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[str]:
-    counts = status.outcomes
-    driven = counts.get("PASS", 0) + counts.get("FAIL", 0)
+    counts, (failed, driven) = status.outcomes, _driven(status)
     told = ", ".join(f"{number:,} {outcome}" for outcome, number in sorted(counts.items()))
     out = [f"{status.done:,} tests: {told or 'nothing yet'}."]
     if driven:
-        failed = counts.get("FAIL", 0)
         out.append(f"The car failed on {share_of(failed, driven)} of the roads that were driven.")
         best = max(cells, key=_failing)
         if len(cells) > 1:
@@ -116,9 +113,15 @@ def _least(record: Record, outcome: str) -> tuple[float, str] | None:
     return (found[0][0], f"test {found[0][1]}/{found[0][2]}") if found else None
 
 
+def _driven(of: Status | CellStatus) -> tuple[int, int]:
+    """Returns the number of roads on which the car failed, and that of all roads that were driven."""
+    failed = of.outcomes.get("FAIL", 0)
+    return failed, failed + of.outcomes.get("PASS", 0)
+
+
 def _failing(of: CellStatus) -> float:
-    driven = of.outcomes.get("PASS", 0) + of.outcomes.get("FAIL", 0)
-    return of.outcomes.get("FAIL", 0) / driven if driven else 0.0
+    failed, driven = _driven(of)
+    return failed / driven if driven else 0.0
 
 
 def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> list[Block]:
@@ -126,8 +129,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
     differing, note = _what_differs(status.cells)
     rows: list[list[TableCell]] = []
     for each in status.cells:
-        failed = each.outcomes.get("FAIL", 0)
-        driven = failed + each.outcomes.get("PASS", 0)
+        failed, driven = _driven(each)
         about, (invalid, errors) = _about(each), (each.outcomes.get(name, 0) for name in ("INVALID", "ERROR"))
         rows.append(
             row(
@@ -145,9 +147,8 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
     heads = ["cell", *differing, "tests", "invalid", "error", "failed", "driven", "share", "Wilson 95 %",
              "nearest when kept, m", "s"]  # fmt: skip
     blocks: list[Block] = [Table("outcomes", "Outcomes, cell by cell", heads, rows, note)]
-    counts = [[c.outcomes.get("FAIL", 0), c.outcomes.get("PASS", 0)] for c in cells]
     if len(cells) > 1:
-        found = chi_squared(counts)
+        found = chi_squared([[failed, driven - failed] for failed, driven in map(_driven, cells)])
         blocks.append(
             f"Do cells differ in how many roads fail? χ² = {found.statistic:.2f} with {found.freedom} "
             f"degrees of freedom, {p_value(found.p)}, Cramér's V = {found.cramers_v:.2f}."
@@ -183,8 +184,7 @@ def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
 def _forest(cells: Sequence[CellStatus]) -> Figure:
     groups = []
     for each in cells:
-        failed = each.outcomes.get("FAIL", 0)
-        driven = failed + each.outcomes.get("PASS", 0)
+        failed, driven = _driven(each)
         if driven:
             share = drawn_share(0, failed, driven, f"{failed:,} of {driven:,}")
             groups.append((f"{each.name} · {each.generator} · {each.driver}", [share]))
