@@ -8,8 +8,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.executors import Executor, WorkerConfig
 from roadgpt.campaign.folder_store import FolderStore
-from roadgpt.campaign.model import Budget, Cell
-from roadgpt.campaign.plan import PATIENCE, WITHOUT_GOAL
+from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Budget, Cell
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.scheduler import Scheduler
 from roadgpt.campaign.single_test import WorkerSetup

@@ -17,6 +17,9 @@ Goal = Literal["failures", "coverage", "hardest", "boundary"]
 """The goal of a search; a cell without a goal makes a number of roads and does not search."""
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
+WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
+"""The generators that are used where none is named."""
+PATIENCE = 900.0  # s for one test: longer than a drive may take, which ends by itself
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
 T = TypeVar("T")

@@ -13,16 +13,13 @@ from pydantic import Field
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
-from roadgpt.campaign.model import UNLIMITED, Budget, Cell, Goal
+from roadgpt.campaign.model import PATIENCE, UNLIMITED, WITH_GOAL, WITHOUT_GOAL, Budget, Cell, Goal
 from roadgpt.chat import ChatSettings, asks_a_model
 from roadgpt.drive import permission
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
 from roadgpt.run.model import Request, Setup
 
-WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
-"""The generators that are used where none is named."""
-PATIENCE = 900.0  # s for one test: longer than a drive may take, which ends by itself
 MOST_CELLS = 100_000
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]

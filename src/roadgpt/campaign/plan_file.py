@@ -8,8 +8,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from roadgpt.campaign.model import MOST_TESTS, Budget, Goal
-from roadgpt.campaign.plan import PATIENCE, WITH_GOAL, WITHOUT_GOAL, Plan, Seed
+from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, Budget, Goal
+from roadgpt.campaign.plan import Plan, Seed
 from roadgpt.chat import ChatSettings
 from roadgpt.drive.loading import absolute_spec
 from roadgpt.errors import UsageError

@@ -2,16 +2,17 @@
 
 import json
 import math
-from collections.abc import Mapping
+from dataclasses import replace
+from functools import cache
 from typing import Any
 
-from roadgpt.brief.model import Brief
-from roadgpt.campaign.model import Budget, Cell, Proposal, Result
+from pydantic import TypeAdapter
+
+from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
-from roadgpt.run.model import Request
 
 RESULT = (
     "tests.cell, tests.number, batch, seed, given, outcome, cause, side, length, margin, max_oob, "
@@ -103,30 +104,17 @@ def _features_of(text: str) -> dict[str, float]:
     return values
 
 
+@cache
+def _cells() -> TypeAdapter[Cell]:
+    return TypeAdapter(Cell)
+
+
 def cell_text(cell: Cell) -> str:
     """Returns a cell as JSON."""
-    return json.dumps(
-        {
-            "name": cell.name,
-            "request": cell.request.model_dump(mode="json"),
-            "brief": cell.brief and cell.brief.model_dump(mode="json", exclude_defaults=True),
-            "generator": cell.generator,
-            "goal": cell.goal,
-            "settings": dict(cell.settings),
-            "budget": cell.budget.model_dump(mode="json"),
-        }
-    )
+    return _cells().dump_json(cell).decode()
 
 
 def cell_of_text(text: str, file: object) -> Cell:
     """Returns the cell that ``cell_text`` wrote into a store."""
-    data: Mapping[str, Any] = json_of(text)
-    return Cell(
-        name=data["name"],
-        request=Request.model_validate(data["request"]).came_with(file),
-        brief=None if data["brief"] is None else Brief.model_validate(data["brief"]),
-        generator=data["generator"],
-        goal=data["goal"],
-        settings=data["settings"],
-        budget=Budget.model_validate(data["budget"]),
-    )
+    cell = _cells().validate_python(json_of(text))
+    return replace(cell, request=cell.request.came_with(file))

@@ -130,8 +130,8 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
 
 
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
-    from roadgpt.campaign.model import Budget
-    from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL, Plan
+    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, Budget
+    from roadgpt.campaign.plan import Plan
     from roadgpt.drive.loading import absolute_spec
 
     goal, seconds, tests = rest["goal"], rest["seconds"], rest["tests"]

@@ -62,7 +62,7 @@ def command_of_many(folder: Path) -> str:
     """Returns the command that makes a campaign again; for a campaign from a plan file, the command that
     resumes it.
     """
-    from roadgpt.campaign.plan import WITH_GOAL, WITHOUT_GOAL
+    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record
     from roadgpt.cli.repeat_commands import request_words
 
