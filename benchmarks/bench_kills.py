@@ -1,8 +1,9 @@
-"""What a campaign loses by kill -9: 2,000 tests, 30 kills, and the same table as without any.
+"""What a campaign and a folder of runs lose by kill -9: 30 kills, and the same files as without any.
 
-    python benchmarks/bench_kills.py            # or: TESTS KILLS
+    python benchmarks/bench_kills.py            # or: TESTS KILLS [ROADS]
 
-Every third kill takes the whole campaign (then ``roadgpt resume``), the others one of its workers.
+Every third kill takes the whole campaign (then ``roadgpt resume``), the others one of its workers. A folder
+of ROADS runs (300) is killed as often, and continued by the same ``roadgpt run``.
 """
 
 import os
@@ -17,6 +18,7 @@ from pathlib import Path
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import status_of
 from roadgpt.errors import UsageError
+from roadgpt.run.folder import finished
 
 WORDS = "an uphill road with 3 turns"
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
@@ -76,9 +78,47 @@ def killed(folder: Path, tests: int, kills: int) -> tuple[int, int]:
     return hits[0], hits[1]
 
 
+def killed_run(folder: Path, roads: int, kills: int) -> int:
+    """Make a folder of runs under kills; how many hit."""
+    rng, hits = random.Random(7), 0
+    command = ("run", WORDS, "-n", roads, "--no-drive", "--no-plot", "--quiet", "--reader", "grammar")
+    for kill in range(kills + 1):
+        process = roadgpt(*command, "--seed", 7, "--out", folder)
+        goal = roads * (kill + rng.random()) / max(kills, 1) * 0.97
+        while kill < kills and len(finished(folder)) < goal and process.poll() is None:
+            time.sleep(0.02)
+        if kill < kills:
+            time.sleep(rng.random() * 0.1)
+            process.kill()
+        hits += process.wait() == -signal.SIGKILL
+    assert process.returncode == 0
+    return hits
+
+
+def folders(home: Path, roads: int, kills: int) -> None:
+    """Print what kills did to a folder of runs."""
+    once, often = home / "run-once", home / "run-often"
+    assert killed_run(once, roads, 0) == 0
+    hits = killed_run(often, roads, kills)
+    one, other = (
+        {
+            path.relative_to(folder): path.read_bytes()
+            for path in folder.rglob("*")
+            if path.is_file() and path.name not in ("seconds.json", "generation_stats.csv")
+        }
+        for folder in (once, often)
+    )
+    there = finished(often)
+    assert there == [*range(1, roads + 1)], f"lost or doubled: {there}"
+    assert one == other, "files differ"
+    print(
+        f"A folder of {roads} runs, killed {hits} times: none lost or doubled, the same {len(one):,} files."
+    )
+
+
 def main() -> None:
-    """Print both campaigns side by side."""
-    tests, kills = (int(word) for word in [*sys.argv[1:], "2000", "30"][:2])
+    """Print both campaigns side by side, and then the folder of runs."""
+    tests, kills, roads = (int(word) for word in [*sys.argv[1:], *("2000", "30", "300")[len(sys.argv) - 1 :]])
     with tempfile.TemporaryDirectory() as name:
         once, often = Path(name) / "once", Path(name) / "often"
         start = time.perf_counter()
@@ -99,6 +139,7 @@ def main() -> None:
             for folder in (once, often):
                 print((folder / other[0]).read_text()[:2000])
             sys.exit(1)
+        folders(Path(name), roads, kills)
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from typing import Any
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.record import STORE
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
-from roadgpt.campaign.single_test import FinishedTest, Task, failed_run
+from roadgpt.campaign.single_test import FinishedTest, Task, error_run
 from roadgpt.campaign.store import SCHEMA, Store
 
 
@@ -60,7 +60,7 @@ class FolderStore(Store):
         for name, one in ended:
             if not isinstance(one, FinishedRun):  # its workers died, perhaps over its pictures
                 task = Task(one.result.number, one.result.batch, one.result.proposal)
-                run = failed_run(task, self._cells[name], one.result.description)
+                run = error_run(task, self._cells[name], one.result.description)
                 one = RunWriter({name: self._folders[name].path}).written(run, task, name)
             self.written += [(name, each) for each in self._folders[name].add(one)]
 

@@ -16,7 +16,8 @@ from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.reading import json_of
 from roadgpt.road import Design, Road, build
-from roadgpt.run import Run
+from roadgpt.run import Run, read_run
+from roadgpt.run.folder import is_run, run_folder
 from roadgpt.verdict import Verdict, judge
 
 
@@ -42,13 +43,15 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
     Args:
         folder: the campaign's folder.
-        cell: name of the test's cell.
+        cell: name of the test's cell; empty for a run in a folder of runs, or for the run that the folder is.
         number: number of the test.
-        has_drive: whether to include drive and verdict.
+        has_drive: whether to include drive and verdict; a run in a folder of runs has them in any case.
 
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
     """
+    if not cell:
+        return read_run(folder if is_run(folder) else run_folder(folder, number))
     with Record.opened(folder) as record:
         return kept_in(record, record.cell(cell), record.result(cell, number), has_drive)
 

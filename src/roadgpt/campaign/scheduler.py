@@ -13,11 +13,12 @@ from roadgpt.campaign.budget_allocator import BudgetAllocator
 from roadgpt.campaign.executors import Executor, FinishedJob, Job, RunningJob, WorkerConfig
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.single_test import (
+    Allowance,
     FinishedTest,
     OutOfAllowance,
     Task,
+    error_run,
     execute,
-    failed_run,
     result_of,
 )
 from roadgpt.campaign.store import Store
@@ -62,7 +63,7 @@ class _Out:
 
 def _lost(out: _Out, why: str) -> FinishedTest:
     """Returns the end of a test whose workers died."""
-    run = failed_run(out.task, out.schedule.cell, why)
+    run = error_run(out.task, out.schedule.cell, why)
     return FinishedTest(result_of(run, out.task, {}))
 
 
@@ -203,12 +204,13 @@ class Scheduler:
         setup = cell.request.setup.model_copy(update={"chat": self._chat})
         return replace(cell, request=cell.request.model_copy(update={"setup": setup}))
 
-    def _hand_out(self, schedule: BatchScheduler, tests: Sequence[Task]) -> None:
+    def _hand_out(
+        self, schedule: BatchScheduler, tests: Sequence[Task], allowance: Allowance | None = None
+    ) -> None:
+        """Queues tests; without an allowance for each, they share a part of what is left."""
         jobs = []
-        if self._allocator.is_bounded and tests:
-            share = self._allocator.share(len(tests))
-            tests = [Task(test.number, test.batch, test.proposal, share) for test in tests]
-        for test in tests:
+        each = allowance or self._allocator.share(max(len(tests), 1))
+        for test in [replace(test, allowance=each) for test in tests]:
             self._keys += 1
             self._out[self._keys] = _Out(schedule, test)
             self._allocator.give(self._keys, test.allowance)
@@ -245,12 +247,7 @@ class Scheduler:
         if one.task.allowance == everything:
             self._error = BudgetError(self._allocator.sentence(self._store.folder))
             return
-        task = Task(one.task.number, one.task.batch, one.task.proposal, everything)
-        self._keys += 1
-        self._out[self._keys] = _Out(one.schedule, task)
-        self._allocator.give(self._keys, everything)
-        needs = (one.schedule.cell.name, *self._earlier(one.schedule, task))
-        self.executor.submit([Job(self._keys, self._run_test, task, needs)])
+        self._hand_out(one.schedule, [one.task], everything)
 
     # Taking in
 

@@ -62,9 +62,7 @@ class Selection:
             UsageError: the Run cannot be read, or it has no road.
         """
         assert self.number is not None
-        if self.is_campaign:
-            return kept_run(self.folder, self.cell, self.number)
-        return read_run(run_folder(self.folder, self.number))
+        return kept_run(self.folder, self.cell, self.number)
 
 
 def selection_of(text: str) -> Selection | None:

@@ -103,7 +103,7 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
         raise
     except Exception as error:  # whatever a part raises costs this test, not the campaign
         sentence = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
-        run = failed_run(task, cell, sentence, traceback.format_exc())
+        run = error_run(task, cell, sentence, traceback.format_exc())
     trace = trace_of(run.drive) if run.drive is not None else None
     result = result_of(run, task, features_in(run))
     return FinishedTest(result, trace, run.seconds, run.spent, run.trace, run.is_lost)
@@ -119,10 +119,10 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
         return run_of(cell, task.number, task.proposal, earlier, meter)
     except (DesignError, ReplyError) as error:
         spent = meter.spent.since(before)
-        return replace(failed_run(task, cell, str(error)), spent=spent if spent.calls else None)
+        return replace(error_run(task, cell, str(error)), spent=spent if spent.calls else None)
 
 
-def failed_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
+def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
     """Returns the Run of a test that ended without a road or a drive, for a reason given in a sentence."""
     number, proposal = task.number, task.proposal
     seed = seed_of_driver(number, proposal)

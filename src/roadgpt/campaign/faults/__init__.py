@@ -4,7 +4,7 @@ road that shows it.
 
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
 from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
-from roadgpt.campaign.faults.failures import LocatedFailure, failed_run, failures_of
+from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.fault import Fault, Faults, faults_in
 from roadgpt.campaign.faults.fault_log import (
     AnalysisTask,
@@ -32,7 +32,6 @@ __all__ = [
     "Stability",
     "Surroundings",
     "analyse",
-    "failed_run",
     "failures_of",
     "faults_in",
     "faults_of",

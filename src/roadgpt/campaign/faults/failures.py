@@ -11,7 +11,6 @@ from roadgpt.campaign.faults.reason import Manner, manner_of
 from roadgpt.campaign.model import Cell, Result
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.record import STORE, Record
-from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import Road, World, build
 from roadgpt.run import Run, Setup, read_run
@@ -148,14 +147,3 @@ def _site_of(
     around = surroundings(road, world, station, f"{result.cause} {result.side} {system}")
     manner = manner_of(road, world, station, result.cause, result.side)
     return LocatedFailure(name, around, manner, station, result.max_oob, result.beyond)
-
-
-def failed_run(folder: Path, name: NumberedTest, has_drive: bool = True) -> Run:
-    """Returns the stored Run of a failure; for a campaign, its drive can be left out.
-
-    Raises:
-        UsageError: a file cannot be read.
-    """
-    if name.cell:
-        return kept_run(folder, name.cell, name.number, has_drive)
-    return read_run(folder if is_run(folder) else run_folder(folder, name.number))

@@ -20,12 +20,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
-from roadgpt.campaign.faults.failures import failed_run
 from roadgpt.campaign.faults.fault import Fault
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.reading import read_json, strictly
 from roadgpt.run import Run, write_run
@@ -105,7 +105,7 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
 
 def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     """Returns the analysis of one failure; drives and draws it where that has not been done."""
-    run, path = failed_run(task.folder, name), _page(task.folder, name)
+    run, path = kept_run(task.folder, *name), _page(task.folder, name)
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
     _made(path.parent)
@@ -122,7 +122,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
     place = simplest_of(task.folder, found.name)
     if found.simplest and is_run(place):
         return found
-    run = failed_run(task.folder, found.name)
+    run = kept_run(task.folder, *found.name)
     least = simplest(run)
     write_run(least.run, _made(place.parent.parent))
     found = replace(found, simplest=least.sentence)
@@ -139,7 +139,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
         UsageError: a stored analysis cannot be read.
     """
     pages = [name for name in fault.names if _page(folder, name).is_file()]
-    runs = [(name, failed_run(folder, name, has_drive=False)) for name in pages]
+    runs = [(name, kept_run(folder, *name, has_drive=False)) for name in pages]
     found = [its for name, run in runs if (its := _read(_page(folder, name), run, name))]
     # of equals max takes the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)

@@ -10,13 +10,13 @@ from roadgpt.campaign.faults import (
     FailureReason,
     Fault,
     Faults,
-    failed_run,
     kept_analysis,
     reason_of,
 )
 from roadgpt.campaign.faults.fault import DEFINED
 from roadgpt.campaign.faults.fault_log import FOLDER, TABLE
 from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.page import (
@@ -86,9 +86,9 @@ def _summary(folder: Path, fault: Fault) -> FaultSummary:
 def _run_of(folder: Path, name: NumberedTest) -> Run:
     """Returns the run with its drive, or without if the drive's file cannot be read."""
     try:
-        return failed_run(folder, name)
+        return kept_run(folder, *name)
     except UsageError:
-        return failed_run(folder, name, has_drive=False)
+        return kept_run(folder, *name, has_drive=False)
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
