@@ -6,6 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 from roadgpt.geometry.curve import Array
+from roadgpt.road.profile import Profile
 from roadgpt.road.road import Road
 from roadgpt.road.world import World
 
@@ -42,11 +43,12 @@ class Land:
         span = float((high - low).max()) + 2 * MARGIN
         cell = max(FINEST, span / CELLS)
         x, y = (np.arange(low[i] - MARGIN, high[i] + MARGIN + cell, cell) for i in (0, 1))
-        if world.verge == 0:
+        profile = world.profile_of(road)
+        if not profile.has_shoulders:
             level = min(world.z_floor, float(line[:, 2].min()) - 1.0)
             away = np.full((len(y), len(x)), np.inf)
             return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
-        heights, away = _relief(line, x, y, cell, world.profile_of(road).reach + 1.45 * cell)
+        heights, away = _relief(_lowest(road, profile, line), x, y, cell, profile.reach + 1.45 * cell)
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
@@ -61,6 +63,16 @@ class Land:
         v = np.clip((y - self.y[j]) / (self.y[j + 1] - self.y[j]), 0.0, 1.0)
         low = values[j, i] * (1 - u) + values[j, i + 1] * u
         return np.asarray(low * (1 - v) + (values[j + 1, i] * (1 - u) + values[j + 1, i + 1] * u) * v)
+
+
+def _lowest(road: Road, profile: Profile, line: Array) -> Array:
+    """Returns the centre line ``(n, 3)`` at the height of the lowest point of the road's cross-section."""
+    if profile.superelevation_angle is None:
+        return line
+    s = np.linspace(0.0, road.length, len(line))
+    rims = profile.rims(s)
+    sides = [road.at(s, t)[:, 2] for t in rims]
+    return np.column_stack([line[:, :2], np.minimum(line[:, 2], np.minimum(*sides))])
 
 
 def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:

@@ -178,27 +178,31 @@ class Profile:
         left = [_sum(self.left[: n + 1], s) for n in range(len(self.left))]
         return left, [-_sum(self.right[: n + 1], s) for n in range(len(self.right))]
 
+    def boundaries(self, s: ArrayLike) -> list[tuple[Marking, Array]]:
+        """Returns the boundaries of all driving lanes from left to right, each with its marking and offsets.
+
+        The first and the last one are the edges of the carriageway.
+        """
+        left, right = self.lane_edges(s)
+        lanes = [*zip(self.left, left, strict=True)][: self.count[1]][::-1]
+        lanes_right = [*zip(self.right, right, strict=True)][: self.count[0]]
+        centre = (self.centre_marking, np.zeros(np.shape(s)))
+        return [
+            *((lane.marking, t) for lane, t in lanes),
+            centre,
+            *((lane.marking, t) for lane, t in lanes_right),
+        ]
+
     def markings(self, s: ArrayLike) -> list[PaintedLine]:
         """Returns the painted lines from left to right; boundaries without a marking are left out.
 
         A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
         painted inside the lane, up to its outer edge.
         """
-        left, right = self.lane_edges(s)
-        forward, backward = self.count
-        rows = [
-            (lane.marking, t, n == backward - 1, 1)
-            for n, (lane, t) in enumerate(zip(self.left, left, strict=True))
-        ]
-        rows.reverse()
-        rows.append((self.centre_marking, np.zeros(np.shape(s)), backward == 0, 1))
-        rows += [
-            (lane.marking, t, n == forward - 1, -1)
-            for n, (lane, t) in enumerate(zip(self.right, right, strict=True))
-        ]
-        return [
-            PaintedLine(mark, _painted(t, is_edge, side)) for mark, t, is_edge, side in rows if mark != "none"
-        ]
+        rows = self.boundaries(s)
+        sides = [1, *[0] * (len(rows) - 2), -1]
+        found = zip(rows, sides, strict=True)
+        return [PaintedLine(mark, _painted(t, side)) for (mark, t), side in found if mark != "none"]
 
     def marking_limits(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the markings beside the driven lane.
@@ -240,9 +244,12 @@ def _sum(lanes: Sequence[Lane], s: ArrayLike) -> Array:
     return out
 
 
-def _painted(t: Array, is_edge: bool, side: int) -> Edges:
-    """Returns the edges of a line painted at offset ``t``, on the given side of the centre line."""
-    if not is_edge:
+def _painted(t: Array, side: int) -> Edges:
+    """Returns the edges of a line painted over the offset ``t`` or, at an edge of the carriageway, inside it.
+
+    ``side`` is 1 at the left edge, -1 at the right edge, and 0 between two lanes.
+    """
+    if not side:
         return Edges(t + LINE / 2, t - LINE / 2)
     return Edges(t, t - LINE) if side > 0 else Edges(t + LINE, t)
 

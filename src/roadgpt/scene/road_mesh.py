@@ -1,13 +1,14 @@
 """Builds the meshes of the road: carriageway and shoulders as one surface, embankments, and posts."""
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 
 from roadgpt.export.edges import line, stations
 from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
 from roadgpt.scene.light import daylight, level_light
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
 from roadgpt.scene.palette import CONCRETE
@@ -25,13 +26,13 @@ POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
     """Returns all patches that belong to the road."""
-    rim = world.lane_width + world.verge
-    s = _stations(road, rim)
-    if world.verge == 0:
-        return [*_surface(road, world, s), *_slab(road, world, s)]
-    banks = embankments(road, world.profile_of(road), s, terrain.land)
+    profile = world.profile_of(road)
+    s = _stations(road, profile.reach)
+    if not profile.has_shoulders:
+        return [*_surface(road, profile, s), *_slab(road, profile, s)]
+    banks = embankments(road, profile, s, terrain.land)
     slopes = [patch for bank in banks for patch in _slope(bank, terrain)]
-    return [*_surface(road, world, s), *slopes, *_posts(road, world)]
+    return [*_surface(road, profile, s), *slopes, *_posts(road, profile)]
 
 
 def _stations(road: Road, rim: float) -> Array:
@@ -48,19 +49,26 @@ def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
     ]
 
 
-def _surface(road: Road, world: World, s: Array) -> list[Patch]:
+def _surface(road: Road, profile: Profile, s: Array) -> list[Patch]:
     """Returns the surface from the right rim to the left one; its coordinates are s and t."""
-    half, verge = world.lane_width, world.verge
-    offsets = [-half, -half / 2, 0.0, half / 2, half]
-    if verge:
-        offsets = [-half - verge, *offsets, half + verge]
+    bounds = [t for _, t in reversed(profile.boundaries(s))]
+    offsets = [bounds[0]]
+    for one, other in pairwise(bounds):
+        offsets += [(one + other) / 2, other]
+    if profile.has_shoulders:
+        left, right = profile.rims(s)
+        offsets = [right, *offsets, left]
     rows = np.stack([line(road, s, t) for t in offsets], axis=1)
     light = daylight(_upwards(road, s))
-    t = np.sign(offsets) * np.linalg.norm((rows - road.at(s)[:, None])[..., :2], axis=-1)
+    t = np.sign(np.stack(offsets, axis=1)) * np.linalg.norm(rows - road.at(s)[:, None], axis=-1)
     return _blocks(rows, attributes(s[:, None], t, light[:, None]), ROAD)
 
 
 def _upwards(road: Road, s: Array) -> Array:
+    if road.profile is not None and road.profile.superelevation_angle is not None:
+        along, left = np.gradient(road.at(s), axis=0), road.at(s, 1.0) - road.at(s)
+        banked = np.cross(along, left)
+        return np.asarray(banked / np.linalg.norm(banked, axis=-1, keepdims=True))
     heading, grade = road.heading(s), road.grade(s)
     up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
@@ -81,10 +89,9 @@ def _slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
     return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 
 
-def _slab(road: Road, world: World, s: Array) -> list[Patch]:
+def _slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
     """Returns sides, underside and ends of a floating road."""
-    half = world.lane_width
-    left, right = line(road, s, half), line(road, s, -half)
+    left, right = (line(road, s, t) for t in profile.edges(s))
     down = np.array([0.0, 0.0, -THICK])
     out = []
     for a, b, light in (
@@ -100,17 +107,17 @@ def _slab(road: Road, world: World, s: Array) -> list[Patch]:
     return out
 
 
-def _posts(road: Road, world: World) -> list[Patch]:
+def _posts(road: Road, profile: Profile) -> list[Patch]:
     """Returns the posts as upright boxes; their second coordinate is the height."""
-    if world.verge < POST_FROM_RIM + 0.2:
-        return []
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
-    t = world.lane_width + world.verge - POST_FROM_RIM
     model, facing = _post()
     out = []
-    for side in (-t, t):
-        for place, heading in zip(line(road, s, side), road.heading(s), strict=True):
+    edges, rims = profile.edges(s), profile.rims(s)
+    for sign, edge, rim in ((-1, edges.right, rims.right), (1, edges.left, rims.left)):
+        has_room = sign * (rim - edge) >= POST_FROM_RIM + 0.2
+        places = line(road, s, rim - sign * POST_FROM_RIM)
+        for place, heading in zip(places[has_room], road.heading(s)[has_room], strict=True):
             c, n = np.cos(heading), np.sin(heading)
             turn = np.array([[c, n, 0.0], [-n, c, 0.0], [0.0, 0.0, 1.0]])
             values = model.attributes.copy()

@@ -18,6 +18,7 @@ from roadgpt.scene.raster import PLANE, SAMPLES, draw
 from roadgpt.scene.road_mesh import road_patches
 from roadgpt.scene.shade import shade, to_screen
 from roadgpt.scene.sprites import overlay
+from roadgpt.scene.surfaces import LaneBoundaries
 from roadgpt.scene.terrain import LitTerrain
 from roadgpt.scene.textures import noise, screen_table
 from roadgpt.scene.trees import Trees, pictures, plant
@@ -49,6 +50,7 @@ class Scene:
     land: Land
     ground: Mesh
     trees: Trees
+    lanes: LaneBoundaries
     _own: threading.local = field(default_factory=threading.local, repr=False)
 
     @classmethod
@@ -58,10 +60,18 @@ class Scene:
         Raises:
             ExportError: the road has a number that is not finite.
         """
+        road = world.lay(road)
         land = Land.around(road, world)
         terrain = LitTerrain(land)
         ground = Mesh.of([*road_patches(road, world, terrain), *terrain.patches()])
-        return cls(road, world, land, ground, plant(road, world, land))
+        return cls(
+            road,
+            world,
+            land,
+            ground,
+            plant(road, world, land),
+            LaneBoundaries.of(world.profile_of(road), road.length),
+        )
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes from a camera on a car at ``pose``.
@@ -93,7 +103,7 @@ class Scene:
             count = _draw(made.mesh, *made.placed(car, eye), numbers, buffers, count)
         shade(
             buffers.ids, buffers.depth, buffers.planes, buffers.kinds, palette_of(car), noise(), numbers,
-            np.concatenate([[self.world.lane_width, self.road.length], _shade_of(car)]), buffers.picture,
+            self.lanes, _shade_of(car), buffers.picture,
         )  # fmt: skip
         trees = self.trees
         order = np.argsort((eye.position - trees.places) @ eye.axes[2], kind="stable")

@@ -16,7 +16,7 @@ from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.mesh import PLAIN, POST, ROAD
 from roadgpt.scene.patterns import Tiles, length_of, smooth
 from roadgpt.scene.raster import OFFSETS
-from roadgpt.scene.surfaces import Colour, grass, road, sky
+from roadgpt.scene.surfaces import Colour, LaneBoundaries, grass, road, sky
 from roadgpt.scene.textures import STEPS
 
 THINNEST = 0.008  # m: smallest pixel width for which markings are computed
@@ -93,7 +93,7 @@ def air(distance: float, toward: float) -> tuple[float, float]:
 @inlined
 def _ground(
     n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array,
-    is_road: bool, tiles: Tiles, eye: Array, numbers: Array,
+    is_road: bool, tiles: Tiles, eye: Array, lanes: LaneBoundaries, numbers: Array,
 ) -> Colour:  # fmt: skip
     """Returns the colour of road or terrain at the depth w in the direction (dx, dy, dz), which has depth
     1."""
@@ -106,11 +106,11 @@ def _ground(
         tx, ty = (planes[n, 6] - t * planes[n, 0]) * w, (planes[n, 7] - t * planes[n, 1]) * w
         wide_s = max(length_of(sx, sy), THINNEST)
         wide_t = max(length_of(tx, ty), THINNEST)
-        r, g, b = road(tiles, s, t, wide_s, wide_t, x, y, level, numbers[0], numbers[1])
+        r, g, b = road(tiles, s, t, wide_s, wide_t, x, y, level, lanes)
     else:
         r, g, b = grass(tiles, x + LEAN * z, y - LEAN * z, level)
-    if numbers[10] > 0.0:
-        light *= _shadow(numbers[2:], x, y, z)
+    if numbers[8] > 0.0:
+        light *= _shadow(numbers, x, y, z)
     return r * light, g * light, b * light
 
 
@@ -153,7 +153,8 @@ def _gather(
 @compiled
 def shade(
     ids: NDArray[np.int32], depth: NDArray[np.float32], planes: Array, kinds: NDArray[np.int64],
-    palette: Array, tiles: Tiles, eye: Array, numbers: Array, picture: NDArray[np.float32],
+    palette: Array, tiles: Tiles, eye: Array, lanes: LaneBoundaries, numbers: Array,
+    picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
     """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each pixel.
 
@@ -167,9 +168,10 @@ def shade(
         palette: (n, 6): colours, and the light that they emit.
         tiles: those of `textures.noise`.
         eye: as for `raster.draw`.
-        numbers: lane width and length of the road; then, for the shadow, the point on the ground under the
-            car (3 numbers), the car's direction (2), its length, its width, the distance from that point
-            forward to the car's middle, and 1 if there is a car, else 0.
+        lanes: boundaries of the road's lanes.
+        numbers: for the shadow, the point on the ground under the car (3 numbers), the car's direction (2),
+            its length, its width, the distance from that point forward to the car's middle, and 1 if there
+            is a car, else 0.
         picture: the image in linear light; filled by this function.
     """
     rows, columns = picture.shape[0], picture.shape[1]
@@ -209,7 +211,20 @@ def shade(
                         kind = kinds[n]
                         if kind < POST:
                             r, g, b = _ground(
-                                n, px, py, w, dx, dy, dz, level, planes, kind == ROAD, tiles, eye, numbers
+                                n,
+                                px,
+                                py,
+                                w,
+                                dx,
+                                dy,
+                                dz,
+                                level,
+                                planes,
+                                kind == ROAD,
+                                tiles,
+                                eye,
+                                lanes,
+                                numbers,
                             )
                         else:
                             r, g, b = _thing(n, px, py, w, planes, kind, palette)

@@ -1,16 +1,48 @@
 """Linear colours of sky, terrain and road, before sunlight is applied, for use in compiled code."""
 
 import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Profile
 from roadgpt.scene.compiled import inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.patterns import Tiles, bump, dashed, fine_noise, plain_noise, share, smooth
 from roadgpt.scene.textures import CLOUD, GRAIN, MEADOW, SIDE
 
 Colour = tuple[float, float, float]
+NONE, SOLID, BROKEN = 0, 1, 2  # kinds of markings
 
-# Wider than the judged line (road.world.LINE), and not at the very edge of the lane: the network of
+
+class LaneBoundaries(NamedTuple):
+    """The boundaries of all lanes, from left to right, at equally spaced stations."""
+
+    offsets: Array
+    """(n, k): offsets of k boundaries at n stations, metres."""
+    marks: NDArray[np.int64]
+    """(k,): kind of marking of each boundary."""
+    driven: int
+    """Index of the left boundary of the driven lane."""
+    spacing: float
+    """Distance between the stations, metres."""
+    length: float
+    """Length of the road, metres."""
+
+    @classmethod
+    def of(cls, profile: Profile, length: float) -> "LaneBoundaries":
+        """Returns the boundaries of a road's lanes."""
+        s = np.linspace(0.0, length, max(1, math.ceil(length)) + 1)
+        rows = profile.boundaries(s)
+        marks = np.array([("none", "solid", "broken").index(mark) for mark, _ in rows])
+        offsets = np.ascontiguousarray(np.stack([t for _, t in rows], axis=1))
+        return cls(offsets, marks, profile.count[1] + profile.driven, float(s[1]), length)
+
+
+# Wider than the judged line (road.profile.LINE), and not at the very edge of the lane: the network of
 # examples/vision was trained on such images, and with judged lines drives 0.24 m farther to the right.
 LINE, INSET = 0.15, 0.10  # m: width of a line, and asphalt outside of an edge line
 PERIOD = DASH + GAP  # m from one dash to the next
@@ -58,34 +90,60 @@ def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
 
 
 @inlined
-def asphalt(tiles: Tiles, s: float, t: float, half: float, level: float) -> float:
+def _bound(lanes: LaneBoundaries, s: float, j: int) -> float:
+    """Returns the offset of the j-th boundary of lanes at station s."""
+    last = lanes.offsets.shape[0] - 2
+    at = min(max(s / lanes.spacing, 0.0), last + 1.0)
+    i = min(int(at), last)
+    found: float = lanes.offsets[i, j] + (lanes.offsets[i + 1, j] - lanes.offsets[i, j]) * (at - i)
+    return found
+
+
+@inlined
+def asphalt(tiles: Tiles, s: float, t: float, lanes: LaneBoundaries, level: float) -> float:
     """Returns the brightness of asphalt at station s and offset t (m): grain and patches, darker in the wheel
     tracks and where oil drips."""
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
-    lane = abs(t) - half / 2
+    lane = WHEEL + TRACK  # m to the middle of the nearest lane
+    for j in range(lanes.offsets.shape[1] - 1):
+        from_middle = t - (_bound(lanes, s, j) + _bound(lanes, s, j + 1)) / 2
+        if abs(from_middle) < abs(lane):
+            lane = from_middle
     worn = bump(lane - WHEEL, TRACK) + bump(lane + WHEEL, TRACK)
     tone = 1.0 + 0.20 * grain + 0.06 * patches - (0.17 + 0.04 * patches) * worn - 0.10 * bump(lane, OIL)
     return 0.142 * max(tone, 0.2)
 
 
 @inlined
+def _painted(mark: int, covered: float, s: float, wide_s: float, length: float) -> float:
+    """Returns the share of paint in a window, of which a line covers this share across the road."""
+    if mark == BROKEN and covered > 0.0:
+        last, first = min(s + wide_s / 2, length), s - wide_s / 2
+        covered *= max(dashed(last, DASH, PERIOD) - dashed(first, DASH, PERIOD), 0.0) / wide_s
+    return 0.0 if mark == NONE else covered
+
+
+@inlined
 def paved(
-    tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, half: float, length: float
+    tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, lanes: LaneBoundaries
 ) -> Colour:
     """Returns the colour of the carriageway with its markings at station s and offset t, for a pixel of
     ``wide_s`` by ``wide_t`` metres."""
-    tone = asphalt(tiles, s, t, half, level)
+    tone, length = asphalt(tiles, s, t, lanes, level), lanes.length
     r, g, b = tone, tone * 1.005, tone * 1.03
-    line, outer = min(LINE, half / 4), half - min(INSET, half / 8)
-    paint = middle = 0.0
-    if abs(t) > outer - line - wide_t:
-        paint = share(abs(t), outer - line, outer, wide_t)
-    elif abs(t) < line + wide_t:
-        middle = share(t, -line / 2, line / 2, wide_t)
-    if middle > 0.0:
-        last, first = min(s + wide_s / 2, length), s - wide_s / 2
-        paint += middle * max(dashed(last, DASH, PERIOD) - dashed(first, DASH, PERIOD), 0.0) / wide_s
+    paint, last = 0.0, lanes.offsets.shape[1] - 1
+    left, right = _bound(lanes, s, 0), _bound(lanes, s, last)
+    side, edge, at = (1.0, left, 0) if t > (left + right) / 2 else (-1.0, right, last)
+    outer = side * edge - INSET
+    if side * t > outer - LINE - wide_t:
+        paint = _painted(lanes.marks[at], share(side * t, outer - LINE, outer, wide_t), s, wide_s, length)
+    else:
+        for j in range(1, last):
+            t_line = t - _bound(lanes, s, j)
+            if abs(t_line) < LINE + wide_t:
+                covered = share(t_line, -LINE / 2, LINE / 2, wide_t)
+                paint += _painted(lanes.marks[j], covered, s, wide_s, length)
     if paint > 0.0:
         worn = 0.93 + 0.06 * fine_noise(tiles, GRAIN, s * 40.0, t * 40.0, level + 5.3)
         paint = min(paint, 1.0) * min(max(worn, 0.0), 1.0)
@@ -93,10 +151,11 @@ def paved(
     if 1.5 < s < length - 1.5:
         return r, g, b
     # a white line where the driven lane begins, a chequered band where it ends
-    inside = share(t, 0.25 - half, -0.08, wide_t)
+    left, right = _bound(lanes, s, lanes.driven), _bound(lanes, s, lanes.driven + 1)
+    inside = share(t, 0.25 + right, left - 0.08, wide_t)
     white = inside * share(s, 0.25, 0.75, wide_s)
     goal = inside * share(s, length - 1.0, length, wide_s)
-    square = (math.floor(t * 8.0 / half) + math.floor((length - s) * 2.0)) & 1
+    square = (math.floor((t - left) * 8.0 / (left - right)) + math.floor((length - s) * 2.0)) & 1
     shade = 0.78 * square + 0.02
     r, g, b = r + (0.8 - r) * white, g + (0.8 - g) * white, b + (0.8 - b) * white
     return r + (shade - r) * goal, g + (shade - g) * goal, b + (shade - b) * goal
@@ -124,18 +183,17 @@ def road(
     x: float,
     y: float,
     level: float,
-    half: float,
-    length: float,
+    lanes: LaneBoundaries,
 ) -> Colour:
     """Returns the colour of the carriageway or the shoulder at station s and offset t, which is the point (x,
     y) in world coordinates."""
-    beside = abs(t) - half
+    beside = max(t - _bound(lanes, s, 0), _bound(lanes, s, lanes.offsets.shape[1] - 1) - t)
     if beside < -0.3 - wide_t:
-        return paved(tiles, s, t, wide_s, wide_t, level, half, length)
+        return paved(tiles, s, t, wide_s, wide_t, level, lanes)
     ragged = 0.05 * fine_noise(tiles, CLOUD, s * 7.0, t * 7.0 + 90.0, level + 2.8)
     part = min(max((ragged * 0.5 - beside) / wide_t + 0.5, 0.0), 1.0)
     r, g, b = shoulder(tiles, x, y, beside, ragged, level)
     if part > 0.0:
-        pr, pg, pb = paved(tiles, s, t, wide_s, wide_t, level, half, length)
+        pr, pg, pb = paved(tiles, s, t, wide_s, wide_t, level, lanes)
         r, g, b = r + (pr - r) * part, g + (pg - g) * part, b + (pb - b) * part
     return r, g, b

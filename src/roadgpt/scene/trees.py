@@ -51,7 +51,7 @@ def plant(road: Road, world: World, land: Land) -> Trees:
     tints = rng.uniform(0.8, 1.12, count)
     away = cKDTree(road.centreline(LONGEST_STEP)[:, :2]).query(spots)[0]
     inside = (spots > (x0, y0)).all(axis=1) & (spots < (x1, y1)).all(axis=1)
-    kept = inside & (away > world.lane_width + world.verge + CLEAR + widths / 2)
+    kept = inside & (away > world.profile_of(road).reach + CLEAR + widths / 2)
     foot = np.column_stack([spots, land.height(spots[:, 0], spots[:, 1]) - 0.15])
     return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
 
