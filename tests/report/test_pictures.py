@@ -136,7 +136,7 @@ def test_the_border_s_name_is_not_written_under_the_road() -> None:
     figure.canvas.draw()
     box = border.get_window_extent()
     assert run.road is not None
-    half = run.world.lane_width + run.world.verge
+    half = 4.0 + 3.0
     across = [run.road.at(np.linspace(0, run.length, 400), t)[:, :2] for t in np.linspace(-half, half, 15)]
     for x, y in axes.transData.transform(np.concatenate(across)):
         assert not box.contains(x, y)

@@ -147,11 +147,33 @@ def test_the_road_is_drawn_where_it_is(driven: Run) -> None:
 def test_the_markings_are_those_that_are_judged(driven: Run) -> None:
     made = view.scene(driven)
     assert driven.road is not None
-    left, right = map(
-        float, driven.world.profile_of(driven.road).marking_limits(0.0)
-    )  # the page paints its edge lines up to the lane's width
+    left, right = map(float, driven.world.profile_of(driven.road).marking_limits(0.0))
     assert made["marking"]["width"] == 2 * left
-    assert made["world"]["lane_width"] == -right
+    lanes = made["road"]["lanes"]  # the page paints edge lines up to the outermost bounds
+    assert [(bound["marking"], bound["t"]) for bound in lanes["bounds"]] == [
+        ("solid", 4.0),
+        ("broken", 0.0),
+        ("solid", right),
+    ]
+    assert (lanes["rims"], lanes["middle"], lanes["shoulder"]) == ({"left": 7.0, "right": -7.0}, -2.0, 3.0)
+
+
+def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
+    world = World(lanes="2+1", lane_width=3.0, lane_width_end=4.0, bank=0.06, shoulder=1.0)
+    run = prove(Road.through([(20, 20), (80, 30), (120, 80), (110, 140)]), 0, world, Setup(drives=False))
+    road = view.scene(run)["road"]
+    s, lanes = np.array(road["s"]), road["lanes"]
+    width = np.interp(s, [0.0, road["length"]], [3.0, 4.0])
+    far = np.abs(s - road["length"] / 2) < 1e-9 + road["length"] / 2
+    assert (lanes["against"], lanes["driven"], len(lanes["bounds"])) == (1, 2, 4)
+    assert [bound["marking"] for bound in lanes["bounds"]] == ["solid", "solid", "broken", "solid"]
+    right = np.array(lanes["bounds"][3]["t"])
+    assert right[0] == -6.0
+    assert right[-1] == -8.0
+    assert np.abs(right + 2 * width)[far].max() < 0.25  # they widen without a kink, so not evenly
+    assert np.array(lanes["rims"]["right"]) == pytest.approx(right - 1.0, abs=2e-3)
+    assert np.array(lanes["middle"]) == pytest.approx(0.75 * right, abs=2e-3)
+    assert np.abs(lanes["bank"]).max() == pytest.approx(np.arctan(0.06), abs=2e-5)
 
 
 def test_the_drive_is_that_of_the_run(driven: Run) -> None:

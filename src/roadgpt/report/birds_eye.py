@@ -68,7 +68,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
-    labels = Labels(axes, frame, frame.width / across, centre, world.lane_width + 1.0)
+    labels = Labels(axes, frame, frame.width / across, centre, world.profile_of(road).paved_reach + 1.0)
     if border is not None:
         labels.keep_clear_of(border)
     places = places_of(run)

@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
 from roadgpt.report.text_width import POINTS
-from roadgpt.road import Road, World
+from roadgpt.road import Edges, Road, World
 
 GROUND, VERGE, ASPHALT, PAINT = "#eef1ea", "#dcd9c3", "#b9bdc3", "#ffffff"
 BEYOND = 12.0  # m that are shown outside the map
@@ -70,34 +70,37 @@ def stations_of(road: Road) -> Array:
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is in metres."""
-    s = stations_of(road)
-    half = world.lane_width
-    if world.verge:
-        _ribbon(axes, road, s, half + world.verge, VERGE, 1)
-    _ribbon(axes, road, s, half, ASPHALT, 2)
-    if half / per_inch * POINTS < THINNEST_LANE:
+    s, profile = stations_of(road), world.profile_of(road)
+    if profile.has_shoulders:
+        _ribbon(axes, road, s, profile.rims(s), VERGE, 1)
+    _ribbon(axes, road, s, profile.edges(s), ASPHALT, 2)
+    if float(profile.width(0.0)) / per_inch * POINTS < THINNEST_LANE:
         line = road.at(s)
         axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
         return
-    for side in (-half, half):
-        edge = road.at(s, side)
+    solid = [t for mark, t in reversed(profile.boundaries(s)) if mark == "solid"]
+    for t in solid:
+        edge = road.at(s, t)
         axes.plot(edge[:, 0], edge[:, 1], color=PAINT, lw=1.1, zorder=3, solid_capstyle="butt")
     starts = np.arange(0.0, road.length, DASH + GAP)
-    ends = np.minimum(starts + DASH, road.length)
-    dashes = np.stack([road.at(v)[:, :2] for v in np.linspace(starts, ends, 4)], axis=1)
-    axes.add_collection(LineCollection(list(dashes), colors=PAINT, linewidths=1.1, zorder=3))
+    along = np.linspace(starts, np.minimum(starts + DASH, road.length), 4)
+    broken = [t for mark, t in profile.boundaries(along) if mark == "broken"]
+    for t in broken:
+        dashes = road.at(along, t)[..., :2].swapaxes(0, 1)
+        axes.add_collection(LineCollection(list(dashes), colors=PAINT, linewidths=1.1, zorder=3))
 
 
-def _ribbon(axes: Axes, road: Road, s: Array, half: float, colour: str, layer: int) -> None:
-    outline = np.concatenate([road.at(s, half), road.at(s[::-1], -half)])[:, :2]
+def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: int) -> None:
+    outline = np.concatenate([road.at(s, edges.left), road.at(s, edges.right)[::-1]])[:, :2]
     axes.add_patch(Polygon(outline, closed=True, fc=colour, ec="none", zorder=layer))
 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
     """Draws a black bar where the road starts and a chequered one where it ends."""
-    half = world.lane_width
+    profile = world.profile_of(road)
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
-        across = road.at(np.full(9, s), np.linspace(-half, half, 9))[:, :2]
+        edges = profile.edges(s)
+        across = road.at(np.full(9, s), np.linspace(float(edges.right), float(edges.left), 9))[:, :2]
         pairs = np.stack([across[:-1], across[1:]], axis=1)
         shades = [colours[i % len(colours)] for i in range(len(pairs))]
         axes.add_collection(LineCollection(list(pairs), colors=shades, linewidths=3.2, zorder=5))

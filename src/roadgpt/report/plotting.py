@@ -36,7 +36,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
         ax = pyplot.gca()
     ax.set_aspect("equal", adjustable="datalim")
     s = stations_of(road)
-    edges = np.concatenate([road.at(s, world.lane_width), road.at(s, -world.lane_width)])[:, :2]
+    edges = np.concatenate([road.at(s, t) for t in world.profile_of(road).edges(s)])[:, :2]
     ax.update_datalim(edges)
     ax.margins(MARGIN)
     ax.autoscale_view()

@@ -115,11 +115,12 @@ def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
         raise UsageError(f"a film of {way / speed / 60:.0f} minutes is too long; give a shorter road")
     time = np.arange(0.0, max(way / speed, 2 * STEP), STEP)
     s = np.minimum(start_of(road) + speed * time, road.length)
-    place, heading, grade = road.at(s, -world.lane_width / 2), road.heading(s), road.grade(s)
+    profile = world.profile_of(road)
+    place, heading, grade = road.at(s, profile.middle(s)), road.heading(s), road.grade(s)
     level = np.zeros_like(s)
     columns = {
         "x": place[:, 0], "y": place[:, 1], "z": place[:, 2] + CAR.gravity_height,
-        "heading": heading, "pitch": np.arctan(grade), "roll": level, "steer": level,
+        "heading": heading, "pitch": np.arctan(grade), "roll": profile.superelevation(s), "steer": level,
         "speed": np.full_like(s, speed), "brake": level, "wheel": level,
     }  # fmt: skip
     return time, columns, s

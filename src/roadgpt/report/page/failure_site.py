@@ -37,8 +37,9 @@ class FailureSite:
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
     """Returns the place of a failure ``station`` metres along a road."""
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
-    w = world.lane_width
-    left, middle, right = (road.at(s, np.full(len(s), t))[:, :2] for t in (w, 0.0, -w))
+    profile = world.profile_of(road)
+    edges = profile.edges(s)
+    left, middle, right = (road.at(s, t)[:, :2] for t in (edges.left, np.zeros(len(s)), edges.right))
     path, car = np.empty((0, 2)), None
     if drive is not None:
         last = _step(drive, station)
@@ -46,7 +47,7 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    return FailureSite(left, middle, right, path, car, road.at(station, -w / 2)[:2], heading)
+    return FailureSite(left, middle, right, path, car, road.at(station, profile.middle(station))[:2], heading)
 
 
 def _step(drive: Drive, station: float) -> int:

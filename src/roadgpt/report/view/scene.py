@@ -12,7 +12,7 @@ from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
@@ -37,7 +37,7 @@ DRIVE = {
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
-WORLD = {"map_size", "lane_width", "verge", "speed_limit", "oob_tolerance", "friction", "z_floor"}
+WORLD = {"map_size", "speed_limit", "oob_tolerance", "friction", "z_floor"}
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
@@ -78,8 +78,9 @@ def _words(road: Road) -> str:
 
 
 def _road(road: Road, world: World) -> dict[str, Any]:
+    profile = world.profile_of(road)
     try:
-        s = stations(road, world.lane_width + world.verge, CHORD)
+        s = stations(road, profile.reach, CHORD)
     except ExportError as error:
         raise UsageError("the road has a number that is not finite; check it before it is shown") from error
     points = road.at(s)
@@ -92,7 +93,29 @@ def _road(road: Road, world: World) -> dict[str, Any]:
         "heading": _rounded(np.unwrap(road.heading(s)), FINE),
         "curvature": _rounded(road.curvature(s), FINE),
         "grade": _rounded(road.grade(s), FINE),
+        "lanes": _lanes(profile, s),
     }
+
+
+def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
+    """Returns the cross-section at the stations ``s``; what does not change along the road is one number."""
+    rims, edges = profile.rims(s), profile.edges(s)
+    shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
+    return {
+        "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
+        "against": profile.count[1],
+        "driven": profile.count[1] + profile.driven,
+        "middle": _offsets(profile.middle(s)),
+        "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},
+        "shoulder": round(float(shoulder), MILLIMETRES),
+        "reach": round(profile.reach, MILLIMETRES),
+        "bank": None if profile.superelevation_angle is None else _rounded(profile.superelevation(s), FINE),
+    }
+
+
+def _offsets(t: Array) -> float | list[float]:
+    found = _rounded(t, MILLIMETRES)
+    return found[0] if len(set(found)) == 1 else found
 
 
 def _drive(run: Run) -> dict[str, Any] | None:

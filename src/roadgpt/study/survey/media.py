@@ -88,7 +88,7 @@ def _above(road: Road, world: World, frame: Frame) -> Figure:
     draw_road(axes, road, world, frame.width / SIDE)
     draw_ends(axes, road, world)
     centre = road.at(stations_of(road))[:, :2]
-    labels = Labels(axes, frame, frame.width / SIDE, centre, world.lane_width + 1.0)
+    labels = Labels(axes, frame, frame.width / SIDE, centre, world.profile_of(road).paved_reach + 1.0)
     for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
         heading = float(road.heading(s))
         x, y, _ = road.at(s)

@@ -10,7 +10,7 @@ const MEADOW = [0x84a067, 0x89a36b, 0x90a772];
 // Heights over a net of columns and rows.
 function landOf(scene) {
   const { road, world } = scene;
-  const rim = world.lane_width + world.verge;
+  const { reach: rim, shoulder } = road.lanes;
   const frame = [extent(road.x, 40), extent(road.y, 40)];
   if (scene.drive) {
     frame[0] = extent([...frame[0], ...scene.drive.columns.x]);
@@ -26,7 +26,7 @@ function landOf(scene) {
   });
   const net = { xs, ys, cell, wide: xs.inner.length, high: ys.inner.length };
   const reach = rim + cell * 1.45;
-  if (world.verge === 0) {
+  if (shoulder <= 0) {
     const level = Math.min(world.z_floor, extent(road.z)[0] - 1);
     net.heights = new Float64Array(net.wide * net.high).fill(level);
     net.bank = 0;
@@ -46,7 +46,10 @@ function relief(net, road, reach) {
   const step = Math.min(cell / 2, 2);
   const count = Math.max(2, Math.ceil(road.length / step));
   for (let n = 0; n <= count; n++) {
-    const place = onRoad(road, (road.length * n) / count, 0);
+    const s = (road.length * n) / count;
+    const place = onRoad(road, s, 0);
+    const { left, right } = road.lanes.rims;
+    const low = Math.min(place.z, ...(road.lanes.bank ? [left, right] : []).map((t) => onRoad(road, s, offsetAt(road, t, s)).z));
     const [i0, i1] = [place.x - reach, place.x + reach].map((x) => Math.round((x - xs.inner[0]) / cell));
     const [j0, j1] = [place.y - reach, place.y + reach].map((y) => Math.round((y - ys.inner[0]) / cell));
     for (let j = Math.max(0, j0); j <= Math.min(high - 1, j1); j++) {
@@ -54,7 +57,7 @@ function relief(net, road, reach) {
         const distance = Math.hypot(xs.inner[i] - place.x, ys.inner[j] - place.y);
         if (distance > reach) continue;
         const at = j * wide + i;
-        heights[at] = Math.min(heights[at], place.z - 0.35);
+        heights[at] = Math.min(heights[at], low - 0.35);
         away[at] = 0;
       }
     }

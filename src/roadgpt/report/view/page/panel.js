@@ -83,7 +83,7 @@ function write(find, scene, trip, fastest) {
 }
 
 function tell(find, scene, trip, pose, time) {
-  const middle = pose.t + scene.world.lane_width / 2;
+  const middle = pose.t - offsetAt(scene.road, scene.road.lanes.middle, pose.s);
   const side = middle > 0 ? "left" : "right";
   const share = Math.round(100 * pose.outside);
   const isOver = trip.isDriven && time >= trip.duration;

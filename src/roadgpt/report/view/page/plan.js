@@ -70,6 +70,23 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.stroke();
   }
 
+  // The points of a line beside the road.
+  function along(t) {
+    const points = road.s.map((s) => beside(road, s, offsetAt(road, t, s)));
+    return [points.map(([x]) => x), points.map(([, y]) => y)];
+  }
+
+  // The surface between two lines, nowhere narrower than some pixels.
+  function ribbon(pen, left, right, style, least) {
+    const [[xs, ys], [xe, ye]] = [along(left), along(right)];
+    trace(pen, road.x, road.y, style, least);
+    pen.beginPath();
+    xs.forEach((x, i) => (i ? pen.lineTo(px(x), py(ys[i])) : pen.moveTo(px(x), py(ys[i]))));
+    for (let i = xe.length - 1; i >= 0; i--) pen.lineTo(px(xe[i]), py(ye[i]));
+    pen.fillStyle = style;
+    pen.fill();
+  }
+
   function ground(pen, size) {
     aim(size);
     const { wide, high } = size;
@@ -87,10 +104,11 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.strokeRect(px(0), py(world.map_size), world.map_size * view.scale, world.map_size * view.scale);
     pen.setLineDash([]);
     pen.lineJoin = "round";
-    const lane = world.lane_width * view.scale;
-    trace(pen, road.x, road.y, LOOK.verge, Math.max(5, 2 * lane + 2 * world.verge * view.scale));
-    trace(pen, road.x, road.y, LOOK.asphalt, Math.max(4, 2 * lane));
-    if (lane > 3) trace(pen, road.x, road.y, "#fff", 0.8);
+    const { bounds, driven, rims } = road.lanes;
+    ribbon(pen, rims.left, rims.right, LOOK.verge, 5);
+    ribbon(pen, bounds[0].t, bounds[bounds.length - 1].t, LOOK.asphalt, 4);
+    const lane = (offsetAt(road, bounds[driven].t, 0) - offsetAt(road, bounds[driven + 1].t, 0)) * view.scale;
+    if (lane > 3) bounds.slice(1, -1).forEach(({ t }) => trace(pen, ...along(t), "#fff", 0.8));
     if (columns) path(pen);
     label(pen, size, 0, "start", LOOK.paper);
     label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);

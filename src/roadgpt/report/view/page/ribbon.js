@@ -48,12 +48,19 @@ function stationsBetween(road, a, b) {
   return [a, ...road.s.filter((s) => s > a + 1e-6 && s < b - 1e-6), b];
 }
 
+// An offset from the centre line is one number for the whole road, or one for each of its stations.
+const offsetAt = (road, t, s) => (typeof t === "number" ? t : read(t, placeIn(road.s, s)));
+const movedBy = (t, metres) => (typeof t === "number" ? t + metres : t.map((each) => each + metres));
+const between = (t0, t1, share) => {
+  if (typeof t0 === "number" && typeof t1 === "number") return mix(t0, t1, share);
+  const at = (t, i) => (typeof t === "number" ? t : t[i]);
+  return (typeof t0 === "number" ? t1 : t0).map((_, i) => mix(at(t0, i), at(t1, i), share));
+};
+
 function beside(road, s, t) {
-  const place = placeIn(road.s, s);
-  const bend = read(road.curvature, place);
-  const heading = read(road.heading, place);
-  const off = bend * t > PINCH ? PINCH / bend : t;
-  return [read(road.x, place) - off * Math.sin(heading), read(road.y, place) + off * Math.cos(heading), read(road.z, place)];
+  const bend = read(road.curvature, placeIn(road.s, s));
+  const { x, y, z } = onRoad(road, s, bend * t > PINCH ? PINCH / bend : t);
+  return [x, y, z];
 }
 
 // A band from offset and height (t0, h0) to (t1, h1), along these stations. t0 lies left of t1: the band faces up.
@@ -61,8 +68,8 @@ function band(shape, road, stations, [t0, h0], [t1, h1], colour) {
   let left = -1;
   let right = -1;
   for (const s of stations) {
-    const [x0, y0, z0] = beside(road, s, t0);
-    const [x1, y1, z1] = beside(road, s, t1);
+    const [x0, y0, z0] = beside(road, s, offsetAt(road, t0, s));
+    const [x1, y1, z1] = beside(road, s, offsetAt(road, t1, s));
     const l = shape.point(x0, y0, z0 + h0, colour);
     const r = shape.point(x1, y1, z1 + h1, colour);
     if (left >= 0) shape.quad(right, r, l, left);
@@ -71,81 +78,84 @@ function band(shape, road, stations, [t0, h0], [t1, h1], colour) {
   }
 }
 
-function cap(shape, road, s, half, colour, isEnd) {
-  const [x0, y0, z] = beside(road, s, half);
-  const [x1, y1] = beside(road, s, -half);
-  const corners = [[x0, y0, z], [x1, y1, z], [x1, y1, z - THICK], [x0, y0, z - THICK]].map((p) => shape.point(...p, colour));
+function cap(shape, road, s, left, right, colour, isEnd) {
+  const [x0, y0, z0] = beside(road, s, left);
+  const [x1, y1, z1] = beside(road, s, right);
+  const corners = [[x0, y0, z0], [x1, y1, z1], [x1, y1, z1 - THICK], [x0, y0, z0 - THICK]].map((p) => shape.point(...p, colour));
   if (isEnd) corners.reverse();
   shape.quad(...corners);
 }
 
 // Ground at an end of the road: the shoulder goes on a little, then a bank runs down into the land.
-function apron(shape, road, rim, bank, isEnd) {
+function apron(shape, road, bank, isEnd) {
   const s = isEnd ? road.length : 0;
+  const rims = [offsetAt(road, road.lanes.rims.left, s), offsetAt(road, road.lanes.rims.right, s)];
+  const beyond = (sign, metres) => ((sign > 0) === isEnd ? rims[0] + metres : rims[1] - metres);
   const place = placeIn(road.s, s);
   const heading = read(road.heading, place) + (isEnd ? 0 : Math.PI);
   const slope = read(road.grade, place) * (isEnd ? 1 : -1);
-  const foot = rim + bank * 1.3;
-  const row = (ahead, half, down, colour) => [1, -1].map((side) => {
-    const [x, y, z] = beside(road, s, isEnd ? side * half : -side * half);
+  const foot = bank * 1.3;
+  const row = (ahead, metres, down, colour) => [1, -1].map((side) => {
+    const [x, y, z] = beside(road, s, beyond(side, metres));
     return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, colour);
   });
   const gravel = colourOf(GRAVEL);
   const grass = colourOf(BANK);
-  const strips = [[row(0, rim, 0.03, gravel), row(APRON, rim, 0.03, gravel)],
-    [row(APRON, rim, 0.03, grass), row(APRON + bank * 1.3, foot, bank, grass)]];
+  const strips = [[row(0, 0, 0.03, gravel), row(APRON, 0, 0.03, gravel)],
+    [row(APRON, 0, 0.03, grass), row(APRON + bank * 1.3, foot, bank, grass)]];
   for (const [near, far] of strips) shape.quad(near[1], far[1], far[0], near[0]);
   // the corners between the bank at the end and those beside the road
   [0, 1].forEach((side) => {
     const sign = side ? -1 : 1;
-    const at = (ahead, half, down) => {
-      const [x, y, z] = beside(road, s, (isEnd ? sign : -sign) * half);
+    const at = (ahead, metres, down) => {
+      const [x, y, z] = beside(road, s, beyond(sign, metres));
       return shape.point(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading), z + Math.min(ahead, APRON) * slope - down, grass);
     };
-    const corners = [at(0, rim, 0.03), at(APRON, rim, 0.03), at(APRON + bank * 1.3, foot, bank), at(0, foot, bank)];
+    const corners = [at(0, 0, 0.03), at(APRON, 0, 0.03), at(APRON + bank * 1.3, foot, bank), at(0, foot, bank)];
     if (side) corners.reverse();
     shape.quad(...corners);
   });
 }
 
 function pavement(scene, origin, bank, grain) {
-  const { road, world } = scene;
+  const { road } = scene;
+  const { bounds, against, rims, shoulder } = road.lanes;
   const shape = new Shape3(origin);
-  const half = world.lane_width;
-  const rim = half + world.verge;
   const s = road.s;
-  band(shape, road, s, [half, 0], [0, 0], colourOf(AGAINST));
-  band(shape, road, s, [0, 0], [-half, 0], colourOf(ASPHALT));
-  band(shape, road, s, [half, -THICK], [half, 0], colourOf(SIDE));
-  band(shape, road, s, [-half, 0], [-half, -THICK], colourOf(SIDE));
-  for (const end of [0, road.length]) cap(shape, road, end, half, colourOf(SIDE), end > 0);
-  if (world.verge > 0) {
-    for (const side of [1, -1]) {
-      const pair = [[side * rim, -0.03], [side * half, -0.02]];
-      const slope = [[side * (rim + bank * 1.3), -bank], [side * rim, -0.03]];
+  const [left, right] = [bounds[0].t, bounds[bounds.length - 1].t];
+  bounds.slice(1).forEach(({ t }, lane) => {
+    band(shape, road, s, [bounds[lane].t, 0], [t, 0], colourOf(lane < against ? AGAINST : ASPHALT));
+  });
+  band(shape, road, s, [left, -THICK], [left, 0], colourOf(SIDE));
+  band(shape, road, s, [right, 0], [right, -THICK], colourOf(SIDE));
+  for (const end of [0, road.length]) cap(shape, road, end, offsetAt(road, left, end), offsetAt(road, right, end), colourOf(SIDE), end > 0);
+  if (shoulder > 0) {
+    for (const [side, rim, edge] of [[1, rims.left, left], [-1, rims.right, right]]) {
+      const pair = [[rim, -0.03], [edge, -0.02]];
+      const slope = [[movedBy(rim, side * bank * 1.3), -bank], [rim, -0.03]];
       if (side < 0) { pair.reverse(); slope.reverse(); }
       band(shape, road, s, ...pair, colourOf(GRAVEL));
       band(shape, road, s, ...slope, colourOf(BANK));
     }
-    for (const isEnd of [false, true]) apron(shape, road, rim, bank, isEnd);
+    for (const isEnd of [false, true]) apron(shape, road, bank, isEnd);
   }
   return shape.mesh(THREE.MeshLambertMaterial, { map: grain });
 }
 
 function markings(scene, origin) {
-  const { road, world } = scene;
+  const { road } = scene;
   const { width, dash, gap } = scene.marking;
   const shape = new Shape3(origin);
   const paint = colourOf(PAINT);
-  const edge = world.lane_width;
-  for (const side of [1, -1]) {
-    const [left, right] = side > 0 ? [edge, edge - width] : [width - edge, -edge];
-    band(shape, road, road.s, [left, 0.015], [right, 0.015], paint);
-  }
-  for (let a = 0; a < road.length; a += dash + gap) {
-    const stations = stationsBetween(road, a, Math.min(a + dash, road.length));
-    band(shape, road, stations, [width / 2, 0.015], [-width / 2, 0.015], paint);
-  }
+  const dashes = [];
+  for (let a = 0; a < road.length; a += dash + gap) dashes.push(stationsBetween(road, a, Math.min(a + dash, road.length)));
+  road.lanes.bounds.forEach(({ marking, t }, i, { length }) => {
+    if (marking === "none") return;
+    // inside the lane at an edge of the carriageway, over the boundary elsewhere
+    const left = movedBy(t, i === 0 ? 0 : i === length - 1 ? width : width / 2);
+    const right = movedBy(t, i === 0 ? -width : i === length - 1 ? 0 : -width / 2);
+    for (const stations of marking === "broken" ? dashes : [road.s]) band(shape, road, stations, [left, 0.015], [right, 0.015], paint);
+  });
   return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -2 });
 }
 

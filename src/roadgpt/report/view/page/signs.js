@@ -4,14 +4,16 @@ const POST_EVERY = 25; // m; half of what German rules ask for on straights, so 
 const PLATE = 0.00082; // of the height of the picture, per pixel of text
 
 function posts(scene, origin) {
-  const { road, world } = scene;
+  const { road } = scene;
+  const { left, right } = road.lanes.rims;
   const count = Math.max(1, Math.floor(road.length / POST_EVERY));
   const body = new THREE.InstancedMesh(new THREE.BoxGeometry(0.12, 0.12, 1), new THREE.MeshLambertMaterial({ color: 0xf7f7f5 }), 2 * count);
   const dark = new THREE.InstancedMesh(new THREE.BoxGeometry(0.13, 0.13, 0.22), new THREE.MeshLambertMaterial({ color: 0x22252a }), 2 * count);
   const matrix = new THREE.Matrix4();
   for (let n = 0; n < count; n++) {
     for (const side of [1, -1]) {
-      const [x, y, z] = beside(road, (n + 0.5) * (road.length / count), side * (world.lane_width + world.verge - 0.25));
+      const s = (n + 0.5) * (road.length / count);
+      const [x, y, z] = beside(road, s, offsetAt(road, side > 0 ? left : right, s) - side * 0.25);
       const at = 2 * n + (side > 0 ? 0 : 1);
       matrix.makeTranslation(x - origin.x, y - origin.y, z + 0.45 - origin.z);
       body.setMatrixAt(at, matrix);
@@ -26,20 +28,21 @@ function posts(scene, origin) {
 
 // A white line at the start, a chequered band at the goal, both over the driven lane.
 function startAndGoal(scene, origin) {
-  const { road, world } = scene;
+  const { road } = scene;
+  const { bounds, driven } = road.lanes;
   const shape = new Shape3(origin);
   const white = colourOf(0xffffff);
   const black = colourOf(0x15171a);
-  const width = world.lane_width;
+  const [left, right] = [bounds[driven].t, bounds[driven + 1].t];
   const start = Math.min(0.6, road.length);
-  band(shape, road, stationsBetween(road, Math.max(0, start - 0.5), start), [0, 0.02], [-width, 0.02], white);
+  band(shape, road, stationsBetween(road, Math.max(0, start - 0.5), start), [left, 0.02], [right, 0.02], white);
   const count = 8;
   for (let row = 0; row < 2; row++) {
     const a = Math.max(0, road.length - 1 + 0.5 * row);
     const stations = stationsBetween(road, a, Math.min(road.length, a + 0.5));
     for (let k = 0; k < count; k++) {
       const tile = (k + row) % 2 ? white : black;
-      band(shape, road, stations, [(-k * width) / count, 0.02], [(-(k + 1) * width) / count, 0.02], tile);
+      band(shape, road, stations, [between(left, right, k / count), 0.02], [between(left, right, (k + 1) / count), 0.02], tile);
     }
   }
   return shape.mesh(THREE.MeshLambertMaterial, { polygonOffset: true, polygonOffsetFactor: -3, polygonOffsetUnits: -3 });

@@ -23,7 +23,7 @@ function makeStage(canvas, scene, trip, fastest) {
   const grid = landGrid(net, scene.world, origin);
   world.add(landMesh(net, origin, meadowGrain(renderer)), grid);
   world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), markings(scene, origin), startAndGoal(scene, origin));
-  if (scene.world.verge > 0.5) world.add(posts(scene, origin));
+  if (scene.road.lanes.shoulder > 0.5) world.add(posts(scene, origin));
   const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
   world.add(line);
   const pins = scene.places.map((place) => {

@@ -6,12 +6,16 @@ const PACE = 50 / 3.6; // m/s of the look along a road that nobody drove
 function onRoad(road, s, t) {
   const place = placeIn(road.s, s);
   const heading = read(road.heading, place);
+  const grade = read(road.grade, place);
+  const roll = road.lanes.bank ? read(road.lanes.bank, place) : 0;
+  const pitch = Math.atan(grade);
+  const [across, up] = [t * Math.cos(roll), t * Math.sin(roll)];
+  const back = up * Math.sin(pitch);
   return {
-    x: read(road.x, place) - t * Math.sin(heading),
-    y: read(road.y, place) + t * Math.cos(heading),
-    z: read(road.z, place),
-    grade: read(road.grade, place),
-    heading,
+    x: read(road.x, place) - across * Math.sin(heading) - back * Math.cos(heading),
+    y: read(road.y, place) + across * Math.cos(heading) - back * Math.sin(heading),
+    z: read(road.z, place) + up * Math.cos(pitch),
+    grade, heading, roll,
   };
 }
 
@@ -45,17 +49,17 @@ function driven(scene) {
 }
 
 function imagined(scene) {
-  const { road, world } = scene;
-  const t = -world.lane_width / 2;
+  const { road } = scene;
   return {
     isDriven: false,
     car: { length: 4.7, width: 1.86, ahead: 0, height: 0.56, lock: 0.6 },
     duration: road.length / PACE,
     at(time) {
       const s = clamp(time * PACE, 0, road.length);
+      const t = offsetAt(road, road.lanes.middle, s);
       const place = onRoad(road, s, t);
       return {
-        ...place, z: place.z + 0.56, pitch: Math.atan(place.grade), roll: 0, speed: PACE, steer: 0, throttle: 0, brake: 0,
+        ...place, z: place.z + 0.56, pitch: Math.atan(place.grade), speed: PACE, steer: 0, throttle: 0, brake: 0,
         s, t, outside: 0, time,
       };
     },
