@@ -5,15 +5,18 @@ import json
 import os
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
 
 from fake_chat import FakeChat
+from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatError, ChatSettings
 from roadgpt.cli import app
 from roadgpt.design.designers import thesis as thesis_designer
-from roadgpt.errors import UsageError
+from roadgpt.design.designers.planner import Planner
+from roadgpt.errors import DesignError, UsageError
 from roadgpt.run import Setup
 from roadgpt.run.atomic import alone_in
 from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
@@ -191,6 +194,29 @@ def test_a_designer_that_nobody_answers_is_said_so(tmp_path: Path, monkeypatch: 
     page = (write_study(tmp_path)).read_text()
     assert "planner: 2 of 2" in page
     assert "thesis was not run" in page
+
+
+def test_a_description_that_no_road_can_keep_costs_no_other(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    draft = Planner.draft
+
+    def drafted(self: Planner, brief: Brief, *rest: Any) -> Any:
+        if brief.words == "two turns":
+            raise DesignError("no road keeps this")
+        return draft(self, brief, *rest)
+
+    monkeypatch.setattr(Planner, "draft", drafted)
+    plan = small("a road", "two turns", "an uphill road", roads=4)
+    open_folder(plan, tmp_path)
+    (problem,) = work(plan, tmp_path)
+    assert problem.sentence == "no road keeps this"
+    assert not (tmp_path / problem.part).exists()
+    made = [len(list((tmp_path / part.name).glob("test.*.json"))) for part in plan.parts()]
+    assert made == [4, 0, 4]
+    monkeypatch.undo()
+    assert work(plan, tmp_path) == []
+    assert len(list((tmp_path / problem.part).glob("test.*.json"))) == 4
 
 
 def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

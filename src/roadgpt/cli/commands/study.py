@@ -88,6 +88,7 @@ def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
 def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool, rest: dict[str, Any]) -> int:
     """Works, writes the report, prints its path, and returns the exit status."""
     from roadgpt.run import check_parts
+    from roadgpt.run.folder import finished
     from roadgpt.study.chapters.wording import plural
     from roadgpt.study.execution import work
     from roadgpt.study.plan import open_folder
@@ -116,7 +117,8 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
         raise
     keep_problems(place, problems)
     if not quiet:
-        click.echo(f"{total} roads in {time.perf_counter() - begun:.0f} s; writing the report")
+        made = sum(len(finished(place / part.name)) for part in plan.parts())
+        click.echo(f"{made} roads in {time.perf_counter() - begun:.0f} s; writing the report")
     page = write_study(place)
     _complain(problems)
     click.echo(str(page))
