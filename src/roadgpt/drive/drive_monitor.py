@@ -45,7 +45,9 @@ class DriveMonitor:
         self._tolerance = math.inf if keep_driving else world.oob_tolerance
         is_watched = world.lane_departure and not keep_driving
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
-        self._end = np.asarray(road.at(road.length)).tolist()
+        # The end of the lane's left edge; with one lane in each direction it is that of the centre line.
+        edge = world.profile_of(road).lane(road.length).left
+        self._end = np.asarray(road.at(road.length, edge)).tolist()
         self._since, self._from = 0.0, (math.nan, math.nan)
 
     def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:

@@ -4,5 +4,5 @@ Source: the simulations of the RoadGPT thesis and of the SBFT competition, which
 """
 
 START = 2.5  # m along the road: station of the car's centre of gravity at the start
-GOAL = 8.0  # m from the end of the road; a car that comes this close has arrived
+GOAL = 8.0  # m from the end of the left edge of the lane; a car that comes this close has arrived
 LEAST = START + GOAL  # m; on a shorter road a car has arrived before it sets off
