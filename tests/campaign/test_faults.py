@@ -34,7 +34,9 @@ from roadgpt.campaign.faults.distinct import (
 )
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.campaign.faults.fault import WAYS
+from roadgpt.campaign.faults.reason import lane_curvature
 from roadgpt.campaign.faults.stability import drive_disturbed
+from roadgpt.campaign.surrogate_features import NAMES, surrogate_features_of
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
@@ -98,6 +100,35 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
     assert reason.needed == pytest.approx(SPEED**2 / 18 / 9.81, rel=0.01)
     assert reason.entered == SPEED
     assert "R 20 m right at 61 km/h and ran wide after 72 m" in reason.sentence
+
+
+@pytest.mark.parametrize(
+    ("world", "middle"),
+    [(World(lane_width=3.0), -1.5), (World(lanes="2+1", lane_width=3.5), -5.25), (World(lanes="3+2"), -10.0)],
+)
+def test_the_bend_that_counts_is_that_of_the_driven_lane(world: World, middle: float) -> None:
+    road = world.lay(build(design(straight(60), bend(-80, 40))))
+    assert lane_curvature(road, world, np.array([80.0]))[0] == pytest.approx(-1 / (40 + middle), rel=1e-3)
+    features = dict(zip(NAMES, surrogate_features_of(road, world), strict=True))
+    assert features["right_3"] * 0.06 == pytest.approx(1 / (40 + middle), rel=0.01)
+
+
+def test_a_bank_to_the_inside_takes_its_share_of_what_a_bend_needs() -> None:
+    plain = build(design(straight(60), bend(-80, 60)))
+    for ratio, angle in ((0.05, math.atan(0.05)), (0.1, math.atan(0.1))):
+        world = World(bank=ratio)
+        road = world.lay(plain)
+        drive = driven(road, 100.0, 1.5)
+        run = Run(Request(world=world), 7, 7, outcome="FAIL", description="", road=road, drive=drive)
+        reason = reason_of(replace(run, verdict=judge(road, drive, world)))
+        pull = SPEED**2 / 58 / 9.81
+        across, onto = pull * math.cos(angle) - math.sin(angle), math.cos(angle) + pull * math.sin(angle)
+        # Where the bend begins, the road is not inclined yet.
+        assert across / onto - 0.01 < reason.needed < pull * 1.01
+        there = drive["s"] > 85
+        rest = replace(drive, columns=Columns({name: drive[name][there] for name in COLUMNS}))
+        late = reason_of(replace(run, drive=rest, verdict=judge(road, rest, world)))
+        assert late.needed == pytest.approx(across / onto, rel=0.01)
 
 
 def test_a_car_that_cuts_says_so_and_names_the_bend_before() -> None:

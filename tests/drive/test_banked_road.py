@@ -1,12 +1,16 @@
 """The car on roads with superelevation, beside the surface of the road and the equilibrium of forces."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.reference import Reference
+from roadgpt.drive.driving_line import line_along
+from roadgpt.drive.marking_monitor import POSE, MarkingMonitor
 from roadgpt.drive.sampled_road import locate_on, sample_road
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, MujocoSimulator
 from roadgpt.drive.simulators.mujoco.dynamics import FX, FY, LOAD
@@ -15,6 +19,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Profile
+from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, expected_speed, plan_speed
 from roadgpt.verdict import judge
 
 G = 9.81
@@ -143,11 +148,14 @@ def test_at_the_hands_off_speed_no_tyre_pushes_sideways(radius: float, ratio: fl
     assert abs(seen["force"]) < 0.002 * ETK_LIKE.mass * G
 
 
-def inclined(angle: float, t: float = 0.0, **world: float) -> Vehicle:
+def banked_straight(angle: float) -> Road:
     plan = PieceCurve(0.0, 0.0, 0.0, (Piece(120.0, 0.0, 0.0),))
     level = GradeProfile(0.0, (0.0, 120.0), (0.0, 0.0))
-    road = Road(plan, level, profile=Profile.of(4, 4, superelevation_angle=held(angle)))
-    car = Vehicle.on(road, World(**world))
+    return Road(plan, level, profile=Profile.of(4, 4, superelevation_angle=held(angle)))
+
+
+def inclined(angle: float, t: float = 0.0, **world: float) -> Vehicle:
+    car = Vehicle.on(banked_straight(angle), World(**world))
     car.put(60.0, t)
     return car
 
@@ -254,3 +262,69 @@ def test_the_drive_says_where_the_car_is_on_the_surface() -> None:
         foot, side = road.at(s, t), road.at(s, t + 1.0) - road.at(s, t)
         assert side @ (centre - foot) == pytest.approx(0.0, abs=2e-3)  # a right angle across the road
         assert np.linalg.norm(centre - foot) == pytest.approx(0.56, abs=0.06)
+
+
+@pytest.mark.parametrize("ratio", [-0.12, -0.08, -0.03, 0.0, 0.03, 0.08, 0.12])
+@pytest.mark.parametrize(
+    ("radius", "grip", "hand"), [(30, 0.64, 1), (80, 0.3, -1), (200, 0.64, -1), (60, 0.15, 1)]
+)
+def test_the_planned_speed_uses_all_of_the_grip(ratio: float, radius: float, grip: float, hand: int) -> None:
+    """Beside the root of the balance of forces on an inclined plane."""
+    road = banked_circle(radius, ratio, hand)
+    limits = DrivingLimits(grip, 5.0, 5.0, 200.0, power=1e9)
+    speed = plan_speed(line_along(road, 0.0), limits)[200]
+    e = math.atan(ratio)
+
+    def spare(v: float) -> float:
+        inwards = v * v / radius
+        return grip * (G * math.cos(e) + inwards * math.sin(e)) - (inwards * math.cos(e) - G * math.sin(e))
+
+    if spare(SLOWEST) <= 0:  # the bank alone needs more than the grip
+        assert speed == SLOWEST
+    else:
+        assert speed == pytest.approx(brentq(spare, SLOWEST, 300.0), rel=1e-9)
+
+
+def test_braking_for_a_tighter_bend_gets_what_the_bank_spares() -> None:
+    ends = {}
+    for ratio in (0.0, 0.08):
+        line = line_along(banked_circle(100.0, ratio), 0.0)
+        at, e = len(line.grade) // 2, math.atan(ratio)
+        curvature = [*line.curvature[:at], *[0.05] * (len(line.curvature) - at)]
+        plan = plan_speed(replace(line, curvature=curvature), DrivingLimits(0.6, 0.6, 0.6, 50.0, power=1e9))
+        v, after = plan[at - 1], plan[at]
+        slowed = (v * v - after * after) / (2 * line.step)
+        load = G * math.cos(e) + after * after / 100 * math.sin(e)
+        across = after * after / 100 * math.cos(e) - G * math.sin(e)
+        assert math.hypot(slowed, across) == pytest.approx(0.6 * load, rel=1e-6)
+        ends[ratio] = after
+    assert ends[0.08] > ends[0.0]
+
+
+def test_a_bank_that_is_steeper_than_the_grip_lets_no_car_set_off() -> None:
+    line = line_along(banked_circle(60.0, 0.12), 0.0)
+    assert max(plan_speed(line, DrivingLimits(0.1, 0.1, 0.1, 50.0))) == SLOWEST
+
+
+def test_a_speed_is_expected_of_a_road_that_is_not_laid_yet() -> None:
+    bend = np.full(400, 1 / 60)
+    usual, banked = World(speed_limit=30.0), World(speed_limit=30.0, bank=0.08)
+    e, k = math.atan(0.08), 1 / (60 + 2 * math.cos(math.atan(0.08)))
+    want = math.sqrt((0.64 * math.cos(e) + math.sin(e)) / (math.cos(e) - 0.64 * math.sin(e)) * G / k)
+    assert expected_speed(bend, 0.0, 1.0, banked)[-1] == pytest.approx(want, rel=1e-6)
+    road, _ = curve(0.08)
+    s = np.linspace(0.0, road.length, 400)
+    there = slice(190, 200)
+    own = expected_speed(road.curvature(s), 0.0, float(s[1]), banked, road.profile)[there]
+    drafted = expected_speed(road.curvature(s), 0.0, float(s[1]), banked)[there]
+    np.testing.assert_allclose(own, drafted, rtol=1e-9)
+    assert (own > expected_speed(road.curvature(s), 0.0, float(s[1]), usual)[there]).all()
+
+
+def test_markings_are_measured_along_the_surface() -> None:
+    for ratio in (-0.08, 0.08):
+        car, road = inclined(math.atan(ratio), t=-14.0), banked_straight(math.atan(ratio))
+        poses = np.array([[car.see()[name] for name in POSE]])
+        # Four lanes of 4 m: the car is 2 m beside its right marking, and its tyres are 1.805 m wide.
+        beyond = MarkingMonitor.for_tyres(road, WORLD, ETK_LIKE.box).beyond(poses)
+        assert beyond[0] == pytest.approx(-2.0 + 1.805 / 2, abs=0.02)

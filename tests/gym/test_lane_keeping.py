@@ -95,6 +95,24 @@ def test_the_numbers_are_those_of_the_road_and_the_car() -> None:
             assert values.min() - 1e-6 <= there <= values.max() + 1e-6 or info["s"] + metres > road.length
 
 
+@pytest.mark.parametrize(
+    ("world", "middle"), [({"lane_width": 3.0}, -1.5), ({"lanes": "2+1", "lane_width": 3.5}, -5.25)]
+)
+def test_offset_and_reward_are_those_of_the_driven_lane(world: dict[str, Any], middle: float) -> None:
+    from roadgpt.gym.observation import LABELS, SCALES
+
+    env = made(world=world)
+    seen, info = env.reset(seed=3)
+    assert info["t"] == pytest.approx(middle, abs=0.05)
+    for _ in range(80):
+        seen, reward, *_, info = env.step(good(seen))
+    told = dict(zip(LABELS, (seen * SCALES).tolist(), strict=True))
+    assert told["offset"] == pytest.approx(info["t"] - middle, abs=1e-5)
+    assert abs(told["offset"]) < 0.3
+    assert info["outside"] == 0
+    assert reward == pytest.approx(info["progress"] - 0.1 * abs(info["t"] - middle), abs=0.02)
+
+
 def test_the_same_seed_and_actions_give_the_same_bytes() -> None:
     first, second = (made(("two hairpins", "a straight road")) for _ in range(2))
     one, other = (episode(env, good, most=60, seed=11) for env in (first, second))

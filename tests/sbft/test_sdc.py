@@ -18,7 +18,7 @@ from grpc_tools import protoc
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.errors import UsageError
-from roadgpt.road import Road
+from roadgpt.road import Road, World
 from roadgpt.sbft.sdc import messages
 from roadgpt.sbft.sdc.risk import LINE_ONLY, PLAIN, UNKNOWN, RiskFeatures, fit_model, order, risk_features
 from roadgpt.sbft.sdc.service import serve
@@ -186,13 +186,17 @@ def test_a_hundred_tests_are_ordered_in_far_less_than_four_seconds(client: tuple
     assert answer[0] < 40 < 100 < answer[-1]
 
 
-def test_the_line_is_where_the_car_drives() -> None:
+@pytest.mark.parametrize(
+    ("world", "middle"),
+    [(PLAIN, -2.0), (PLAIN.model_copy(update={"lane_width": 3.0}), -1.5), (World(lanes="2+1"), -6.0)],
+)
+def test_the_line_is_where_the_car_drives(world: World, middle: float) -> None:
     road = Road.through(arc(30))
-    drive = simulate(road, PLAIN, BeamngLike(), keep_driving=True)
+    drive = simulate(road, world, BeamngLike(), keep_driving=True)
     s, t = drive["s"], drive["t"]
     counts = (s > 25) & (s < road.length - 8)
-    farthest = np.abs(t[counts] + PLAIN.lane_width / 2).max()
-    assert risk_features(arc(30)).near == pytest.approx(farthest, abs=0.6)
+    farthest = np.abs(t[counts] - middle).max()
+    assert risk_features(arc(30), world).near == pytest.approx(farthest, abs=0.6)
 
 
 def test_roads_that_cannot_be_used_lie_in_the_middle() -> None:

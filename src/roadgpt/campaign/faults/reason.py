@@ -2,7 +2,8 @@
 
 The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
 g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
-Control, 2nd ed., 2.6; k is the curvature of the middle of the driven lane, not of the centre line.
+Control, 2nd ed., 2.6. Superelevation changes both as ``road.speed_profile`` says. k is the curvature of the
+middle of the driven lane, not of the centre line.
 """
 
 import math
@@ -165,8 +166,11 @@ def _needed(road: Road, drive: Drive, world: World, begin: float, station: float
     if not on.any():
         on[-1] = True
     s, squared = drive["s"][on], drive["speed"][on] ** 2
-    pressed = np.cos(np.arctan(road.grade(s))) + squared * road.vertical_curvature(s) / GRAVITY
-    asked = squared * np.abs(lane_curvature(road, world, s)) / GRAVITY / np.maximum(pressed, 0.05)
+    steep, bend = np.cos(np.arctan(road.grade(s))), lane_curvature(road, world, s)
+    inwards = -np.copysign(1.0, bend) * world.profile_of(road).superelevation(np.clip(s, 0.0, road.length))
+    cos, sin, bend = np.cos(inwards), np.sin(inwards), squared * np.abs(bend) / GRAVITY
+    pressed = steep * cos + bend * sin + squared * road.vertical_curvature(s) / GRAVITY
+    asked = np.abs(bend * cos - steep * sin) / np.maximum(pressed, 0.05)
     return float(asked.max())
 
 
