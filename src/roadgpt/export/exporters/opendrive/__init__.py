@@ -6,7 +6,7 @@ Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 from pathlib import Path
 
 from roadgpt.export.exporters.opendrive.heights import elevations
-from roadgpt.export.exporters.opendrive.lanes import lanes, speed_kmh
+from roadgpt.export.exporters.opendrive.lanes import lanes, lateral_profile, speed_kmh
 from roadgpt.export.exporters.opendrive.plan import geometries
 from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import XmlElement
@@ -41,7 +41,7 @@ def document(road: Road, world: World) -> XmlElement:
     body.add("type", {"s": 0, "type": "rural"}).add("speed", {"max": speed_kmh(world), "unit": "km/h"})
     body.add("planView").extended(*geometries(road.plan))
     body.add("elevationProfile").extended(*elevations(road))
-    body.extended(lanes(world))
+    body.extended(*lateral_profile(road), lanes(road, world))
     return root
 
 

@@ -1,4 +1,4 @@
-"""Writes the elevation profile: parabolas and cubics exactly, splines as fitted cubics."""
+"""Writes heights and other cubics by station: parabolas and cubics exactly, splines as fitted cubics."""
 
 import numpy as np
 
@@ -16,8 +16,25 @@ SAME = 1e-5  # m
 def elevations(road: Road) -> list[XmlElement]:
     """Returns the ``elevation`` elements of a road in the order of their stations, beginning at station 0."""
     stations, table = _table(road)
+    return _elements("elevation", "s", stations, table)
+
+
+def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[XmlElement]:
+    """Returns one element for each cubic that begins on a road of this length, the first at station 0.
+
+    Args:
+        name: Name of the elements.
+        station: Name of the attribute for the station at which a cubic begins.
+        profile: The cubics.
+        length: Length of the road in metres.
+    """
+    stations = _within(profile.stations, length)
+    return _elements(name, station, stations, profile.cubics(stations))
+
+
+def _elements(name: str, station: str, stations: Array, table: Array) -> list[XmlElement]:
     return [
-        XmlElement("elevation", dict(zip("sabcd", row, strict=True)))
+        XmlElement(name, dict(zip((station, *"abcd"), row, strict=True)))
         for row in np.column_stack([stations, table]).tolist()
     ]
 

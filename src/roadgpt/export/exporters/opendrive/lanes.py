@@ -1,36 +1,74 @@
-r"""Writes two lanes and their shoulders, with the constant widths of the World.
+"""Writes the cross-section of a road: all lanes with widths by station and markings, and the superelevation.
 
-id      2      |    1    |    -1    |   -2
-     shoulder  | against |  driven  | shoulder     the markings: solid, broken in the middle, solid
-                         0
+id     2     |    1    |    -1    |    -2          a road with one lane in each direction
+    shoulder | against |  along   | shoulder
+                       0
 """
 
+from collections.abc import Iterator, Sequence
+
+from roadgpt.export.exporters.opendrive.heights import rows
 from roadgpt.export.markup import XmlElement
-from roadgpt.road import World
-from roadgpt.road.profile import LINE
+from roadgpt.geometry import CubicProfile
+from roadgpt.road import Road, World
+from roadgpt.road.profile import LINE, Lane, Marking, Width
 
 DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
-def lanes(world: World) -> XmlElement:
-    """Returns the OpenDRIVE element ``lanes`` with both lanes, the shoulders and the road markings."""
-    section = XmlElement("laneSection", {"s": 0})
-    section.add("left").extended(*_shoulder(2, world), _driving(1, world))
-    section.add("center").extended(_middle())
-    section.add("right").extended(_driving(-1, world), *_shoulder(-2, world))
+def lanes(road: Road, world: World) -> XmlElement:
+    """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings."""
+    profile, section = world.profile_of(road), XmlElement("laneSection", {"s": 0})
+    left = list(_side(profile.left, 1, road.length, world))
+    if left:
+        section.add("left").extended(*reversed(left))
+    section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking)))
+    section.add("right").extended(*_side(profile.right, -1, road.length, world))
     return XmlElement("lanes").extended(section)
+
+
+def lateral_profile(road: Road) -> list[XmlElement]:
+    """Returns the element ``lateralProfile`` with the superelevation; an empty list for a level road."""
+    angle = road.profile.superelevation_angle if road.profile is not None else None
+    if angle is None:
+        return []
+    return [XmlElement("lateralProfile").extended(*rows("superelevation", "s", angle, road.length))]
+
+
+def _side(side: Sequence[Lane], sign: int, length: float, world: World) -> Iterator[XmlElement]:
+    """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
+    kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
+    for number, lane in enumerate(kept, 1):
+        widths = rows("width", "sOffset", _cubics(lane.width), length)
+        made = _lane(sign * number, lane.kind).extended(*widths, *_mark(lane.marking))
+        if lane.kind == "driving":
+            made.add(
+                "material",
+                {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0},
+            )
+            made.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
+        yield made
+
+
+def _cubics(width: Width) -> CubicProfile:
+    """Returns a width as cubics from station 0 on; before its first station, a width is constant."""
+    if not isinstance(width, CubicProfile):
+        return CubicProfile((0.0,), ((width, 0.0, 0.0, 0.0),))
+    if width.stations[0] <= 0:
+        return width
+    first = (width.coefficients[0][0], 0.0, 0.0, 0.0)
+    return CubicProfile((0.0, *width.stations), (first, *width.coefficients))
 
 
 def _lane(number: int, kind: str) -> XmlElement:
     return XmlElement("lane", {"id": number, "type": kind, "level": "false"})
 
 
-def _width(metres: float) -> XmlElement:
-    return XmlElement("width", {"sOffset": 0, "a": metres, "b": 0, "c": 0, "d": 0})
-
-
-def _mark(kind: str, change: str) -> XmlElement:
+def _mark(kind: Marking) -> list[XmlElement]:
+    """Returns the road marking at the outer edge of a lane; an empty list for none."""
+    if kind == "none":
+        return []
     mark = XmlElement(
         "roadMark",
         {
@@ -40,30 +78,13 @@ def _mark(kind: str, change: str) -> XmlElement:
             "color": "white",
             "material": "standard",
             "width": LINE,
-            "laneChange": change,
+            "laneChange": "both" if kind == "broken" else "none",
         },
     )
     length, space = (DASH, GAP) if kind == "broken" else (DASH + GAP, 0.0)
     line = {"length": length, "space": space, "tOffset": 0, "sOffset": 0, "width": LINE}
     mark.add("type", {"name": kind, "width": LINE}).add("line", line)
-    return mark
-
-
-def _middle() -> XmlElement:
-    return _lane(0, "none").extended(_mark("broken", "both"))
-
-
-def _driving(number: int, world: World) -> XmlElement:
-    lane = _lane(number, "driving").extended(_width(world.lane_width), _mark("solid", "none"))
-    lane.add("material", {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0})
-    lane.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
-    return lane
-
-
-def _shoulder(number: int, world: World) -> list[XmlElement]:
-    """Returns the shoulder, firm ground at the height of the road; nothing where it has no width."""
-    width = world.verge
-    return [_lane(number, "shoulder").extended(_width(width))] if width >= NO_SHOULDER else []
+    return [mark]
 
 
 def speed_kmh(world: World) -> float:
