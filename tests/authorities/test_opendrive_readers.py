@@ -1,4 +1,4 @@
-"""Other people's readers find in our OpenDRIVE files what we wrote: ASAM's checker, and pyxodr.
+"""Other people's readers find in our OpenDRIVE files what we wrote: ASAM's checker, pyxodr, esmini.
 
 ASAM's checker wants another numpy than ours, and is asked in an environment of its own: ``make judges``.
 """
@@ -6,12 +6,14 @@ ASAM's checker wants another numpy than ours, and is asked in an environment of 
 import subprocess
 import warnings
 import xml.etree.ElementTree as ET
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from exported import ROADS, WORLD, python_with
+from exported import ROADS, WORLD, program, python_with
+from profiled import missed, outer_edges, random_road
 from roadgpt.export import save
 from roadgpt.road import Road, read_opendrive
 
@@ -98,3 +100,88 @@ def test_pyxodr_and_we_read_the_same_in_files_of_others(name: str) -> None:
         across, above = aside(found.road, points)
         assert across < 5e-3, id_
         assert above < 5e-2, id_  # pyxodr takes a chord for the station
+
+
+PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 4, 9, 11, 14, 17)}
+
+
+def test_asams_checker_has_nothing_to_say_of_lanes_and_banks(tmp_path: Path) -> None:
+    python = python_with("qc_opendrive", "venv-qc")
+    files = [save(road, tmp_path, ["opendrive"], WORLD, name)[0] for name, road in PROFILED.items()]
+    for ends, issues in complaints(python, files).values():
+        assert issues == []
+        assert ends["completed"] >= 22
+        assert "error" not in ends
+
+
+EDGES = """
+import sys
+from lxml import etree
+from qc_opendrive.base import utils
+sides = utils.get_left_lanes_from_lane_section, utils.get_right_lanes_from_lane_section
+for file in sys.argv[1:]:
+    road = etree.parse(file).getroot().find("road")
+    section = road.find("lanes/laneSection")
+    for n in range(41):
+        s = float(road.get("length")) * (0.01 + 0.98 * n / 40)
+        for side in sides:
+            edges = utils.get_outer_border_points_from_lane_group_by_s(side(section), 0.0, 0.0, s)
+            for lane, t in edges.items():
+                point = utils.get_point_xyz_from_road(road, s, t, 0.0)
+                print(lane, point.x, point.y, point.z)
+"""
+
+
+def test_asams_checker_finds_our_edges_and_their_heights(tmp_path: Path) -> None:
+    """On level roads: on a grade, its superelevation leaves the pitch of the road aside."""
+    python = python_with("qc_opendrive", "venv-qc")
+    for seed in (1, 2, 3, 5, 9):
+        road = random_road(seed, steepest=0.0)
+        (file,) = save(road, tmp_path, ["opendrive"], WORLD, f"level{seed}")
+        done = subprocess.run([python, "-c", EDGES, str(file)], check=True, capture_output=True, text=True)
+        _near(road, np.array([line.split() for line in done.stdout.splitlines()], float))
+
+
+def test_esmini_finds_our_edges_and_their_heights(tmp_path: Path) -> None:
+    odrplot = program("odrplot")
+    for name, road in PROFILED.items():
+        (file,) = save(road, tmp_path, ["opendrive"], WORLD, name)
+        subprocess.run(
+            [odrplot, str(file), "track.csv"], check=True, capture_output=True, cwd=tmp_path, timeout=60
+        )
+        rows, lane = [], None
+        for line in (tmp_path / "track.csv").read_text().splitlines():
+            cells = [cell.strip() for cell in line.split(",")]
+            if cells[0] == "lane":
+                lane = float(cells[3])
+            elif lane is not None and len(cells) == 4:
+                rows.append([lane, *map(float, cells[:3])])
+        _near(road, np.array(rows))
+
+
+def _near(road: Road, rows: np.ndarray) -> None:
+    """Rows of lane, x, y, z lie within a millimetre of the outer edges of a road's lanes."""
+    assert road.profile is not None
+    assert {*rows[:, 0]} | {0.0} == {0.0, *map(float, outer_edges(road.profile, np.zeros(1)))}
+    for lane in {*rows[:, 0].astype(int)}:
+        aside, above = missed(road, lane, rows[rows[:, 0] == lane][1:-1, 1:])
+        assert aside < 1e-3, lane
+        assert above < 1e-3, lane
+
+
+def test_pyxodr_finds_our_edges_in_plan(tmp_path: Path) -> None:
+    """On roads without superelevation, which it leaves aside."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        from pyxodr.road_objects.network import RoadNetwork
+
+        for seed in (1, 2, 9):
+            banked = random_road(seed)
+            assert banked.profile is not None
+            road = banked.with_profile(replace(banked.profile, superelevation_angle=None))
+            (file,) = save(road, tmp_path, ["opendrive"], WORLD, f"plain{seed}")
+            (found,) = RoadNetwork(str(file), ignored_lane_types=set(), resolution=0.1).get_roads()
+            for lane in found.lane_sections[0].lanes:
+                s, t = road.locate(*lane.boundary_line[5:-5].T)
+                assert road.profile is not None
+                assert t == pytest.approx(outer_edges(road.profile, s)[int(lane.id)], abs=1e-3), lane.id

@@ -20,7 +20,8 @@ from strategies import designs
 DATA = Path(__file__).parent / "data"
 LANES = """<lanes>{offset}<laneSection s="0">
 <left><lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>
-<center><lane id="0" type="none"/></center><right>{right}</right></laneSection></lanes>"""
+<center><lane id="0" type="none"><roadMark sOffset="0" type="broken"/></lane></center>
+<right>{right}</right></laneSection></lanes>"""
 RIGHT = """<lane id="-1" type="driving"><width sOffset="0" a="3"/></lane>
 <lane id="-2" type="border"><width sOffset="0" a="0.5"/></lane>"""
 LINE = '<geometry s="0" x="1" y="2" hdg="0.5" length="40"><line/></geometry>'
@@ -225,18 +226,20 @@ def test_what_a_road_cannot_show_is_told_by_name_and_number(tmp_path: Path) -> N
     path.write_text(path.read_text().replace('revMinor="4"/>', f'revMinor="4">{header}</header>'))
     assert read_opendrive(path).remarks == (
         "it is made for left-hand traffic, and is driven on the right here",
-        "its lane is 3.00 to 4.00 m wide, and is taken as 3.50 m everywhere",
-        "left out: 3 further lanes (1 driving, 2 sidewalk), 2 objects, 1 railway, 2 signals, 1 surface, "
-        "1 tunnel, junction 7, superelevation of up to 2.9 degrees, lateral shape, heights of single lanes, "
-        "<geoReference> and <offset> of the map",
+        "the car keeps to lane 2 from the centre line, the rightmost that is 2 m wide everywhere",
+        "left out: 2 further lanes (2 sidewalk), 2 objects, 1 railway, 2 signals, 1 surface, 1 tunnel, "
+        "junction 7, lateral shape, heights of single lanes, <geoReference> and <offset> of the map",
     )
 
 
-def test_a_road_of_one_direction_gets_another_lane_and_says_so(tmp_path: Path) -> None:
+def test_a_road_of_one_direction_stays_one_way(tmp_path: Path) -> None:
     path = file(tmp_path)
     path.write_text(path.read_text().replace('<lane id="1" type="driving">', '<lane id="1" type="border">'))
-    (remark,) = read_opendrive(path).remarks
-    assert remark == "it is one-way in its file; a second lane, for oncoming cars, is added here"
+    found = read_opendrive(path)
+    assert found.remarks == ()
+    assert found.road.profile is not None
+    assert found.road.profile.count == (1, 0)
+    assert [float(each) for each in found.road.profile.rims(10.0)] == [3.0, -3.5]
 
 
 SECTIONS = """<OpenDRIVE><road id="1" length="90"><planView>

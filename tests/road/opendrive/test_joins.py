@@ -15,7 +15,8 @@ from roadgpt.road import ImportedRoad, read_opendrive
 
 LANES = """<lanes>{offset}<laneSection s="0"><left>
 <lane id="1" type="driving"><width sOffset="0" a="3"/></lane></left>
-<center><lane id="0" type="none"/></center><right>{right}</right></laneSection></lanes>"""
+<center><lane id="0" type="none"><roadMark sOffset="0" type="broken"/></lane></center>
+<right>{right}</right></laneSection></lanes>"""
 RIGHT = '<lane id="-1" type="driving"><width sOffset="0" a="3"/></lane>'
 
 

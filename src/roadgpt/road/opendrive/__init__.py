@@ -2,44 +2,54 @@
 
 tree        reads the XML with limits on its size and without entities; selects one road of the file
 geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
-lanes       selects the driven lane; its inner edge becomes the centre line of the Road
+lanes       reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
+profile     joins the lanes of all sections, and selects the driven lane
+marks       reads the road marks
 line        computes the plan: unchanged where possible, otherwise clothoids through poses one metre apart
 joins       finds places where elements do not meet exactly, and bridges them
 heights     reads the elevation without changing it
+cubic_rows  joins and limits piecewise cubics of the station
+reversal    turns a road round whose driving lanes are on the left
 left_out    lists the contents of the file that a Road cannot represent
 """
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile, SplineCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.cubic_rows import closed, rows_of
 from roadgpt.road.opendrive.geometries import GeometryElement, reference_line
-from roadgpt.road.opendrive.heights import carried_over, elevation, jumps, plain
+from roadgpt.road.opendrive.heights import carried_over, edge_heights, elevation, jumps, plain
 from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
-from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limit, speed_limits
-from roadgpt.road.opendrive.left_out import is_one_way, left_out
+from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limits
+from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.reversal import reversed_road
+from roadgpt.road.opendrive.profile import FileProfile, read_profile
+from roadgpt.road.opendrive.reversal import reversed_cubics, reversed_road
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
+from roadgpt.road.profile import Profile
 from roadgpt.road.road import Road, check_length
 from roadgpt.road.world import World
 
 __all__ = ["ImportedRoad", "read_opendrive"]
 
-VARIES = 0.05  # m; a remark is made where the lane width varies by more
-WIDTHS = (2.0, 10.0)  # m, of lanes that a World may have
-SHOULDERS = (0.0, 100.0)  # m
 FRICTIONS = (0.05, 2.0)
 SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
 SAME_SPEED = 0.1  # m/s
 MOST_SPANS = 3  # that are listed in a remark
-PLACES = 1_000  # at which the spline is compared with the line
+MOST_STATIONS = 10_000  # between which stations of file and Road are interpolated
+PLACES = 1_000  # at which the spline is compared with the line, and at which widths are sampled
+
+Carry = Callable[[CubicProfile], CubicProfile]
+"""A function that converts cubics over the stations of the file to stations of the Road."""
 
 
 @dataclass(frozen=True)
@@ -47,12 +57,14 @@ class ImportedRoad:
     """A road that was read from an OpenDRIVE file, with the properties of its lanes in the file."""
 
     road: Road
+    """The road. It has a cross-section of its own unless that is the usual one of a World: one lane in each
+    direction, all of one width, with shoulders of one width."""
     id: str
     name: str
     lane_width: float
-    """Width of the driven lane in metres."""
+    """Width of the driven lane in metres; the median if it varies."""
     shoulder: float
-    """Width in metres of the shoulder beside the driven lane."""
+    """Width in metres of the shoulder on the right; the median if it varies."""
     speed_limit: float | None
     """Speed limit in m/s; None where the file gives none."""
     friction: float | None
@@ -62,11 +74,14 @@ class ImportedRoad:
     def world(self, base: World) -> World:
         """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
 
-        A speed limit or friction that the file does not state is kept from ``base``.
+        A speed limit or friction that the file does not state is kept from ``base``. So are lane width and
+        shoulder if the road has a cross-section of its own.
         """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
+        if self.road.profile is None:
+            told |= {"lane_width": self.lane_width, "verge": self.shoulder}
         known = {name: value for name, value in told.items() if value is not None}
-        return base.model_copy(update={"lane_width": self.lane_width, "verge": self.shoulder, **known})
+        return base.model_copy(update=known)
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
@@ -99,49 +114,66 @@ def _imported(choice: Choice, id_: str, is_our_choice: bool) -> ImportedRoad:
         remarks.append(f"road {id_} is taken, {which}; use --road ID for another")
     line = reference_line(node)
     lanes = read_lanes(node, line[-1].s + line[-1].length)
-    grown, said = _grown(node, line, lanes)
+    own = read_profile(node, lanes)
+    grown, carry, said = _grown(node, line, lanes)
     remarks += said
     if lanes.side == 1:
         grown = reversed_road(grown)
         remarks.append(
             "no lane to the right of its line is driven; the road follows the direction of its left lanes"
         )
-    remarks += _driven_otherwise(node, lanes)
-    widths, limit = lanes.lane_widths(), speed_limit(node, lanes)
-    width = float(np.clip(np.median(widths), *WIDTHS))
-    if np.ptp(widths) > VARIES or abs(width - float(np.median(widths))) > VARIES:
-        span = f"{widths.min():.2f} to {widths.max():.2f} m"
-        remarks.append(f"its lane is {span} wide, and is taken as {width:.2f} m everywhere")
-    limits = speed_limits(node, lanes)
+    remarks += [*_driven_otherwise(node, lanes), *own.remarks]
+    limits = speed_limits(node, own.driven_nodes())
     if limits and max(limits) - min(limits) > SAME_SPEED:
         span = f"{min(limits) * 3.6:.0f} to {max(limits) * 3.6:.0f} km/h"
         remarks.append(f"its speed limit is {span}, and is taken as {limits[0] * 3.6:.0f} km/h everywhere")
-    sentence = left_out(choice, lanes)
+    sentence = left_out(choice, own)
     remarks += [sentence] if sentence else []
-    rubbed = friction(lanes)
+    rubbed, limit = friction(own.driven_nodes()), next(iter(limits), None)
+    profile = _carried(own, carry, grown.length, is_reversed=lanes.side == 1)
+    s = np.linspace(0.0, grown.length, PLACES)
+    width, shoulder = (round(float(np.median(each)), 4) for each in (profile.width(s), profile.shoulder(s)))
+    is_usual = profile == Profile.of(1, 1, width, shoulder)
     return ImportedRoad(
-        grown,
+        grown if is_usual else grown.with_profile(profile),
         id_,
         node.attributes.get("name", "")[:80],
-        round(width, 4),
-        round(float(np.clip(np.median(lanes.shoulder_widths()), *SHOULDERS)), 4) + 0.0,
+        width,
+        shoulder,
         None if limit is None or limit <= 0 else float(np.clip(limit, *SPEEDS)),
         None if rubbed is None else float(np.clip(rubbed, *FRICTIONS)),
         tuple(remarks),
     )
 
 
-def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, list[str]]:
-    """Returns the road, and a sentence for each thing that had to be settled."""
+def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -> Profile:
+    """Returns the cross-section over the stations of a road of this length."""
+
+    def width(cubics: CubicProfile) -> CubicProfile:
+        moved = carry(cubics)
+        return closed(rows_of(reversed_cubics(moved, length) if is_reversed else moved), length)
+
+    def angle(cubics: CubicProfile) -> CubicProfile:
+        if not is_reversed:
+            return width(cubics)
+        rows = tuple((-a, -b, -c, -d) for a, b, c, d in cubics.coefficients)
+        return width(replace(cubics, coefficients=rows))
+
+    return own.carried(width, angle)
+
+
+def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
+    """Returns the road, how stations of the file become its own, and a sentence for each thing changed."""
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
     is_edge = lies_on_the_line(lanes, length)
     plan = exact(line) if is_edge else None
     if plan is not None:
-        return Road(plan, plain(heights, plan.length)), remarks
+        return Road(plan, plain(heights, plan.length)), lambda cubics: cubics, remarks
     try:
         found = walk(line, None if is_edge else lanes)
+        heights = edge_heights(heights, lanes)
     except UsageError as error:
         if is_edge:
             raise
@@ -153,7 +185,9 @@ def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road,
         raise UsageError(f"its line turns back by {turned}; correct the file")
     fit = fitted(found)
     if fit is None:
-        road, way = _rounded(found, heights.height(found.s)), "drawn as a spline"
+        road, s = _rounded(found, heights.height(found.s))
+        assert isinstance(road.plan, SplineCurve)
+        stations, way = road.plan.stations, "drawn as a spline"
     else:
         plan, s, stations = fit
         check_length(plan.length)  # the edge of a lane may be much longer than the reference line
@@ -162,7 +196,8 @@ def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road,
     if missed or fit is None:
         what = f"its line has {missed}; it is {way}" if missed else f"its line is too rough; it is {way}"
         remarks.append(f"{what}, at most {_away(found, road):.2f} m from the file's line")
-    return road, remarks
+    kept = np.unique(np.r_[0 : len(s) : len(s) // MOST_STATIONS + 1, len(s) - 1])
+    return road, lambda cubics: carried_over(cubics, s[kept], stations[kept]), remarks
 
 
 def _away(found: SampledLine, road: Road) -> float:
@@ -172,27 +207,29 @@ def _away(found: SampledLine, road: Road) -> float:
     return float(np.abs(road.locate(*np.concatenate(some).T)[1]).max())
 
 
-def _rounded(found: SampledLine, heights: Array) -> Road:
-    """Returns a spline through a line whose joins are too close to each other for any other method."""
+def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
+    """Returns a spline through a line whose joins are too close to each other for any other method.
+
+    Also returns the stations of its nodes in the file.
+    """
     kept = [0]
     for i in range(1, len(found.s) - 1):
         since = found.s[i] - found.s[kept[-1]]
         is_corner = abs(found.kinks[i]) > KINK / 10
         if (since >= NODES or (is_corner and since > CLOSEST)) and found.s[-1] - found.s[i] > CLOSEST:
             kept.append(i)
-    return Road.through(np.column_stack([found.poses[:, :2], heights])[[*kept, len(found.s) - 1]])
+    kept.append(len(found.s) - 1)
+    return Road.through(np.column_stack([found.poses[:, :2], heights])[kept]), found.s[kept]
 
 
 def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
     """Returns a sentence for each way in which traffic in the file differs from ours."""
     remarks = []
-    spans = lanes.spans()
+    spans = lanes.stretches()
     if spans[0][0] > NEAR or spans[-1][1] < lanes.length - NEAR or len(spans) > 1:
         where = " and ".join(f"{start:.0f} to {end:.0f}" for start, end in spans[:MOST_SPANS])
         more = " and so on" if len(spans) > MOST_SPANS else ""
         remarks.append(f"in its file cars drive only from s = {where}{more} m, here along the whole road")
-    if is_one_way(node, lanes):
-        remarks.append("it is one-way in its file; a second lane, for oncoming cars, is added here")
     if node.attributes.get("rule") == "LHT":
         remarks.append("it is made for left-hand traffic, and is driven on the right here")
     return remarks

@@ -1,4 +1,4 @@
-"""Reads the elevation of an OpenDRIVE file, and converts it to the stations of the Road."""
+"""Reads the elevation of an OpenDRIVE file, and converts cubics of the file to the stations of the Road."""
 
 from itertools import pairwise
 
@@ -6,12 +6,14 @@ import numpy as np
 
 from roadgpt.geometry import CubicProfile, ElevationProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
+from roadgpt.road.opendrive.lanes import Lanes
 from roadgpt.road.opendrive.numbers import cubics
 from roadgpt.road.opendrive.tree import Node
 
 SAME = 1e-9  # m, and as a ratio: heights and grades closer than this are treated as equal
 CLOSE = 1e-6  # m between the starts of two cubics
 STEP = 0.05  # m; a remark is made about a larger step
+APART = 1.0  # m between the stations of the heights of a centre line beside the reference line
 
 
 def elevation(road: Node) -> CubicProfile:
@@ -50,14 +52,58 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
     return f"its height jumps by {worst:.2f} m at s = {where:.1f}" if worst > STEP else None
 
 
-def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """Returns the elevation profile of the file as cubics over the stations of the Road.
+def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
+    """Returns the heights of the inner edge of the driving lanes over the stations of the file.
 
-    Stations of file and Road differ where the driven lane is longer or shorter than the reference line. They
+    They are those of the reference line, except where the edge is beside it and the surface is inclined.
+
+    Args:
+        heights: The heights of the reference line.
+        lanes: The lanes of the road.
+    """
+    if lanes.angle is None or not any(any(cubic) for cubic in lanes.angle.coefficients):
+        return heights
+    even = np.linspace(0.0, lanes.length, max(2, round(lanes.length / APART) + 1))
+    joints = [s for s in (*lanes.joints(), *heights.stations) if 0.0 < s < lanes.length]
+    s = np.unique(np.r_[even, joints])
+    s = s[np.r_[True, np.diff(s) > CLOSE]]
+    if np.abs(lanes.edge_on_surface(s)[0]).max() < SAME:
+        return heights
+    length = np.diff(s)
+    inside = np.minimum(CLOSE, length / 4)
+    z0, g0 = _edge_height(heights, lanes, s[:-1] + inside)
+    z1, g1 = _edge_height(heights, lanes, s[1:] - inside)
+    z0, z1 = z0 - inside * g0, z1 + inside * g1
+    rise = (z1 - z0) / length
+    c, d = (3 * rise - 2 * g0 - g1) / length, (g0 + g1 - 2 * rise) / length**2
+    rows = [(a, b, c, d) for a, b, c, d in np.column_stack([z0, g0, c, d]).tolist()]
+    return CubicProfile(tuple(s[:-1].tolist()), tuple(rows))
+
+
+def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, Array]:
+    """Returns the height of the edge and its change per metre.
+
+    The surface is inclined across the road, so on a grade g the edge is 1 / cos(atan g) higher than t sin e.
+    """
+    assert lanes.angle is not None
+    t, slope = lanes.edge_on_surface(s)
+    angle, grade = lanes.angle.height(s), heights.grade(s)
+    steep = np.hypot(1.0, grade)
+    rise = t * np.sin(angle)
+    change = (
+        slope * np.sin(angle) + t * np.cos(angle) * lanes.angle.grade(s)
+    ) * steep + rise * grade * heights.vertical_curvature(s) / steep
+    return heights.height(s) + rise * steep, grade + change
+
+
+def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
+    """Returns cubics of the file as cubics over the stations of the Road.
+
+    Stations of file and Road differ where the centre line is longer or shorter than the reference line. They
     are interpolated linearly between the given stations.
 
     Args:
-        profile: The elevation profile over the stations of the file.
+        profile: The cubics over the stations of the file.
         s: Increasing stations of the file in metres, ``(n,)``.
         stations: Stations of the Road in metres that correspond to ``s``, ``(n,)``.
     """

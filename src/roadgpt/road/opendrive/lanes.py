@@ -1,11 +1,12 @@
-"""Selects the driven lane of an OpenDRIVE road, and reads its inner edge, width, speed limit and friction.
+"""Reads the lane sections of an OpenDRIVE road, the edge that becomes the centre line, speeds and friction.
 
-The driven lane is the innermost driving lane on the right, or on the left if there is none on the right. Its
-inner edge becomes the centre line of the Road.
+The driven side is the right one, or the left one if there are hardly any driving lanes on the right. The
+inner edge of its innermost driving lane becomes the centre line of the Road.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,11 +19,8 @@ from roadgpt.road.opendrive.tree import DRIVING, Node
 BESIDE = ("shoulder", "border")
 UNITS = {"m/s": 1.0, "km/h": 3.6, "mph": 3600 / 1609.344}  # per m/s
 NEAR = 1.0  # m; shorter parts without a driving lane are not reported
-PLACES = 64  # per lane section, at which widths are sampled
 MOST_SECTIONS = 5_000
-
-Which = Callable[["LaneSection"], tuple[int, int]]
-"""A function that returns the indices of the first and the last lane of a group of lanes in a section."""
+MOST_ACROSS = 200  # lanes on one side of a section
 
 
 @dataclass(frozen=True)
@@ -37,36 +35,65 @@ class LaneElement:
 
 @dataclass(frozen=True)
 class LaneSection:
-    """One lane section, with the lanes on the side of the driven lane, ordered from the inside out."""
+    """One lane section, with its lanes on both sides, ordered from the inside out."""
 
     s: float
     lanes: tuple[LaneElement, ...]
-    driven: int
-    """Index of the driven lane in ``lanes``; the number of lanes if this section has no driven lane."""
+    """The lanes on the driven side."""
+    others: tuple[LaneElement, ...]
+    """The lanes on the other side."""
+    centre: tuple[Node, ...]
+    """Lane 0, if there is one."""
+    first: int
+    """Index in ``lanes`` of the innermost driving lane; the number of lanes if there is none."""
+
+    @property
+    def is_driven(self) -> bool:
+        """Whether there is a driving lane on the driven side."""
+        return self.first < len(self.lanes)
+
+
+class Span(NamedTuple):
+    """A lane section with a driving lane, and where it begins and ends, in metres."""
+
+    section: LaneSection
+    start: float
+    end: float
 
 
 @dataclass(frozen=True)
 class Lanes:
-    """The lane sections of a road, with the lanes on the side of the driven lane."""
+    """The lane sections of a road."""
 
     side: int
-    """-1 where the driven lane is to the right of the reference line, 1 where it is to the left."""
+    """-1 where the driven side is to the right of the reference line, 1 where it is to the left."""
     sections: tuple[LaneSection, ...]
     offset: CubicProfile | None
+    angle: CubicProfile | None
+    """The superelevation in radians, positive where the surface falls to the right of the reference line."""
     length: float
 
     def edge(self, s: Array) -> tuple[Array, Array]:
-        """Returns the offset of the driven lane's inner edge at stations ``s``, and the slope of the offset.
+        """Returns the offset of the inner edge of the driving lanes, and its slope, at stations ``s``.
 
-        The offset is in metres to the left of the reference line; the slope is its change per metre.
+        The offset is in metres to the left of the reference line and is measured in plan; the slope is its
+        change per metre.
         """
+        t, slope = self.edge_on_surface(s)
+        if self.angle is None:
+            return t, slope
+        cos, sin = np.cos(self.angle.height(s)), np.sin(self.angle.height(s))
+        return t * cos, slope * cos - t * sin * self.angle.grade(s)
+
+    def edge_on_surface(self, s: Array) -> tuple[Array, Array]:
+        """Returns the same as ``edge``, but measured along the inclined surface."""
         t, slope = _both(self.offset, s)
         starts = np.array([section.s for section in self.sections])
         index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
         for i in np.unique(index):
             section, some = self.sections[i], index == i
-            if section.driven < len(section.lanes):
-                across, lean = self._outer(section, section.driven - 1, s[some])
+            if section.is_driven:
+                across, lean = self._outer(section, section.first - 1, s[some])
                 t[some] += self.side * across
                 slope[some] += self.side * lean
         return t, slope
@@ -83,60 +110,33 @@ class Lanes:
         return across, lean
 
     def joints(self) -> list[float]:
-        """Returns the stations at which the inner edge of the driven lane may have a kink."""
+        """Returns the stations at which the inner edge of the driving lanes may have a kink."""
         found = [section.s for section in self.sections]
         found += self.offset.stations if self.offset else ()
+        found += self.angle.stations if self.angle else ()
         for section in self.sections:
-            for lane in section.lanes[: section.driven]:
+            for lane in section.lanes[: section.first]:
                 for profile in (lane.width, lane.border):
                     found += profile.stations if profile else ()
         return found
 
-    def lane_widths(self) -> Array:
-        """Returns widths of the driven lane in metres, sampled along the road."""
-        return self._spread(lambda section: (section.driven, section.driven))
-
-    def shoulder_widths(self) -> Array:
-        """Returns widths in metres of the shoulder outside the driving lanes, sampled along the road."""
-
-        def beside(section: LaneSection) -> tuple[int, int]:
-            kinds = [lane.kind for lane in section.lanes]
-            first = section.driven
-            while first < len(kinds) and kinds[first] in DRIVING:
-                first += 1
-            last = first
-            while last < len(kinds) and kinds[last] in BESIDE:
-                last += 1
-            return first, last - 1
-
-        return self._spread(beside)
-
-    def _spread(self, which: Which) -> Array:
-        """Returns the width from the first to the last lane of each section, sampled along the road."""
+    def spans(self) -> list[Span]:
+        """Returns the sections that have a driving lane and are not empty, in order."""
         ends = [section.s for section in self.sections[1:]] + [self.length]
-        found = []
-        for section, end in zip(self.sections, ends, strict=True):
-            if section.driven == len(section.lanes):
-                continue
-            first, last = which(section)
-            s = np.linspace(section.s, max(end, section.s) - 1e-6, PLACES)
-            found.append(self._outer(section, last, s)[0] - self._outer(section, first - 1, s)[0])
-        return np.concatenate(found)
+        starts = [max(section.s, 0.0) for section in self.sections]
+        return [
+            Span(section, start, end)
+            for section, start, end in zip(self.sections, starts, ends, strict=True)
+            if section.is_driven and end > start
+        ]
 
-    def spans(self) -> list[tuple[float, float]]:
+    def stretches(self) -> list[tuple[float, float]]:
         """Returns the first and the last station in metres of every part with a driving lane."""
-        ends = [section.s for section in self.sections[1:]] + [self.length]
         found: list[tuple[float, float]] = []
-        for section, end in zip(self.sections, ends, strict=True):
-            start = max(section.s, 0.0)
-            if section.driven < len(section.lanes) and end > start:
-                joins = bool(found) and start - found[-1][1] < NEAR
-                found = [*found[:-1], (found[-1][0], end)] if joins else [*found, (start, end)]
+        for _, start, end in self.spans():
+            joins = bool(found) and start - found[-1][1] < NEAR
+            found = [*found[:-1], (found[-1][0], end)] if joins else [*found, (start, end)]
         return found
-
-    def driven(self) -> Iterator[Node]:
-        """Yields the driven lane of each section that has one."""
-        return (each.lanes[each.driven].node for each in self.sections if each.driven < len(each.lanes))
 
 
 def read_lanes(road: Node, length: float) -> Lanes:
@@ -152,11 +152,12 @@ def read_lanes(road: Node, length: float) -> Lanes:
         raise UsageError(f"it has more than {MOST_SECTIONS:,} lane sections; cut out the part that you need")
     nodes.sort(key=lambda node: number(node, "s"))
     offset = cubics(road.all("lanes", "laneOffset"), "s")
+    angle = cubics(road.all("lateralProfile", "superelevation"), "s")
     right, left = (
-        Lanes(side, tuple(_section(node, name) for node in nodes), offset, length)
-        for side, name in ((-1, "right"), (1, "left"))
+        Lanes(side, tuple(_section(node, *names) for node in nodes), offset, angle, length)
+        for side, names in ((-1, ("right", "left")), (1, ("left", "right")))
     )
-    on_right, on_left = (sum(end - start for start, end in lanes.spans()) for lanes in (right, left))
+    on_right, on_left = (sum(end - start for start, end in lanes.stretches()) for lanes in (right, left))
     if on_right or on_left:
         return right if on_right >= on_left / 2 else left
     kinds = {lane.attributes.get("type", "?") for node in nodes for lane in node.all("left", "lane")}
@@ -165,10 +166,18 @@ def read_lanes(road: Node, length: float) -> Lanes:
     raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
 
 
-def _section(node: Node, side: str) -> LaneSection:
+def _section(node: Node, side: str, other: str) -> LaneSection:
     s = number(node, "s")
-    nodes = sorted(node.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
-    lanes = tuple(
+    lanes = _elements(node, side, s)
+    first = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
+    return LaneSection(s, lanes, _elements(node, other, s), tuple(node.all("center", "lane")), first)
+
+
+def _elements(section: Node, side: str, s: float) -> tuple[LaneElement, ...]:
+    nodes = sorted(section.all(side, "lane"), key=lambda lane: abs(number(lane, "id")))
+    if len(nodes) > MOST_ACROSS:
+        raise UsageError(f"its lane section at s = {s:g} has more than {MOST_ACROSS} lanes on one side")
+    return tuple(
         LaneElement(
             lane,
             lane.attributes.get("type", ""),
@@ -177,8 +186,6 @@ def _section(node: Node, side: str) -> LaneSection:
         )
         for lane in nodes
     )
-    driven = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
-    return LaneSection(s, lanes, driven)
 
 
 def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
@@ -187,20 +194,16 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
     return profile.height(s), profile.grade(s)
 
 
-def speed_limit(road: Node, lanes: Lanes) -> float | None:
-    """Returns the first speed limit of the driven lane in m/s.
-
-    If the lane has none, that of the road is returned; None if the road has none.
-    """
-    return next(iter(speed_limits(road, lanes)), None)
-
-
-def speed_limits(road: Node, lanes: Lanes) -> list[float]:
+def speed_limits(road: Node, driven: Sequence[Node]) -> list[float]:
     """Returns all speed limits of the driven lane in m/s, in driving order.
 
     If the lane has none, those of the road are returned.
+
+    Args:
+        road: The road.
+        driven: The driven lane in each lane section.
     """
-    of_lane = [node for lane in lanes.driven() for node in lane.all("speed")]
+    of_lane = [node for lane in driven for node in lane.all("speed")]
     return _speeds(of_lane) or _speeds(road.all("type", "speed"))
 
 
@@ -212,7 +215,7 @@ def _speeds(nodes: Sequence[Node]) -> list[float]:
     ]
 
 
-def friction(lanes: Lanes) -> float | None:
+def friction(driven: Sequence[Node]) -> float | None:
     """Returns the friction of the driven lane in the file; None where the file gives none."""
-    said = [node for lane in lanes.driven() for node in lane.all("material") if "friction" in node.attributes]
+    said = [node for lane in driven for node in lane.all("material") if "friction" in node.attributes]
     return number(said[0], "friction") if said else None

@@ -23,6 +23,7 @@ def reversed_road(road: Road) -> Road:
 
 
 def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
+    """Returns the heights as seen from the end of a road of this length."""
     if isinstance(profile, GradeProfile):
         stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
         grades = -profile.grade(stations)[::-1]
@@ -30,6 +31,11 @@ def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
             float(profile.height(length)), tuple((length - stations[::-1]).tolist()), tuple(grades.tolist())
         )
     assert isinstance(profile, CubicProfile)
+    return reversed_cubics(profile, length)
+
+
+def reversed_cubics(profile: CubicProfile, length: float) -> CubicProfile:
+    """Returns cubics of the station as cubics of the distance from the end of a road of this length."""
     stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
     at_ends = shifted(profile.cubics(stations[:-1]), np.diff(stations)) * np.array([1.0, -1.0, 1.0, -1.0])
     rows = [(a, b, c, d) for a, b, c, d in at_ends[::-1].tolist()]

@@ -5,12 +5,13 @@ import numpy as np
 from roadgpt.export.exporters.opendrive.plan import breaks_of
 from roadgpt.export.hermite import at, cubics
 from roadgpt.export.markup import XmlElement
-from roadgpt.geometry import CubicProfile, GradeProfile
+from roadgpt.geometry import CubicProfile, GradeProfile, shifted
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
 TOLERANCE = 1e-4  # m, between heights and their cubics
 SAME = 1e-5  # m
+EQUAL = 1e-12  # of the coefficients of two cubics
 
 
 def elevations(road: Road) -> list[XmlElement]:
@@ -22,6 +23,8 @@ def elevations(road: Road) -> list[XmlElement]:
 def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[XmlElement]:
     """Returns one element for each cubic that begins on a road of this length, the first at station 0.
 
+    Cubics that only continue the previous one are left out.
+
     Args:
         name: Name of the elements.
         station: Name of the attribute for the station at which a cubic begins.
@@ -29,7 +32,13 @@ def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[
         length: Length of the road in metres.
     """
     stations = _within(profile.stations, length)
-    return _elements(name, station, stations, profile.cubics(stations))
+    table = profile.cubics(stations)
+    kept = [0]
+    for n in range(1, len(stations)):
+        carried = shifted(table[kept[-1]], stations[n] - stations[kept[-1]])
+        if not np.allclose(carried, table[n], rtol=0.0, atol=EQUAL):
+            kept.append(n)
+    return _elements(name, station, stations[kept], table[kept])
 
 
 def _elements(name: str, station: str, stations: Array, table: Array) -> list[XmlElement]:

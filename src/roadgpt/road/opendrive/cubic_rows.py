@@ -1,0 +1,108 @@
+"""Joins, limits and closes piecewise cubics of the station: widths of lanes and superelevation."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile, shifted
+from roadgpt.road.opendrive.numbers import Cubic
+
+Row = tuple[float, Cubic]
+"""A station in metres, and the cubic that begins there."""
+
+SAME = 1e-12  # m; two constants closer than this are one
+TOUCHES = 1e-9  # m by which a cubic may be beyond a limit, because of rounding
+SHORTEST = 1e-6  # m between two stations
+
+
+def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
+    """Returns the sum of cubics between two stations in metres, each multiplied by its factor."""
+    inner = {s for _, each in parts for s in each.stations if start < s < end}
+    stations = np.array([start, *sorted(inner)])
+    table = np.zeros((len(stations), 4))
+    for factor, each in parts:
+        table += factor * each.cubics(stations)
+    return [(s, (a, b, c, d)) for s, (a, b, c, d) in zip(stations.tolist(), table.tolist(), strict=True)]
+
+
+def value_at(row: Row, s: float) -> float:
+    """Returns the value of a row's cubic at a station."""
+    (a, b, c, d), u = row[1], s - row[0]
+    return float(a + u * (b + u * (c + u * d)))
+
+
+def constant(s: float, value: float) -> Row:
+    """Returns the row of a constant value from a station on."""
+    return s, (value, 0.0, 0.0, 0.0)
+
+
+def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
+    """Returns the rows with every value moved to the nearest one between two limits.
+
+    The result is exact: a row is cut where its cubic crosses a limit.
+
+    Args:
+        rows: The rows, in the order of their stations.
+        end: Station in metres at which the last row ends.
+        low: The smallest value.
+        high: The largest value.
+    """
+    out: list[Row] = []
+    ends = [*(s for s, _ in rows[1:]), end]
+    for row, stop in zip(rows, ends, strict=True):
+        for start, until in _cuts(row, stop, low, high):
+            value = value_at(row, (start + until) / 2)
+            if low - TOUCHES <= value <= high + TOUCHES:
+                a, b, c, d = shifted(np.array(row[1]), start - row[0]).tolist()
+                out.append((start, (a, b, c, d)) if start > row[0] else row)
+            else:
+                out.append(constant(start, low if value < low else high))
+    return out
+
+
+def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, float]]:
+    """Returns the parts of a row inside which its cubic crosses no limit."""
+    start, (a, b, c, d) = row
+    reach = end - start
+    swing = reach * (abs(b) + reach * (abs(c) + reach * abs(d)))
+    if (low <= a - swing and a + swing <= high) or (b, c, d) == (0.0, 0.0, 0.0):
+        return [(start, end)]
+    places = {start, end}
+    for limit in (low, high):
+        for root in np.roots([d, c, b, a - limit]):
+            if abs(root.imag) < TOUCHES and SHORTEST < root.real < reach - SHORTEST:
+                places.add(start + float(root.real))
+    return [*pairwise(sorted(places))]
+
+
+def closed(rows: Sequence[Row], length: float) -> CubicProfile:
+    """Returns the cubics on a road of this length in metres, constant behind its end.
+
+    Rows that only continue a constant are left out.
+    """
+    kept: list[Row] = []
+    for row in rows:
+        if kept and row[0] >= length - SHORTEST:
+            break
+        if kept and row[0] - kept[-1][0] < SHORTEST:
+            kept.pop()
+        if not (kept and _continues(kept[-1], row)):
+            kept.append(row)
+    if not _is_constant(kept[-1]):
+        kept.append(constant(length, value_at(kept[-1], length)))
+    return CubicProfile(tuple(s for s, _ in kept), tuple(cubic for _, cubic in kept))
+
+
+def rows_of(cubics: CubicProfile) -> list[Row]:
+    """Returns the rows of piecewise cubics."""
+    return [*zip(cubics.stations, cubics.coefficients, strict=True)]
+
+
+def _continues(row: Row, following: Row) -> bool:
+    """Returns whether both rows are constant and equal."""
+    return _is_constant(row) and _is_constant(following) and abs(row[1][0] - following[1][0]) < SAME
+
+
+def _is_constant(row: Row) -> bool:
+    return not any(row[1][1:])

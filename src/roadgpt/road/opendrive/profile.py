@@ -1,0 +1,331 @@
+"""Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
+
+The centre line is the inner edge of the innermost driving lane. The lanes of successive lane sections are
+joined in their order, except those that begin or end without a width; elsewhere a lane has no width.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import takewhile
+from typing import NamedTuple
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.road.opendrive.cubic_rows import Row, closed, combined, constant, limited, rows_of, value_at
+from roadgpt.road.opendrive.lanes import BESIDE, LaneElement, Lanes, Span
+from roadgpt.road.opendrive.marks import MarkedLane, has_marks, marking
+from roadgpt.road.opendrive.tree import DRIVING, Node
+from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
+from roadgpt.road.profile_json import MOST_LANES, MOST_ROWS, STEEPEST, WIDEST
+
+LEAST, MOST = 2.0, 10.0  # m, width of the driven lane
+ADJOINS = 1e-3  # m; lanes for oncoming cars that are farther from the centre line lie behind a median
+ROUNDING = 1e-6  # m
+THIN = 0.25  # m; a lane that is narrower at the end of a section ends or begins there
+
+Carry = Callable[[CubicProfile], CubicProfile]
+"""A function that converts cubics over the stations of the file to cubics over those of the Road."""
+
+
+class Slot(NamedTuple):
+    """A lane of the road, joined from the lanes of its sections."""
+
+    kind: Kind
+    width: CubicProfile
+    parts: list[MarkedLane]
+
+
+@dataclass(frozen=True)
+class Markings:
+    """The markings of a cross-section."""
+
+    right: tuple[Marking, ...]
+    """Those at the outer edges of the lanes on the right."""
+    centre: Marking
+    left: tuple[Marking, ...]
+
+
+@dataclass(frozen=True)
+class FileProfile:
+    """The cross-section in a file, over the stations of the file and as seen along the driven side."""
+
+    right: tuple[Slot, ...]
+    left: tuple[Slot, ...]
+    markings: Markings
+    driven: int
+    """Index of the driven lane in ``right``."""
+    angle: CubicProfile | None
+    remarks: tuple[str, ...]
+    """Sentences about what was changed."""
+
+    def used(self) -> set[int]:
+        """Returns the identities (``id``) of the XML elements of all lanes that are a part of the profile."""
+        return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
+
+    def driven_nodes(self) -> list[Node]:
+        """Returns the driven lane in each section that has it."""
+        return [part.node for part in self.right[self.driven].parts]
+
+    def carried(self, carry: Carry, turned: Carry) -> Profile:
+        """Returns the cross-section over the stations of the Road.
+
+        Args:
+            carry: Converts the widths.
+            turned: Converts the superelevation.
+        """
+        right, left = (
+            tuple(
+                Lane(slot.kind, _plain(carry(slot.width)), mark)
+                for slot, mark in zip(slots, marks, strict=True)
+            )
+            for slots, marks in ((self.right, self.markings.right), (self.left, self.markings.left))
+        )
+        angle = None if self.angle is None else turned(self.angle)
+        return Profile(left, right, self.driven, self.markings.centre, angle)
+
+
+def _plain(width: CubicProfile) -> Width:
+    """Returns a width as one number if it is constant."""
+    return width.coefficients[0][0] if len(width.stations) == 1 else width
+
+
+class WideLane(NamedTuple):
+    """A lane of one section, with its width over the stations of the file."""
+
+    element: LaneElement
+    width: list[Row]
+
+    def width_at(self, s: float) -> float:
+        """Returns the width in metres at one end of the section."""
+        return value_at(self.width[0 if s <= self.width[0][0] else -1], s)
+
+
+class _Beside(NamedTuple):
+    """The lanes of one section on one side of the centre line, from the inside out."""
+
+    span: Span
+    driving: list[WideLane]
+    shoulders: list[WideLane]
+
+
+def read_profile(road: Node, lanes: Lanes) -> FileProfile:
+    """Returns the cross-section of a road. Its cubics are constant from the end of the road on.
+
+    Raises:
+        UsageError: A width or the superelevation consists of too many cubics.
+    """
+    spans = lanes.spans()
+    left_sides, remarks = _oncoming(spans)
+    right = _joined([_beside(span, _outward(span)) for span in spans], lanes.length)
+    left = _joined(left_sides, lanes.length)
+    markings, repainted = _markings(road, spans, right, left)
+    driven = _rightmost(right)
+    if driven:
+        remarks.append(
+            f"the car keeps to lane {driven + 1} from the centre line, the rightmost that is "
+            f"{LEAST:g} m wide everywhere"
+        )
+    width, narrowed = _driven_width(right[driven].width, lanes.length)
+    right[driven] = right[driven]._replace(width=width)
+    angle, flattened = _superelevation(lanes)
+    told = (*remarks, *narrowed, *repainted, *flattened)
+    return FileProfile(tuple(right), tuple(left), markings, driven, angle, told)
+
+
+def _outward(span: Span) -> Iterator[WideLane]:
+    """Yields the lanes from the centre line outwards on the driven side."""
+    lanes = span.section.lanes
+    return (
+        WideLane(lanes[place], _width(lanes, place, span)) for place in range(span.section.first, len(lanes))
+    )
+
+
+def _inward(span: Span) -> Iterator[WideLane]:
+    """Yields the lanes from the centre line on towards the other side, without those that have no width."""
+    lanes, others = span.section.lanes, span.section.others
+    inner = (
+        WideLane(lanes[place], _width(lanes, place, span)) for place in reversed(range(span.section.first))
+    )
+    beyond = (WideLane(others[place], _width(others, place, span)) for place in range(len(others)))
+    return (each for found in (inner, beyond) for each in found if _is_wide(each.width, span.end))
+
+
+def _is_wide(rows: list[Row], end: float) -> bool:
+    """Returns whether a lane is wider than rounding somewhere in its section."""
+    return any(any(row[1][1:]) or row[1][0] > ADJOINS for row in rows) or value_at(rows[-1], end) > ADJOINS
+
+
+def _width(lanes: Sequence[LaneElement], place: int, span: Span) -> list[Row]:
+    """Returns the width of a lane in one section. A border is the offset of the outer edge from lane 0."""
+    lane = lanes[place]
+    parts: list[tuple[float, CubicProfile]] = []
+    if lane.width is not None:
+        parts.append((1.0, lane.width))
+    elif lane.border is not None:
+        parts.append((_sign(lane.border), lane.border))
+        for inner in reversed(lanes[:place]):
+            if inner.width is not None:
+                parts.append((-1.0, inner.width))
+            elif inner.border is not None:
+                parts.append((-_sign(inner.border), inner.border))
+                break
+    return combined(parts, span.start, span.end)
+
+
+def _sign(border: CubicProfile) -> float:
+    """Returns the factor that makes the offset of a border positive."""
+    return -1.0 if next((row[0] for row in border.coefficients if row[0]), 0.0) < 0 else 1.0
+
+
+def _beside(span: Span, lanes: Iterator[WideLane]) -> _Beside:
+    found = list(lanes)
+    driving = [*takewhile(lambda each: each.element.kind in DRIVING, found)]
+    return _Beside(
+        span, driving, [*takewhile(lambda each: each.element.kind in BESIDE, found[len(driving) :])]
+    )
+
+
+def _oncoming(spans: Sequence[Span]) -> tuple[list[_Beside], list[str]]:
+    """Returns the lanes on the other side of the centre line, and a remark if some are left out."""
+    sides = [_beside(span, _inward(span)) for span in spans]
+    are_there = [any(lane.kind in DRIVING for lane in span.section.others) for span in spans]
+    if all(side.driving or not there for side, there in zip(sides, are_there, strict=True)):
+        return sides, []
+    kept = [side._replace(driving=[], shoulders=[] if side.driving else side.shoulders) for side in sides]
+    return kept, ["its lanes for oncoming cars do not adjoin its other lanes; the road is one-way here"]
+
+
+def _joined(sides: Sequence[_Beside], length: float) -> list[Slot]:
+    """Returns the lanes of one side, joined over all sections: first driving lanes, then shoulders."""
+    spans = [side.span for side in sides]
+    driving = _aligned(spans, [side.driving for side in sides])[:MOST_LANES]
+    shoulders = _aligned(spans, [side.shoulders for side in sides])[: MOST_LANES - len(driving)]
+    return [
+        *(_slot("driving", spans, lanes, length) for lanes in driving),
+        *(_slot("shoulder", spans, lanes, length) for lanes in shoulders),
+    ]
+
+
+def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> list[dict[int, WideLane]]:
+    """Returns the lanes of successive sections, joined where they continue each other, from the inside out.
+
+    Lanes that end or begin without a width continue no other lane. The others are joined in their order.
+    Each result has the lanes by the index of their section.
+
+    Args:
+        spans: The sections.
+        sections: The lanes of each section from the inside out.
+    """
+    out: list[dict[int, WideLane]] = []
+    for n, (span, lanes) in enumerate(zip(spans, sections, strict=True)):
+        ending = [each for each in out if n and n - 1 in each]
+        wide = [each for each in ending if each[n - 1].width_at(spans[n - 1].end) > THIN]
+        beginning = [place for place, lane in enumerate(lanes) if lane.width_at(span.start) > THIN]
+        known = dict(zip(beginning, wide, strict=False))
+        free = 0
+        for place, lane in enumerate(lanes):
+            following = next((each for i, each in known.items() if i >= place), None)
+            limit = len(out) if following is None else next(i for i, o in enumerate(out) if o is following)
+            if place in known:
+                free = limit
+            elif free == limit:
+                out.insert(free, {})
+            out[free][n] = lane
+            free += 1
+    return out
+
+
+def _slot(kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float) -> Slot:
+    """Returns one lane of the road, given by the lanes that it consists of, by the index of their section."""
+    rows: list[Row] = []
+    end = 0.0
+    for n, span in enumerate(spans):
+        if rows and span.start > end:  # no lane is driven between: the width stays
+            rows.append(constant(end, value_at(rows[-1], end)))
+        rows += lanes[n].width if n in lanes else [constant(span.start, 0.0)]
+        end = span.end
+    if end < length:
+        rows.append(constant(end, value_at(rows[-1], end)))
+    parts = [MarkedLane(spans[n], lane.element.node) for n, lane in sorted(lanes.items())]
+    return Slot(kind, _checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
+
+
+def _checked(cubics: CubicProfile) -> CubicProfile:
+    if len(cubics.stations) > MOST_ROWS:
+        raise UsageError(
+            f"one of its lanes has more than {MOST_ROWS:,} widths; cut out the part that you need"
+        )
+    return cubics
+
+
+def _rightmost(right: Sequence[Slot]) -> int:
+    """Returns the number of the outermost driving lane that is wide enough everywhere; 0 if none is."""
+    wide = [
+        number
+        for number, slot in enumerate(right)
+        if slot.kind == "driving" and slot.width.extremes()[0] > LEAST - ROUNDING
+    ]
+    return wide[-1] if wide else 0
+
+
+def _driven_width(width: CubicProfile, length: float) -> tuple[CubicProfile, list[str]]:
+    """Returns the width of the driven lane within its limits, and a remark if that changes it."""
+    low, high = width.extremes()
+    if low > LEAST - ROUNDING and high < MOST + ROUNDING:
+        return width, []
+    kept = closed(limited(rows_of(width), length, LEAST, MOST), length)
+    least, most = kept.extremes()
+    is_constant = most - least < ROUNDING
+    taken = f"{least:.2f} m everywhere" if is_constant else f"{least:.2f} to {most:.2f} m"
+    return kept, [f"its lane is {low:.2f} to {high:.2f} m wide, and is taken as {taken}"]
+
+
+def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
+    """Returns the superelevation, None for a level road, and a remark if it is too steep for a Road."""
+    if lanes.angle is None:
+        return None, []
+    rows = rows_of(lanes.angle)
+    angle = _checked(closed(limited(rows, lanes.length, -STEEPEST, STEEPEST), lanes.length))
+    if not any(any(cubic) for cubic in angle.coefficients):
+        return None, []
+    steepest = max(abs(each) for each in closed(rows, lanes.length).extremes())
+    if steepest < STEEPEST + ROUNDING:
+        return angle, []
+    told, most = math.degrees(steepest), math.degrees(STEEPEST)
+    return angle, [f"its superelevation is up to {told:.1f} degrees, and is taken as {most:.1f} at most"]
+
+
+def _markings(
+    road: Node, spans: Sequence[Span], right: Sequence[Slot], left: Sequence[Slot]
+) -> tuple[Markings, list[str]]:
+    """Returns the markings, and a remark if the file has others."""
+    if not has_marks(road):
+        along, against = (sum(slot.kind == "driving" for slot in side) for side in (right, left))
+        usual = Profile.of(along, against, shoulder=0.0)
+        sides = (_padded(usual.right, len(right)), _padded(usual.left, len(left)))
+        said = "it has no road marks in its file; the usual ones are painted here"
+        return Markings(sides[0], usual.centre_marking, sides[1]), [said]
+    on_right, on_left = ([marking(slot.parts) for slot in side] for side in (right, left))
+    centre = marking([MarkedLane(span, _inner(span)) for span in spans if span.section.centre])
+    changes = any(changed for _, changed in (*on_right, *on_left, centre))
+    said = "its road marks change along the road; the most frequent ones are painted here"
+    marks = Markings(tuple(m for m, _ in on_right), centre[0], tuple(m for m, _ in on_left))
+    return marks, [said] if changes else []
+
+
+def _padded(lanes: Sequence[Lane], count: int) -> tuple[Marking, ...]:
+    """Returns the markings of driving lanes, and none for the shoulders beside them."""
+    marks: list[Marking] = [lane.marking for lane in lanes]
+    missing: list[Marking] = ["none"] * (count - len(lanes))
+    return (*marks, *missing)
+
+
+def _inner(span: Span) -> Node:
+    """Returns the lane whose outer edge is the centre line; lane 0 where lanes between have no width."""
+    section = span.section
+    for place in reversed(range(section.first)):
+        lane = section.lanes[place]
+        if lane.node.all("roadMark") or _is_wide(_width(section.lanes, place, span), span.end):
+            return lane.node
+    return section.centre[0]
