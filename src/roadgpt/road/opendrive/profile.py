@@ -28,7 +28,7 @@ Carry = Callable[[CubicProfile], CubicProfile]
 """A function that converts cubics over the stations of the file to cubics over those of the Road."""
 
 
-class Slot(NamedTuple):
+class JoinedLane(NamedTuple):
     """A lane of the road, joined from the lanes of its sections."""
 
     kind: Kind
@@ -37,7 +37,7 @@ class Slot(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Markings:
+class LaneMarkings:
     """The markings of a cross-section."""
 
     right: tuple[Marking, ...]
@@ -50,9 +50,9 @@ class Markings:
 class FileProfile:
     """The cross-section in a file, over the stations of the file and as seen along the driven side."""
 
-    right: tuple[Slot, ...]
-    left: tuple[Slot, ...]
-    markings: Markings
+    right: tuple[JoinedLane, ...]
+    left: tuple[JoinedLane, ...]
+    markings: LaneMarkings
     driven: int
     """Index of the driven lane in ``right``."""
     angle: CubicProfile | None
@@ -196,14 +196,14 @@ def _oncoming(spans: Sequence[Span]) -> tuple[list[_Beside], list[str]]:
     return kept, ["its lanes for oncoming cars do not adjoin its other lanes; the road is one-way here"]
 
 
-def _joined(sides: Sequence[_Beside], length: float) -> list[Slot]:
+def _joined(sides: Sequence[_Beside], length: float) -> list[JoinedLane]:
     """Returns the lanes of one side, joined over all sections: first driving lanes, then shoulders."""
     spans = [side.span for side in sides]
     driving = _aligned(spans, [side.driving for side in sides])[:MOST_LANES]
     shoulders = _aligned(spans, [side.shoulders for side in sides])[: MOST_LANES - len(driving)]
     return [
-        *(_slot("driving", spans, lanes, length) for lanes in driving),
-        *(_slot("shoulder", spans, lanes, length) for lanes in shoulders),
+        *(_joined_lane("driving", spans, lanes, length) for lanes in driving),
+        *(_joined_lane("shoulder", spans, lanes, length) for lanes in shoulders),
     ]
 
 
@@ -236,7 +236,9 @@ def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> l
     return out
 
 
-def _slot(kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float) -> Slot:
+def _joined_lane(
+    kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float
+) -> JoinedLane:
     """Returns one lane of the road, given by the lanes that it consists of, by the index of their section."""
     rows: list[Row] = []
     end = 0.0
@@ -248,7 +250,7 @@ def _slot(kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], leng
     if end < length:
         rows.append(constant(end, value_at(rows[-1], end)))
     parts = [MarkedLane(spans[n], lane.element.node) for n, lane in sorted(lanes.items())]
-    return Slot(kind, _checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
+    return JoinedLane(kind, _checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
 
 
 def _checked(cubics: CubicProfile) -> CubicProfile:
@@ -259,7 +261,7 @@ def _checked(cubics: CubicProfile) -> CubicProfile:
     return cubics
 
 
-def _rightmost(right: Sequence[Slot]) -> int:
+def _rightmost(right: Sequence[JoinedLane]) -> int:
     """Returns the number of the outermost driving lane that is wide enough everywhere; 0 if none is."""
     wide = [
         number
@@ -297,20 +299,20 @@ def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
 
 
 def _markings(
-    road: Node, spans: Sequence[Span], right: Sequence[Slot], left: Sequence[Slot]
-) -> tuple[Markings, list[str]]:
+    road: Node, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
+) -> tuple[LaneMarkings, list[str]]:
     """Returns the markings, and a remark if the file has others."""
     if not has_marks(road):
         along, against = (sum(slot.kind == "driving" for slot in side) for side in (right, left))
         usual = Profile.of(along, against, shoulder=0.0)
         sides = (_padded(usual.right, len(right)), _padded(usual.left, len(left)))
         said = "it has no road marks in its file; the usual ones are painted here"
-        return Markings(sides[0], usual.centre_marking, sides[1]), [said]
+        return LaneMarkings(sides[0], usual.centre_marking, sides[1]), [said]
     on_right, on_left = ([marking(slot.parts) for slot in side] for side in (right, left))
     centre = marking([MarkedLane(span, _inner(span)) for span in spans if span.section.centre])
     changes = any(changed for _, changed in (*on_right, *on_left, centre))
     said = "its road marks change along the road; the most frequent ones are painted here"
-    marks = Markings(tuple(m for m, _ in on_right), centre[0], tuple(m for m, _ in on_left))
+    marks = LaneMarkings(tuple(m for m, _ in on_right), centre[0], tuple(m for m, _ in on_left))
     return marks, [said] if changes else []
 
 
