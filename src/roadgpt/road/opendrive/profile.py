@@ -101,7 +101,7 @@ class WideLane(NamedTuple):
         return value_at(self.width[0 if s <= self.width[0][0] else -1], s)
 
 
-class _Beside(NamedTuple):
+class _SectionSide(NamedTuple):
     """The lanes of one section on one side of the centre line, from the inside out."""
 
     span: Span
@@ -178,15 +178,15 @@ def _sign(border: CubicProfile) -> float:
     return -1.0 if next((row[0] for row in border.coefficients if row[0]), 0.0) < 0 else 1.0
 
 
-def _beside(span: Span, lanes: Iterator[WideLane]) -> _Beside:
+def _beside(span: Span, lanes: Iterator[WideLane]) -> _SectionSide:
     found = list(lanes)
     driving = [*takewhile(lambda each: each.element.kind in DRIVING, found)]
-    return _Beside(
+    return _SectionSide(
         span, driving, [*takewhile(lambda each: each.element.kind in BESIDE, found[len(driving) :])]
     )
 
 
-def _oncoming(spans: Sequence[Span]) -> tuple[list[_Beside], list[str]]:
+def _oncoming(spans: Sequence[Span]) -> tuple[list[_SectionSide], list[str]]:
     """Returns the lanes on the other side of the centre line, and a remark if some are left out."""
     sides = [_beside(span, _inward(span)) for span in spans]
     are_there = [any(lane.kind in DRIVING for lane in span.section.others) for span in spans]
@@ -196,7 +196,7 @@ def _oncoming(spans: Sequence[Span]) -> tuple[list[_Beside], list[str]]:
     return kept, ["its lanes for oncoming cars do not adjoin its other lanes; the road is one-way here"]
 
 
-def _joined(sides: Sequence[_Beside], length: float) -> list[JoinedLane]:
+def _joined(sides: Sequence[_SectionSide], length: float) -> list[JoinedLane]:
     """Returns the lanes of one side, joined over all sections: first driving lanes, then shoulders."""
     spans = [side.span for side in sides]
     driving = _aligned(spans, [side.driving for side in sides])[:MOST_LANES]
