@@ -118,7 +118,7 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
     keep_problems(place, problems)
     if not quiet:
         made = sum(len(finished(place / part.name)) for part in plan.parts())
-        click.echo(f"{made} roads in {time.perf_counter() - begun:.0f} s; writing the report")
+        click.echo(f"{plural(made, 'road')} in {time.perf_counter() - begun:.0f} s; writing the report")
     page = write_study(place)
     _complain(problems)
     click.echo(str(page))
