@@ -185,11 +185,24 @@ class SurveyApp:
         own, number = self.survey.pages_for(rater.digest), int(request.path_params["number"])
         if not 1 <= number <= len(own):
             raise HTTPException(404)
+        page, total = own[number - 1], len(own)
+
+        def questionnaire(given: Mapping[str, str], missing: Sequence[str] = ()) -> Response:
+            return self._page(
+                "questionnaire.html",
+                page=page,
+                number=number,
+                total=total,
+                base=base,
+                given=given,
+                missing=missing,
+            )
+
         if request.method != "POST":
-            return self._questionnaire(own, number, base, self.store.answers_of(rater))
+            return questionnaire(self.store.answers_of(rater))
         if _kind(request) != FORM:
             raise HTTPException(415)
-        page, fields = own[number - 1], _fields(request, body)
+        fields = _fields(request, body)
         answers = {q.id: clean(fields[q.id]) for q in page.questions if q.id in fields}
         by_id = self.survey.questions
         if any(not by_id[id_].takes(value) for id_, value in answers.items()):
@@ -201,8 +214,8 @@ class SurveyApp:
         if go == "back":
             return RedirectResponse(f"{base}/{max(1, number - 1)}", 303)
         if missing and go != "skip":
-            return self._questionnaire(own, number, base, given, missing)
-        return RedirectResponse(f"{base}/{number + 1}" if number < len(own) else f"{base}/done", 303)
+            return questionnaire(given, missing)
+        return RedirectResponse(f"{base}/{number + 1}" if number < total else f"{base}/done", 303)
 
     def _done(self, request: Request, _: bytes) -> Response:
         rater, base = self._rater(request)
@@ -221,33 +234,6 @@ class SurveyApp:
             return RedirectResponse(f"{base}/mine", 303)
         self.store.withdraw(rater)
         return self._page("deleted.html")
-
-    def _questionnaire(
-        self,
-        own: Sequence[QuestionPage],
-        number: int,
-        base: str,
-        given: Mapping[str, str],
-        missing: Sequence[str] = (),
-    ) -> Response:
-        """Returns one page of a rater's questionnaire.
-
-        Args:
-            own: all pages in this rater's order.
-            number: number of the page, from 1.
-            base: the rater's address, ``/r/TOKEN``.
-            given: the answers so far, by question.
-            missing: ids of questions on this page without an answer, which the page lists at its top.
-        """
-        return self._page(
-            "questionnaire.html",
-            page=own[number - 1],
-            number=number,
-            total=len(own),
-            base=base,
-            given=given,
-            missing=missing,
-        )
 
     def _page(self, template: str, status: int = 200, **values: object) -> Response:
         return HTMLResponse(render(template, self.survey, **values), status)
