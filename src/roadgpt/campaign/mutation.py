@@ -5,7 +5,7 @@ A mutation may violate the road's requirements; ``variation`` checks every mutat
 
 from collections.abc import Callable
 from math import exp
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -26,13 +26,16 @@ NEW_STRAIGHT = (3.0, 45.0)  # m, of one that is put in
 NEW_TURN = (20.0, 120.0)  # degrees
 
 Rng = np.random.Generator
+Make = Callable[[Elements, Rng, World], Elements]
+Kind = Literal["turn", "straight", "any"]
 
 
 class Mutation(NamedTuple):
-    """A kind of mutation, and how often it is drawn relative to the others."""
+    """A kind of mutation, and how often it is drawn."""
 
-    make: Callable[[Elements, Rng, World], Elements]
+    make: Make
     weight: float
+    """How often the mutation is drawn, relative to the others."""
     is_numeric: bool
     """True if the mutation keeps the sequence of turns and straights and changes only numbers."""
 
@@ -72,75 +75,45 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
 
-    def between(a: float, b: float) -> float:
-        return a if a == b else (1 - share) * a + share * b
+    def between(a: float | None, b: float | None) -> float | None:
+        return a if a == b else (1 - share) * (a or 0.0) + share * (b or 0.0)
 
-    return tuple(
-        Element(
-            between(a.straight, b.straight),
-            between(a.turn, b.turn),
-            between(a.radius, b.radius),
-            between(a.transition, b.transition),
-            between(a.incline, b.incline),
-            between(a.vertical_radius or 0.0, b.vertical_radius or 0.0) or None,
-        )
-        for a, b in zip(one, other, strict=True)
-    )
+    pairs = (zip(first, second, strict=True) for first, second in zip(one, other, strict=True))
+    row = (Element._make(between(a, b) for a, b in pair) for pair in pairs)
+    return tuple(element._replace(vertical_radius=element.vertical_radius or None) for element in row)
 
 
-def mirrored(elements: Elements, rng: Rng, world: World) -> Elements:
+def mirrored(elements: Elements) -> Elements:
     """Returns the road with every left turn replaced by a right turn, and every right turn by a left turn."""
-    del rng, world
     return tuple(element._replace(turn=-element.turn) if element.turn else element for element in elements)
 
 
-def _longer(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
-    return _one(elements, rng, False, lambda e: e._replace(straight=_scaled(e.straight, STRAIGHTS, rng)))
+def _longer(element: Element, rng: Rng, world: World) -> Element:
+    return element._replace(straight=_scaled(element.straight, STRAIGHTS, rng))
 
 
-def _tighter(elements: Elements, rng: Rng, world: World) -> Elements:
-    limits = (world.min_radius * OVER_LEAST_RADIUS, WIDEST)
-    return _one(elements, rng, True, lambda e: e._replace(radius=_scaled(e.radius, limits, rng)))
+def _tighter(element: Element, rng: Rng, world: World) -> Element:
+    least = world.min_radius * OVER_LEAST_RADIUS
+    return element._replace(radius=_scaled(element.radius, (least, WIDEST), rng))
 
 
-def _farther(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
-
-    def turn(element: Element) -> Element:
-        size = np.clip(abs(element.turn) + SWING * rng.standard_normal(), *TURNS)
-        return element._replace(turn=float(np.copysign(size, element.turn)))
-
-    return _one(elements, rng, True, turn)
+def _farther(element: Element, rng: Rng, world: World) -> Element:
+    size = np.clip(abs(element.turn) + SWING * rng.standard_normal(), *TURNS)
+    return element._replace(turn=float(np.copysign(size, element.turn)))
 
 
-def _smoother(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
-
-    def change(element: Element) -> Element:
-        return element._replace(transition=_scaled(element.transition, TRANSITIONS, rng))
-
-    return _one(elements, rng, True, change)
+def _smoother(element: Element, rng: Rng, world: World) -> Element:
+    return element._replace(transition=_scaled(element.transition, TRANSITIONS, rng))
 
 
-def _steeper(elements: Elements, rng: Rng, world: World) -> Elements:
+def _steeper(element: Element, rng: Rng, world: World) -> Element:
     most = min(100 * world.max_grade, MAX_INCLINE) - 0.2
-
-    def slope(element: Element) -> Element:
-        return element._replace(
-            incline=float(np.clip(element.incline + SLOPE * rng.standard_normal(), -most, most))
-        )
-
-    return _with(elements, int(rng.integers(len(elements))), slope)
-
-
-def _other_hand(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
-    return _one(elements, rng, True, lambda e: e._replace(turn=-e.turn))
+    return element._replace(
+        incline=float(np.clip(element.incline + SLOPE * rng.standard_normal(), -most, most))
+    )
 
 
 def _swapped(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
     i, j = (int(n) for n in rng.integers(len(elements), size=2))
     row = list(elements)
     row[i], row[j] = row[j], row[i]
@@ -148,33 +121,25 @@ def _swapped(elements: Elements, rng: Rng, world: World) -> Elements:
 
 
 def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Returns the elements with a new turn, and a straight behind it."""
     if len(elements) >= MOST_ELEMENTS:
         return elements
     at = int(rng.integers(len(elements) + 1))
     incline = elements[min(at, len(elements) - 1)].incline
-    return (*elements[:at], *_new(rng, world, incline), *elements[at:])
-
-
-def _new(rng: Rng, world: World, incline: float) -> Elements:
-    """Draws a turn and a straight behind it."""
-    least = world.min_radius * OVER_LEAST_RADIUS
     turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
-    radius = min(least * exp(float(rng.exponential(0.5))), WIDEST)
-    return (
-        Element(turn=turn, radius=radius, transition=float(rng.uniform(*TRANSITIONS)), incline=incline),
-        Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline),
-    )
+    radius = min(world.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.5))), WIDEST)
+    new = Element(turn=turn, radius=radius, transition=float(rng.uniform(*TRANSITIONS)), incline=incline)
+    straight = Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline)
+    return (*elements[:at], new, straight, *elements[at:])
 
 
 def _removed(elements: Elements, rng: Rng, world: World) -> Elements:
-    del world
     at = int(rng.integers(len(elements)))
     return elements[:at] + elements[at + 1 :] if len(elements) > 1 else elements
 
 
 def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     """Reverses the direction of driving: left turns become right turns, and climbs become descents."""
-    del rng, world
     radii = [None, *(element.vertical_radius for element in reversed(elements[1:]))]
     return tuple(
         element._replace(
@@ -186,29 +151,34 @@ def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     )
 
 
+def _of_one(
+    change: Callable[[Element, Rng, World], Element], kind: Literal["turn", "straight", "any"]
+) -> Make:
+    """Returns a mutation that changes one random element of a kind, if there is any."""
+
+    def make(elements: Elements, rng: Rng, world: World) -> Elements:
+        found = [i for i, one in enumerate(elements) if kind in ("any", "turn" if one.turn else "straight")]
+        if not found:
+            return elements
+        index = found[int(rng.integers(len(found)))]
+        return (*elements[:index], change(elements[index], rng, world), *elements[index + 1 :])
+
+    return make
+
+
 MUTATIONS: dict[str, Mutation] = {
-    "longer": Mutation(_longer, 3.0, True),
-    "tighter": Mutation(_tighter, 3.0, True),
-    "farther": Mutation(_farther, 3.0, True),
-    "smoother": Mutation(_smoother, 1.0, True),
-    "steeper": Mutation(_steeper, 1.0, True),
-    "other hand": Mutation(_other_hand, 1.0, False),
+    "longer": Mutation(_of_one(_longer, "straight"), 3.0, True),
+    "tighter": Mutation(_of_one(_tighter, "turn"), 3.0, True),
+    "farther": Mutation(_of_one(_farther, "turn"), 3.0, True),
+    "smoother": Mutation(_of_one(_smoother, "turn"), 1.0, True),
+    "steeper": Mutation(_of_one(_steeper, "any"), 1.0, True),
+    "other hand": Mutation(_of_one(lambda one, rng, world: one._replace(turn=-one.turn), "turn"), 1.0, False),
     "swapped": Mutation(_swapped, 1.0, False),
     "inserted": Mutation(_inserted, 1.5, False),
     "removed": Mutation(_removed, 1.0, False),
-    "mirrored": Mutation(mirrored, 0.5, False),
+    "mirrored": Mutation(lambda elements, rng, world: mirrored(elements), 0.5, False),
     "backwards": Mutation(_backwards, 0.5, False),
 }
-
-
-def _one(elements: Elements, rng: Rng, is_turn: bool, change: Callable[[Element], Element]) -> Elements:
-    """Applies a change to a random turn, or to a random straight; none where there is none."""
-    found = [index for index, element in enumerate(elements) if bool(element.turn) == is_turn]
-    return _with(elements, found[int(rng.integers(len(found)))], change) if found else elements
-
-
-def _with(elements: Elements, index: int, change: Callable[[Element], Element]) -> Elements:
-    return (*elements[:index], change(elements[index]), *elements[index + 1 :])
 
 
 def _scaled(value: float, limits: tuple[float, float], rng: Rng) -> float:
