@@ -5,7 +5,7 @@ A mutation may violate the road's requirements; ``variation`` checks every mutat
 
 from collections.abc import Callable
 from math import exp
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -24,6 +24,7 @@ SLOPE = 2.5  # percent, standard deviation
 MOST_ELEMENTS = 24  # of a road
 NEW_STRAIGHT = (3.0, 45.0)  # m, of one that is put in
 NEW_TURN = (20.0, 120.0)  # degrees
+NUMBERS = Element._fields.index("vertical_radius") + 1  # fields that are interpolated
 
 Rng = np.random.Generator
 Make = Callable[[Elements, Rng, World], Elements]
@@ -75,12 +76,14 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None
 
-    def between(a: float | None, b: float | None) -> float | None:
+    def between(a: Any, b: Any) -> Any:
         return a if a == b else (1 - share) * (a or 0.0) + share * (b or 0.0)
 
-    pairs = (zip(first, second, strict=True) for first, second in zip(one, other, strict=True))
-    row = (Element._make(between(a, b) for a, b in pair) for pair in pairs)
-    return tuple(element._replace(vertical_radius=element.vertical_radius or None) for element in row)
+    out = []
+    for pair in zip(one, other, strict=True):
+        *numbers, radius = (between(a, b) for a, b in list(zip(*pair, strict=True))[:NUMBERS])
+        out.append(Element._make((*numbers, radius or None, None, None)))
+    return tuple(out)
 
 
 def mirrored(elements: Elements) -> Elements:

@@ -1,17 +1,16 @@
-"""Drafts: makes Designs from Briefs, with geometry and rules at hand. Main function: ``draft``.
+"""Makes Designs from Briefs. Main function: ``draft``.
 
-A designer is a class without arguments, or one that takes ChatSettings as ``settings``, whose objects have
-one method:
+A designer is a class that takes no arguments, or ChatSettings as ``settings``. Its objects have one method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
-``notes`` are the sentences of rules that objected to a draft before; ``earlier`` are the designs of the
-campaign so far, none of which it repeats. The same arguments give the same Design. It raises DesignError,
-with one sentence of advice, where no road can keep every promise on this map.
+``notes`` are the sentences of rules that objected to the draft before. ``earlier`` are the designs of the
+campaign so far; the new one should differ from all of them. The same arguments give the same Design. If no
+road can meet all requirements on this map, the method raises DesignError with one sentence of advice.
 
-Besides, a designer may have ``report``, a DesignReport of its last draft. One whose class says
-``redrafts = False`` is not asked again when rules object. One whose class has a ``geometry`` means its
-segments so, whatever the user prefers: "spline" for RoadGPT's hops.
+A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts = False``
+if it must not be called again when rules object; ``geometry``, if its segments must be built in a certain way
+("spline" for RoadGPT's original splines), whatever the user chose.
 """
 
 from collections.abc import Sequence
@@ -25,15 +24,22 @@ from roadgpt.road import Design, World
 
 
 class Designer(Protocol):
-    """Turns a Brief into a Design."""
+    """A plug-in that turns a Brief into a Design."""
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
+        Args:
+            brief: the requirements.
+            world: the map and the limits of the rules.
+            notes: sentences of the rules that objected to the draft before.
+            earlier: designs of the campaign so far, which are not repeated.
+            seed: seed of the random generator.
+
         Raises:
-            DesignError: there is none, as far as this designer can tell.
+            DesignError: this designer found no such Design.
         """
         ...
 
@@ -47,33 +53,41 @@ def draft(
     designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> Design:
-    """Returns a Design for a Brief, made by the designer of that name.
+    """Returns a Design for a Brief, made by the designer of the given name.
 
     Args:
-        brief: what was asked for.
-        world: map and limits.
-        notes: sentences of rules that objected to the draft before.
+        brief: the requirements.
+        world: the map and the limits of the rules.
+        notes: sentences of the rules that objected to the draft before.
         earlier: designs of the campaign so far, which are not repeated.
-        seed: of all that is left to chance.
-        designer: name of a part on the shelf ``designers``.
-        chat: the language model, for designers that ask one; None: what the user's settings say.
+        seed: seed of the random generator.
+        designer: name of a plug-in of the kind ``designers``.
+        chat: settings of the language model, for designers that use one; None for the user's settings.
 
     Raises:
-        DesignError: no road keeps every promise on this map.
+        DesignError: no road meets all requirements on this map.
         PartError: there is no designer of that name.
-        ChatError: a language model could not be asked.
+        ChatError: the language model could not be asked.
     """
     return designer_of(designer, chat).draft(brief, world, notes, earlier, seed)
 
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
-    """Returns the designer of that name."""
+    """Returns the designer of the given name.
+
+    Args:
+        name: name of a plug-in of the kind ``designers``.
+        chat: settings of the language model, for designers that use one; None for the user's settings.
+
+    Raises:
+        PartError: there is no designer of that name.
+    """
     return _made(name, settings_for(plugins.find("designers", name), chat))
 
 
 @cache
 def _made(name: str, chat: ChatSettings | None) -> Designer:
-    """The one designer of that name: it remembers the shapes of earlier designs."""
+    """Returns the one object of that designer, which keeps the shapes of earlier designs."""
     return cast(Designer, instantiate(plugins.find("designers", name), chat))
 
 

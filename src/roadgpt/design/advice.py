@@ -1,18 +1,34 @@
-"""What to tell someone whose wishes no road on the map can keep."""
+"""Writes the sentence of a refusal: which requirement no road can meet, and what to ask for instead.
+
+Lengths and maps are only offered if roads were drafted with them.
+"""
 
 from collections import Counter
-from collections.abc import Sequence
-from math import inf
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from math import ceil, floor, inf, log10
 
-from roadgpt.brief.model import Brief
+from roadgpt.brief import NoRoomError
+from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP
+from roadgpt.brief.minimum_length import least_length
+from roadgpt.brief.model import Amount, Brief, Clause
 from roadgpt.brief.outline import Outline
 from roadgpt.check.rules.too_abrupt import MOST
-from roadgpt.design.offers import Fits, offer
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
 TOO_ABRUPT = "slopes that change too fast for the speed"
-MANY = 60  # drafts that fitted on the map and broke a promise: then the map was not what stood in the way
+MANY = 60  # drafts that fitted on the map and failed: then the map was large enough
+SIDES = 7.0  # of the map: longer roads were never drafted, so the search for the longest starts here
+SHORTER = 0.8  # ratio of each length tried to the one before
+HALVINGS = 2  # of the range between the last length that failed and the first that did not
+SURE = 0.92  # share of the longest length drafted that is offered
+LIKELY = 0.4  # ratio of the side of a map to the length of a winding road that may fit on it
+LARGER = 1.3  # ratio of each map size tried to the one before
+FEWEST_METRES = 30.0
+
+Fits = Callable[[Brief, World], bool]
+"""Returns whether roads can be drafted for a Brief with each of some seeds."""
 
 
 def advice(
@@ -21,21 +37,21 @@ def advice(
     """Returns one sentence that says which requirement could not be met, and what to do.
 
     Args:
-        brief: what was asked for.
-        outline: the same as ranges.
+        brief: the requirements.
+        outline: the same requirements as ranges.
         world: the map.
-        failed: why drafts were given up, and how often.
-        boxes: sides in metres of the smallest square around each draft that was too large for the map.
-        fits: tries whether roads of another length, or on another map, can be drafted.
+        failed: the reasons why drafts failed, and how often each occurred.
+        boxes: side in metres of the smallest square around each draft that was too large for the map.
+        fits: tests whether roads can be drafted for another Brief, or on another map.
     """
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY
     reason = (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
-    wishes = wishes_of(outline)
+    wishes = _wishes_of(outline)
     if reason in ("too large", "over itself"):
-        found = offer(brief, world, fits, _roomier(world, boxes))
+        found = _offer(brief, world, fits, _roomier(world, boxes))
         where = f"on a {world.map_size:g} m map" + (" without crossing" if reason == "over itself" else "")
-        return f"{wishes} not fit {where}; {found.sentence}"
+        return f"{wishes} not fit {where}; {found}"
     if reason == "longer than was asked for":
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
     if reason == "like an earlier road":
@@ -49,8 +65,8 @@ def too_fast(world: World, slower: float | None) -> str:
     """Returns one sentence that says that crests and dips would be too abrupt for the speed limit.
 
     Args:
-        world: its speed limit.
-        slower: km/h, at which they can be had, where that is known.
+        world: the speed limit.
+        slower: a speed limit in km/h at which the road is possible; None if none is known.
     """
     limit = f"a speed limit of {3.6 * world.speed_limit:.3g} km/h"
     less = f"use --speed-limit {slower:g}" if slower else "use a lower --speed-limit"
@@ -60,8 +76,8 @@ def too_fast(world: World, slower: float | None) -> str:
     )
 
 
-def wishes_of(outline: Outline) -> str:
-    """Returns what was asked for, as the start of a sentence that goes on with 'not fit'."""
+def _wishes_of(outline: Outline) -> str:
+    """Returns the requirements as the start of a sentence that continues with 'not fit'."""
     parts = [
         _counted(group.lo, group.feature.name) for group in outline.groups if group.feature.kind == "turn"
     ]
@@ -83,6 +99,98 @@ def _counted(number: int, what: str) -> str:
 
 
 def _roomier(world: World, boxes: Sequence[float]) -> float:
-    """Side in metres of a map on which most of the drafts that were too large would have fitted."""
+    """Returns the side in metres of a map that a quarter of the drafts that were too large would fit on."""
     needed = sorted(boxes)[len(boxes) // 4] + world.road_width if boxes else 0.0
     return max(needed, 1.2 * world.map_size)
+
+
+@lru_cache(maxsize=64)
+def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
+    """Returns advice for a Brief that does not fit on the map, as the end of a sentence.
+
+    ``likely`` is the side in metres of a map that may be large enough.
+    """
+    larger = _larger(brief, world, fits, likely)
+    less = f"ask for {_less(brief, world, fits) or 'less'}"
+    return f"{less} or use --map-size {larger:g}" if larger else less
+
+
+def no_room(error: NoRoomError, world: World) -> str:
+    """Returns the sentence of a refusal by ``map_fit``, with an offer that was verified by drafting."""
+    from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
+
+    brief = error.brief
+    if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
+        return str(error)  # of a straight road, the longest is known
+    said = (brief.length.lo or 0.0) if brief.length else 0.0
+    metres = max(least_length(brief, world.min_radius), said)
+    found = _offer(brief, world, fits, LIKELY * metres)
+    room = f"a map of {world.map_size:g} m has no room for"
+    if brief.length is None:
+        return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found}"
+    return f"{room} {metres:.0f} m of such road; {found}"
+
+
+def _less(brief: Brief, world: World, fits: Fits) -> str | None:
+    """Returns the length of the longest road, or of the longest straight on it, that could be drafted."""
+    asked = _asked(brief)
+    if asked is None:
+        return None
+    failed, share = 1.0, min(1.0, SIDES * world.map_size / asked) * SHORTER
+    while not fits(_scaled(brief, share), world):
+        failed, share = share, SHORTER * share
+        if asked * share < FEWEST_METRES:
+            return None
+    for _ in range(HALVINGS):
+        middle = (share + failed) / 2
+        share, failed = (middle, failed) if fits(_scaled(brief, middle), world) else (share, middle)
+    metres = _round(SURE * asked * share)
+    while not fits(_scaled(brief, metres / asked), world):
+        metres = _round(SHORTER * metres)
+        if metres < FEWEST_METRES:
+            return None
+    return f"{metres:g} m" if brief.length else f"a straight of {metres:g} m"
+
+
+def _larger(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
+    if likely > 2 * LARGEST_MAP or world.map_size == LARGEST_MAP:
+        return None
+    size = min(ceil(max(likely, world.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
+    while size < LARGEST_MAP and not fits(brief, world.model_copy(update={"map_size": size})):
+        size = ceil(LARGER * size / ROUND_MAP) * ROUND_MAP
+    size = min(size, LARGEST_MAP)
+    if size == LARGEST_MAP and not fits(brief, world.model_copy(update={"map_size": size})):
+        return None
+    return size
+
+
+def _round(metres: float) -> float:
+    """Returns metres rounded down to whole metres, and from 100 m on to two digits."""
+    step = 10.0 ** max(floor(log10(metres)) - 1, 0)
+    return floor(metres / step) * step
+
+
+def _asked(brief: Brief) -> float | None:
+    """Returns the required metres of the road, else of its longest straight; None if none are required."""
+    if brief.length:
+        return brief.length.lo or brief.length.hi
+    lengths = [c.length.lo for c in brief.clauses if c.kind == "straight" and c.length and c.length.lo]
+    return max(lengths, default=None)
+
+
+def _scaled(brief: Brief, share: float) -> Brief:
+    """Returns the Brief with a shorter road, or with shorter straights if the road's length is open."""
+    if brief.length:
+        return brief.model_copy(update={"length": _times(brief.length, share)})
+    return brief.model_copy(update={"clauses": tuple(_shorter(clause, share) for clause in brief.clauses)})
+
+
+def _shorter(clause: Clause, share: float) -> Clause:
+    if clause.kind != "straight" or clause.length is None:
+        return clause
+    return clause.model_copy(update={"length": _times(clause.length, share)})
+
+
+def _times(amount: Amount, share: float) -> Amount:
+    lo, hi = (None if bound is None else share * bound for bound in (amount.lo, amount.hi))
+    return Amount(lo=lo, hi=hi)

@@ -1,6 +1,7 @@
-"""What a language model is asked to fill in, and how it becomes a Design: validated data, and nothing else.
+"""Defines the data that a language model answers with, and turns it into a Design.
 
-Models answer in RoadGPT's format with a list of segments; the numbered fields of the original are taken too.
+Models answer in RoadGPT's segment format, with a list of segments or with numbered fields (road_segment1,
+road_segment2, ...). Answers are only validated as data and never executed.
 """
 
 import re
@@ -13,7 +14,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Design, read_design
 from roadgpt.road.design import KEY, MAX_SEGMENTS
 
-FARTHEST = 100_000.0  # m, of a start: what lies further away is no place on any map
+FARTHEST = 100_000.0  # m, of a coordinate of a start; no map is larger
 LETTERS = re.compile(r"[^a-z]")
 
 
@@ -72,10 +73,14 @@ class AnswerStep(AnswerSegment):
 
 
 def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design, tuple[str, ...]]:
-    """Returns the Design of an answer, and a sentence for everything that had to be corrected in it.
+    """Returns the Design of an answer, and one sentence for each correction that was made to it.
+
+    Args:
+        start: the start of the road.
+        segments: its segments in driving order.
 
     Raises:
-        UsageError: it is no design; one sentence, fit to be shown to the model.
+        UsageError: the answer is not a design; the message can be shown to the model.
     """
     if len(segments) > MAX_SEGMENTS:
         raise UsageError(f"the road has {len(segments):,} segments; {MAX_SEGMENTS} is the limit")

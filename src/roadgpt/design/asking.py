@@ -1,4 +1,4 @@
-"""What a language model is told: the rules of the map, what is asked for, and what earlier roads are like."""
+"""Writes the prompt of a language model: rules of the map, requirements, and earlier roads to differ from."""
 
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
@@ -14,15 +14,15 @@ from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.objections import OF_DEFAULT_ARC
 from roadgpt.road import Design, World
 
-EDGE = 2.0  # m between road and border, as told
-EARLIER = 6  # roads that are told of: the last ones
+EDGE = 2.0  # m between road and border, as the prompt requires
+EARLIER = 6  # earlier roads that the prompt lists, the last ones
 MOST_WORDS = 2000  # characters of a description
-SHOWN = 12  # segments of an earlier road
-USUAL_HEIGHT = 0.0  # m, of a start that is proposed
+SHOWN = 12  # segments that the prompt lists of an earlier road
+USUAL_HEIGHT = 0.0  # m, height of a drawn start
 
 
 def rules(name: str, world: World) -> str:
-    """Returns a prompt text of the package, with the numbers of this world filled in."""
+    """Returns the text of a prompt file of the package, with the numbers of this World filled in."""
     text = files("roadgpt.design.designers").joinpath(name).read_text(encoding="utf-8")
     half = world.road_width / 2
     numbers = {
@@ -42,12 +42,20 @@ def rules(name: str, world: World) -> str:
 
 
 def words_of(brief: Brief) -> str:
-    """Returns the description; where there is none, the sentence that states the Brief."""
+    """Returns the description, at most 2000 characters; without one, the sentence that states the Brief."""
     return brief.words.strip()[:MOST_WORDS] or sentence(brief)
 
 
 def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[Design], seed: int) -> str:
-    """Returns the question: description, requirements, earlier roads, objections so far and a start."""
+    """Returns the request for a road.
+
+    Args:
+        brief: the requirements, and the description that they were read from.
+        world: the map and the limits of the rules.
+        notes: objections to an earlier attempt.
+        earlier: designs of the campaign so far; the last six are listed.
+        seed: determines the start that is suggested.
+    """
     demanded = demands(promises_of(brief, world))
     parts = [
         f"Description: {words_of(brief)}",
@@ -64,13 +72,13 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
 
 
 def start_for(world: World, seed: int) -> str:
-    """Returns a start drawn from the seed, in words, so that roads differ for any model."""
+    """Returns a start drawn from the seed, in words, so that roads differ whatever the model."""
     x, y, theta = drawn_start(world, seed)
     return f"a start near ({x:g}, {y:g}) with theta {theta:g}"
 
 
 def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
-    """Draws a start in metres, and a heading in degrees that looks across the map."""
+    """Draws x and y of a start in metres, and a heading in degrees within 50 degrees of the map's centre."""
     rng = np.random.default_rng(seed)
     x, y = (round(float(v)) for v in world.map_size * (0.12 + 0.76 * rng.random(2)))
     to_middle = np.degrees(np.arctan2(world.map_size / 2 - y, world.map_size / 2 - x))
@@ -131,7 +139,7 @@ def _limits(feature: Feature, more: str) -> str:
 
 
 def _told(design: Design) -> str:
-    """An earlier road in a line."""
+    """Returns one line about an earlier road."""
     x, y, _ = design.starting_point
     shown = [_piece(s.direction, s.turn_degrees, s.distance) for s in design.segments[:SHOWN]]
     more = ", ..." if len(design.segments) > SHOWN else ""

@@ -1,6 +1,6 @@
-"""Puts a draft together: turns, the straights asked for between them, and the straights that make room.
+"""Composes a draft of turns, of the required straights between them, and of straights that only join.
 
-lead-in | turn | joining straight | turn | asked-for straight | turn | lead-out
+lead-in | turn | joining straight | turn | required straight | turn | lead-out
 """
 
 from collections.abc import Sequence
@@ -28,31 +28,28 @@ from roadgpt.road import World
 
 LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
 JOIN_MEAN = 16.0  # m more than the least, between turns
-LEG = 33.0  # m between hairpins, of which 30 are measured as straight
+LEG = 33.0  # m between hairpins; 30 m of them are measured as straight
 LEG_MEAN = 25.0  # m more than that
-CRAMPED = 0.5  # haste from which hairpins may follow each other as other turns do
+CRAMPED = 0.5  # haste from which hairpins are joined like other turns
 LONELY_MEAN = 60.0  # m more than the least, around the only turn of a road
 APPROACH = 35.0  # m more in front of a turn of a hard road: room to gain speed
-DIRECT = 0.35  # chance that turns of opposite hands follow each other with hardly a straight
+DIRECT = 0.35  # probability that turns to opposite sides follow each other almost without a straight
 HARDLY = 7.0  # m
-CHANGE = 24.0  # m: a straight in which the grade changes from one promise to another
-LONGEST_CHANGE = 100.0  # m: more would not fit on the map
+CHANGE = 24.0  # m of straight for the change from one required grade to another
+LONGEST_CHANGE = 100.0  # m; more would not fit on the map
 STEP_ASIDE = (
-    14.0  # m of the neighbour's grade on an asked-for straight's gap, so that the change is not in the turn
+    14.0  # m with the grade of a turn before a required straight, so that no grade changes in the turn
 )
-PARABOLA_OF_GRADE = (
-    0.9  # m: of straight for each percent, by which a parabola takes the least off its mean grade
-)
-OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a straight whose length nobody said
-ALONE = (60.0, 240.0)  # m, of a road without turns whose length nobody said
-HILL = 42.0  # m that one climb or fall of a hilly road takes
+OPEN = Range(LEAST_STRAIGHT, inf)  # m, of a required straight without a required length
+ALONE = (60.0, 240.0)  # m, of a road without turns and without a required length
+HILL = 42.0  # m of one climb or fall of a hilly road
 CLIMBS_AT = 12.0  # percent at most, where a road must be long enough for its climb
 EASE = 0.85  # of that grade, on average
-SHORT_LEAD = 5.0  # m, of a lead-in or lead-out that a short road leaves no room for
-NARROW = 1.25  # ratio of the ends of a range that stands for one number with its slack
-OFF_CORE = 0.3  # share of such a range at either end that is kept only where nothing else fits
-ROUNDING = 0.1  # m that a straight from corner to corner is shorter than what there is room for
-FEWEST_METRES = 1.0  # of a straight that is squeezed to make the whole length right
+SHORT_LEAD = 5.0  # m, of a lead-in or lead-out of a road that must be short
+NARROW = 1.25  # ratio of the ends of a range that was given as one number
+OFF_CORE = 0.3  # share of such a range at either end that is avoided where possible
+ROUNDING = 0.1  # m by which a straight from corner to corner is shorter than the diagonal
+FEWEST_METRES = 1.0  # m, of a straight that is shortened so that the whole length is right
 
 
 def composed(
@@ -63,7 +60,16 @@ def composed(
     rng: np.random.Generator,
     haste: float,
 ) -> list[Element] | None:
-    """Returns the elements of a draft in driving order; None where they cannot have the required length."""
+    """Returns the elements of a draft in driving order; None if they cannot have the required length.
+
+    Args:
+        order: the turns with their sides, and the required straights between them.
+        outline: the requirements.
+        windows: the grades that the requirements allow.
+        world: the map and the limits of the rules.
+        rng: source of randomness.
+        haste: from 0 (drawn from the whole range) to 1 (as small as the requirements allow).
+    """
     narrowed = narrowed_turns(order.turns, outline, windows, world)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
     elements: list[Element] = []
@@ -84,7 +90,7 @@ def composed(
 
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
-    """Straights one after another, shortened to what the map holds; the promises are asked later."""
+    """Returns consecutive straights, shortened to what the map holds."""
     longest = longest_straight(world.map_size, world.road_width) - ROUNDING
     keep = longest / sum(element.length for element in elements)
     return (
@@ -93,7 +99,10 @@ def _from_corner_to_corner(elements: list[Element], world: World) -> list[Elemen
 
 
 def asked_length(outline: Outline, windows: Windows) -> Range | None:
-    """Returns the required length; else one long enough for the required climb at no extreme grade."""
+    """Returns the required length of the road in metres; None if there is none.
+
+    If only a climb is required, the road must be long enough for it at a moderate grade.
+    """
     if outline.length or not outline.climb:
         return outline.length
     height = max(outline.climb.lo, -outline.climb.hi, 0.0)
@@ -111,7 +120,17 @@ def gap_between(
     rng: np.random.Generator,
     haste: float,
 ) -> list[Element]:
-    """Returns the straights between two turns, or between a turn and an end of the road."""
+    """Returns the straights between two turns, or between a turn and an end of the road.
+
+    Args:
+        before: the turn before; None at the start.
+        wishes: the straights that are required here, in order.
+        after: the turn after; None at the end.
+        outline: the requirements.
+        windows: the grades that the requirements allow.
+        rng: source of randomness.
+        haste: from 0 (drawn from the whole range) to 1 (as short as the requirements allow).
+    """
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1
         return _asked_gap(before, wishes, after, windows, rng, haste, LONELY_MEAN if few else JOIN_MEAN)
@@ -148,7 +167,7 @@ def _asked_gap(
     haste: float,
     mean: float,
 ) -> list[Element]:
-    """Asked-for straights; where the grade must change next to a turn, it does so a little away from it."""
+    """Returns required straights; where the grade must change at a turn, it changes a little away from it."""
     out: list[Element] = []
     grades = windows.row(wishes)
     if before and windows.part(before.required_grade, grades[0]):
@@ -173,7 +192,7 @@ def _asked_gap(
 
 
 def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Element:
-    """A short straight of another slope, by which those before and behind it are seen to be two."""
+    """Returns a short straight of another slope, so that those before and behind it are measured as two."""
     grade = windows.other(after)
     changes = windows.between(before, grade) + windows.between(grade, after)
     length = max(STEP_ASIDE, windows.least * changes / 100)
@@ -181,16 +200,16 @@ def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Eleme
 
 
 def _change(grade: Range | None, other: Range | None, windows: Windows, haste: float) -> float:
-    """Metres of straight for a change of grade at its end: more where a steep one was promised narrowly.
+    """Returns the metres of straight that a change of grade takes at its end.
 
-    As long as nothing presses, half a comfortable parabola between the two promises and as much again.
+    Without haste, there is room for a comfortable parabola between the two grades.
     """
     comfortable = windows.comfort * windows.between(grade, other) / 100
     return max(CHANGE * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
 
 
 def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator) -> list[Element]:
-    """Free straights lengthened until climbs and falls find room."""
+    """Returns elements whose free straights are long enough for climbs and falls."""
     stretches = int(hills.lo) + 1
     room = sum(max(int(element.length / HILL), 1) for element in elements if element.length > 0.7 * HILL)
     free = [i for i, element in enumerate(elements) if element.is_elastic]
@@ -204,7 +223,7 @@ def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator)
 def _with_length(
     elements: list[Element], asked: Range, rng: np.random.Generator, haste: float
 ) -> list[Element] | None:
-    """Free straights stretched or squeezed until the road has a length that was asked for."""
+    """Returns elements whose free straights are changed until the road has the required length."""
     now = sum(element.length for element in elements)
     core = _core(asked)
     if core.lo + 1 < now < core.hi - 1:
@@ -233,7 +252,7 @@ def _with_length(
 
 
 def _core(asked: Range) -> Range:
-    """The middle of a range that stands for one number, which is nearer to what was said; else the range."""
+    """Returns the middle of a range that was given as one number; else the range."""
     if asked.lo <= 0 or asked.hi > NARROW * asked.lo:
         return asked
     edge = OFF_CORE * (asked.hi - asked.lo)
@@ -241,7 +260,7 @@ def _core(asked: Range) -> Range:
 
 
 def _least(elements: Sequence[Element], index: int, lead: float) -> float:
-    """How short the straight may get."""
+    """Returns the least length of a straight in metres."""
     before = elements[index - 1] if index else None
     after = elements[index + 1] if index + 1 < len(elements) else None
     least = lead

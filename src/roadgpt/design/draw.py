@@ -1,4 +1,4 @@
-"""Draws the measures that words leave open: angles, radii and transitions of turns, lengths of straights."""
+"""Draws what a description leaves open: angle, radius and transitions of turns, and lengths of straights."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -23,25 +23,25 @@ LONGEST_TURN = 170.0  # m along the curve
 SEEN_ARC = 6.5  # m: a shorter arc is not measured with its own radius, which is averaged over some 9 m
 SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less looks like a kink
 TRANSITIONS = (0.12, 0.34)  # of the arc, for each clothoid
-TRANSITION_LIMITS = (3.0, 16.0)  # m, of roads as tight as most are; of wide turns, a clothoid has ...
-RADII_OF_TRANSITION = (
-    9.0  # ... a parameter A of a third of the radius or more (RAS-L 1995), so A^2 / R of a ninth
-)
+TRANSITION_LIMITS = (3.0, 16.0)  # m, of tight turns
+RADII_OF_TRANSITION = 9.0  # of wide turns: RAS-L 1995 asks for a parameter A >= R / 3, so A^2 / R >= R / 9
 WIDE_ANGLE = 80.0  # degrees of a turn whose radius is wider than others
-LEAD = 16.5  # m: a straight before the first or after the last turn is measured as 10 m or more
-SEPARATE = 17.5  # m: turns of one hand with so much between them are measured as two
-KEPT = 0.5  # degrees by which a turn may still leave the angle that makes a sum right
-OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow for a steep slope, and at most
-TIGHTER = 1.35  # hard roads: radii are at most so many times the least one
+LEAD = 16.5  # m: a straight of this length before the first or after the last turn is measured as 10 m
+SEPARATE = 17.5  # m between two turns to the same side, so that they are measured as two
+KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
+OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow for a steep slope: first, last
+TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 
 
 def narrowed_turns(
     turns: Sequence[Feature], outline: Outline, windows: Windows, world: World
 ) -> list[Feature]:
-    """Returns the turns with ranges of angle, radius, length and grade a little inside what was asked for.
+    """Returns the turns with the ranges of angle, radius, length and grade from which they are drawn.
+
+    The ranges lie a little inside the required ones.
 
     Raises:
-        DesignError: nothing is left of a range, such as a radius that the rules call too tight.
+        DesignError: a range is empty, for example because the rules forbid a radius as too tight.
     """
     narrowed = [_narrowed(turn, outline, world) for turn in turns]
     return [replace(turn, grade=windows.of(turn)) for turn in narrowed]
@@ -71,25 +71,19 @@ def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
 
 
 def _angles(turn: Feature, promised: Range) -> Range:
-    """Degrees to draw from: the middle of a number that was said, the aim of a word, else nearly all."""
+    """Returns the degrees to draw from: near a given number, the aim of a word, or nearly the whole range."""
     width = promised.hi - promised.lo
     if width <= 24:
         return _inside(promised, 0.25)
     span = overlap(SHARPNESS_AIMS.get(promised) or AIMS.get(turn.name), promised) or promised
     if span.lo > span.hi:
         span = promised
-    margin = min(1.5, 0.1 * (span.hi - span.lo))
-    return Range(span.lo + margin, min(span.hi, span.lo + 110) - margin)
+    return Range(span.lo, min(span.hi, span.lo + 110)).drawn_in(1.5, 0.1)
 
 
 def _inside(span: Range, share: float) -> Range:
-    """Drawn in by a share of its width at both ends, or of its bound where it is open."""
-    if span.hi == inf:
-        return Range(span.lo * (1 + share) if span.lo > 0 else span.lo, inf)
-    if span.lo <= 0:
-        return Range(span.lo, span.hi * (1 - share))
-    edge = max(share * (span.hi - span.lo), 0.0)
-    return Range(span.lo + edge, span.hi - edge)
+    """Returns a range of radii or angles without a margin: a share of its width, or of its only bound."""
+    return span.drawn_in(share * (span.lo if span.hi == inf else span.hi - max(span.lo, 0.0)), 0.5)
 
 
 def hand_of(turn: Feature) -> int:
@@ -100,14 +94,14 @@ def hand_of(turn: Feature) -> int:
 def drawn_turns(
     turns: Sequence[Feature], outline: Outline, world: World, rng: np.random.Generator, haste: float
 ) -> list[Element]:
-    """Draws angles, radii and transitions of turns.
+    """Draws the angle, radius and transitions of each turn.
 
     Args:
-        turns: with narrowed ranges, from which each is drawn.
-        outline: what was asked for.
-        world: its map bounds the length of a turn.
-        rng: source of chance.
-        haste: 0 draws freely; towards 1 turns get as small as was asked for, so that they fit somewhere.
+        turns: the turns with the ranges to draw from, as ``narrowed_turns`` returns them.
+        outline: the requirements.
+        world: limits the length of a turn by the size of its map.
+        rng: source of randomness.
+        haste: from 0 (drawn from the whole range) to 1 (turns as small as the requirements allow).
     """
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
@@ -124,7 +118,7 @@ def drawn_turns(
 
 
 def longest_turn(turns: int, outline: Outline, world: World) -> float:
-    """Returns the greatest length of one turn in metres at which all turns find room."""
+    """Returns the greatest length of a turn in metres, for a road with this number of turns."""
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
     by_map = min(2.2 * world.map_size / (turns + 1.2), longest)
@@ -139,7 +133,7 @@ def _share(rng: np.random.Generator, haste: float) -> float:
 
 
 def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int], most: float) -> list[float]:
-    """Angles scaled towards their least until the heading swings through no more than ``most`` degrees."""
+    """Returns angles, reduced until all headings of the road lie within ``most`` degrees."""
     low = _swing([degrees.lo * hand for degrees, hand in zip(ranges, hands, strict=True)])
     now = _swing([angle * hand for angle, hand in zip(angles, hands, strict=True)])
     if now <= most or now <= low:
@@ -149,14 +143,14 @@ def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int]
 
 
 def _target(asked: Range, rng: np.random.Generator) -> float:
-    """Degrees for all turns together, inside what was asked for."""
+    """Draws the sum of the angles of all turns in degrees, within the required range."""
     low = asked.lo if asked.lo > 0 else 0.6 * asked.hi
     high = asked.hi if asked.hi < inf else 1.3 * asked.lo
     return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
 
 
 def _summed(angles: list[float], ranges: Sequence[Range], target: float) -> list[float]:
-    """Angles moved towards their least or their most until they add up, as far as that goes."""
+    """Returns angles moved towards one end of their ranges until their sum is ``target``, if possible."""
     missing = target - sum(angles)
     ends = [degrees.hi if missing > 0 else degrees.lo for degrees in ranges]
     room_left = sum(ends) - sum(angles)
@@ -178,12 +172,12 @@ def drawn_turn(
     """Draws the radius and the transitions of one turn.
 
     Args:
-        turn: with narrowed ranges, from which it is drawn.
-        angle: degrees.
-        longest: metres along the curve.
-        hard: is it to be tight?
-        rng: source of chance.
-        haste: as for ``drawn_turns``.
+        turn: the turn with the ranges to draw from, as ``narrowed_turns`` returns it.
+        angle: change of heading in degrees; it may be changed within its range so that the turn fits.
+        longest: greatest length of the turn in metres.
+        hard: True for a turn of a hard road, whose radius is near the least.
+        rng: source of randomness.
+        haste: from 0 (drawn from the whole range) to 1 (as small as the requirements allow).
     """
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
@@ -200,7 +194,7 @@ def drawn_turn(
     if not is_tight and not hard:
         least = max(least, SHORTEST_TURN * (1 - haste) / radians(angle))
     wide = max(min(most, WIDEST if most == inf else most), min(least * 1.4, most))
-    if is_tight:  # promised: stay well inside, for short turns measure wider than they are
+    if is_tight:  # short turns are measured wider than they are
         wide = least + 0.85 * (wide - least)
     radius = exp(log(least) + _share(rng, haste) * (log(wide) - log(least)))
     if radius * radians(angle) > longest:
@@ -212,7 +206,7 @@ def drawn_turn(
 
 
 def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
-    """Length of the clothoids; short where a promised radius must still be seen."""
+    """Draws the length of the clothoids in metres; short where a required radius must be measurable."""
     arc = radius * radians(angle)
     share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
     transition = min(
@@ -224,7 +218,15 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
 
 
 def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Draws the metres of a straight that was asked for, at least ``least`` where that is allowed."""
+    """Draws the length of a required straight in metres.
+
+    Args:
+        wish: the required straight.
+        rng: source of randomness.
+        haste: from 0 (drawn from the whole range) to 1 (as short as the requirements allow).
+        least: metres that the straight should have at least, as far as its required range allows.
+        mean: metres by which a straight without an upper limit is longer than its least length, on average.
+    """
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
     if high == inf:
@@ -237,12 +239,10 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the design length of a straight, metres, with which at least ``least`` are measured on the
-    road.
-    """
+    """Returns the length in metres to design, so that a straight is measured as at least ``least`` metres."""
     return 1.05 * least + 3.0
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Draws the length in metres of a straight that nobody asked for."""
+    """Draws the length of a free straight: ``least`` metres, and about ``mean`` metres more on average."""
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

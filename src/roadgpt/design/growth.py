@@ -1,9 +1,9 @@
-"""Long roads, grown piece by piece where there is room: each turn looks for a way that stays on the map.
+"""Drafts long roads turn by turn, directly on the map.
 
-A plan that is drawn as a whole and then laid on the map hardly ever fits where it is much longer than the map
-is wide. So such a road begins somewhere on the map, and of every turn several are tried: sides, angles and
-straights before it. One is taken whose way ahead is free of the border and of the road itself. Where the
-number of turns is open, a longer road has more of them.
+A draft that is composed as a whole and then placed hardly ever fits if the road is much longer than the side
+of the map. A long road therefore starts at a random place on the map. For every turn, several sides, angles
+and straights before it are tried, and the first one is taken that stays on the map, keeps clear of the road
+so far and leaves room ahead. If the number of turns is open, a longer road has more of them.
 """
 
 from collections.abc import Sequence
@@ -26,23 +26,23 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
 
-TRIED = 14  # turns, of which the first that leads on is taken
-AHEAD = 45.0  # m behind a turn that must be free
-COARSE = 3.0  # m between points that are held against the border and the road
+TRIED = 14  # candidates for each turn
+AHEAD = 45.0  # m straight on behind a turn that must be free
+COARSE = 3.0  # m between the points that are compared with the border and the road
 MOST_TURNS = 400
-EXTRA = {"winding": (10.0, 70.0)}  # m of straight between turns, more than there must be, on average
+EXTRA = {"winding": (10.0, 70.0)}  # m by which straights between turns are longer than needed, on average
 EXTRA_OF_OTHERS = (30.0, 160.0)
-UNEVEN = (0.2, 1.8)  # of that average
-OFF_TIGHTEST = 1.2  # ratio of the least radius of a turn to the tightest that is allowed
-OFF_BY_SPACING = 1.3  # metres of radius more, for each metre more between points of the road's spline
-BULGE = 0.5  # m that the walked line may be off the road that is built
-DEAD_ENDS = 30  # of one attempt, before it is given up
+UNEVEN = (0.2, 1.8)  # factors on that average
+OFF_TIGHTEST = 1.2  # ratio of the least radius drawn to the least allowed
+OFF_BY_SPACING = 1.3  # metres added to the radius for each metre added between points of the spline
+BULGE = 0.5  # m by which the walked line may differ from the road that is built
+DEAD_ENDS = 30  # after which an attempt is given up
 LEAST_LEFT = 25.0  # m of road behind the last turn
 LONG = 700.0  # m: a shorter road with a few turns fits on the usual map
 
 
 class _Way(NamedTuple):
-    """The road so far: its elements, points every few metres with stations, and where it has come to."""
+    """The road so far: elements, stations and points every 3 m, length, and point and heading at its end."""
 
     elements: Elements
     s: Array
@@ -54,30 +54,28 @@ class _Way(NamedTuple):
     def with_(self, elements: Sequence[Element], line: PlanLine) -> "_Way":
         every = max(1, round(COARSE / float(line.s[1])))
         z = self.end + self.heading * line.z
-        turned = np.exp(
-            1j * np.radians(sum(element.turn for element in elements))
-        )  # exact: the walk adds up errors
+        degrees = sum(element.turn for element in elements)  # exact, whereas the walk adds up errors
         return _Way(
             (*self.elements, *elements),
             np.concatenate([self.s, self.length + line.s[1::every]]),
             np.concatenate([self.z, z[1::every]]),
             self.length + float(line.s[-1]),
             complex(z[-1]),
-            self.heading * complex(turned),
+            self.heading * complex(np.exp(1j * np.radians(degrees))),
         )
 
 
 def grown(
     order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
 ) -> PlacedPlan | None:
-    """Returns a road of the required length; None where it ran out of room, or where no length is required.
+    """Returns a road of the required length; None if it ran out of room, or if no length is required.
 
     Args:
-        order: turns with their sides, and the straights that were asked for between them.
-        outline: what was asked for.
-        windows: grades.
-        world: the map.
-        rng: source of chance.
+        order: the turns with their sides, and the required straights between them.
+        outline: the requirements.
+        windows: the grades that the requirements allow.
+        world: the map and the limits of the rules.
+        rng: source of randomness.
     """
     asked = asked_length(outline, windows)
     if asked is None or asked.lo <= 0 or not order.turns or outline.turning:
@@ -88,7 +86,7 @@ def grown(
 
 
 class _Growth:
-    """One attempt."""
+    """One attempt to draft a long road."""
 
     def __init__(
         self,
@@ -121,7 +119,7 @@ class _Growth:
         return PlacedPlan(way.elements, walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
-        """The whole road; where it does not go on, some turns are taken back and others tried."""
+        """Returns the whole road; where it cannot go on, the last turns are removed and others tried."""
         steps: list[tuple[_Way, Element | None]] = [(start, None)]
         for back in range(1, DEAD_ENDS + 1):
             while (following := self._turn(len(steps) - 1, steps[-1][0].length)) is not None:
@@ -144,7 +142,7 @@ class _Growth:
         return complex(round(x, 2), round(y, 2)), complex(heading)
 
     def _turn(self, at: int, so_far: float) -> tuple[Feature, Sequence[Feature]] | None:
-        """What the next turn is drawn from, and the straights before it; None behind the last."""
+        """Returns the ranges of the next turn and the straights required before it; None after the last."""
         named = len(self.order.turns)
         if at < named:
             return self.turns[at], self.order.gaps[at]
@@ -161,12 +159,14 @@ class _Growth:
         wishes: Sequence[Feature],
         at: int,
     ) -> tuple[_Way, Element] | None:
-        """The road with one turn more, and that turn.
+        """Returns the road with one more turn, and that turn; None if no candidate is free.
 
         Args:
-            way, before: the road so far, and its last turn.
-            asked, wishes: from what the next turn is drawn, and the straights asked for before it.
-            at: its number, from 0.
+            way: the road so far.
+            before: its last turn.
+            asked: the ranges of the next turn.
+            wishes: the straights that are required before it.
+            at: the number of the next turn, from 0.
         """
         hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
         if at >= len(self.order.turns) and before:
@@ -190,14 +190,14 @@ class _Growth:
         return None
 
     def _extra(self, so_far: float, at: int) -> float:
-        """Metres by which the straight before the next turn may be longer than it must be."""
+        """Returns by how many metres the straight before the next turn may be longer than needed."""
         if self.more and self.outline.turns.lo <= len(self.order.turns):
             return self.extra
         turns = max(len(self.order.turns) - at, 0)
         return max(self.target - so_far - turns * (self.longest / 2 + LEAST_LEFT), 0.0) / (turns + 1)
 
     def _out(self, way: _Way, before: Element | None) -> _Way | None:
-        """The road with its last straight."""
+        """Returns the road with its last straight; None if there is no room for it."""
         wishes = self.order.gaps[-1]
         elements = gap_between(before, wishes, None, self.outline, self.windows, self.rng, 1.0)
         missing = self.target - way.length - sum(element.length for element in elements)
@@ -209,7 +209,7 @@ class _Growth:
         return None
 
     def _is_free(self, way: _Way, line: PlanLine, ahead: float) -> bool:
-        """Does a piece, with some metres straight on, stay on the map and off the road so far?"""
+        """Returns whether a piece and ``ahead`` metres behind it stay on the map and off the road so far."""
         every = max(1, round(COARSE / float(line.s[1])))
         s, z = line.s[::every], line.z[::every]
         last = line.z[-1] - line.z[-2]
@@ -225,7 +225,7 @@ class _Growth:
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
-    """With the first straight that may be longer made so; with one in front where there is none."""
+    """Returns elements whose first elastic straight is longer; a new straight if there is none at all."""
     out = list(elements)
     for i, element in enumerate(out):
         if element.is_elastic:
@@ -235,14 +235,14 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
 
 
 def is_long(outline: Outline) -> bool:
-    """Returns whether a road is so long that it is grown from the first draft on."""
+    """Returns whether the road is 700 m or longer and may have any number of turns."""
     return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
 
 
 def _roomy(turn: Feature, metres: float) -> Feature:
-    """Turns off the tightest that is allowed, and the more so the further apart a spline's points are.
+    """Returns a turn whose least radius suits the spacing of the spline's points.
 
-    The competition's files hold so few points that on a road of 10 km its spline has one every 20 m.
+    The competition's files hold few points: on a road of 10 km, the spline has one every 20 m.
     """
     if turn.radius is None or turn.radius.hi < inf:
         return turn
@@ -252,7 +252,7 @@ def _roomy(turn: Feature, metres: float) -> Feature:
 
 
 def _repeated(outline: Outline) -> bool:
-    """May there be more turns, like the last?"""
+    """Returns whether the road may have more turns like its last one."""
     turning = [group for group in outline.groups if group.feature.kind == "turn"]
     is_last = bool(outline.groups) and outline.groups[-1].feature.kind == "turn" and outline.ends is None
     if not turning:
@@ -261,7 +261,7 @@ def _repeated(outline: Outline) -> bool:
 
 
 def _has_open_sides(outline: Outline) -> bool:
-    """May every turn go either way?"""
+    """Returns whether every turn may go to either side."""
     features = [*(g.feature for g in outline.groups), *(e for e in (outline.starts, outline.ends) if e)]
     is_open = outline.left == outline.right == Range() and not outline.alternating
     return is_open and not any(f.side for f in features) and not any(g.alternating for g in outline.groups)

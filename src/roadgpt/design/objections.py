@@ -1,4 +1,4 @@
-"""What is wrong with a design, in sentences that whoever wrote its segments can act on.
+"""States what is wrong with a design in sentences that name its segments, so that a model can correct it.
 
 segment 3: grade 17 % > 15 %
 turn count is 4, asked for 3
@@ -14,20 +14,20 @@ from roadgpt.check import Finding
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World, build
 
-MOST = 12  # sentences: whoever is told more mends nothing
+MOST = 12  # sentences; a model that gets more corrects nothing
 PLACE = re.compile(r"^(?:at s = [^:]*|near \([^:]*\)): ")
 COUNT = re.compile(r"asked for (.+?) (left |right )?turns?, has (\d+)")
-OF_DEFAULT_ARC = 1.36  # length of a turn whose transitions are left open, over that of its tightest arc
+OF_DEFAULT_ARC = 1.36  # ratio of the length of a turn with default transitions to that of its tightest arc
 
 
 def objections(design: Design, brief: Brief | None, world: World, partly: bool = False) -> tuple[str, ...]:
-    """Returns sentences that say what is wrong; none where the road is valid and meets its Brief.
+    """Returns sentences that say what is wrong with a design; none if it is valid and meets its Brief.
 
     Args:
-        design: to be looked at.
-        brief: what was asked for, if anything.
-        world: map and limits.
-        partly: it goes on, so that it may still be too short.
+        design: the design to check.
+        brief: the requirements; None to check only the rules.
+        world: the map and the limits of the rules.
+        partly: True if segments will be added, so that the road may still be too short.
     """
     try:
         found = check.inspect(build(design), brief, world)
@@ -69,7 +69,7 @@ def _said(finding: Finding, design: Design, world: World) -> str:
 
 
 def _segment_at(design: Design, s: float) -> int:
-    """Number of the segment at a station, from 1."""
+    """Returns the number of the segment at station ``s``, from 1."""
     at = 0.0
     for number, segment in enumerate(design.segments, 1):
         at += segment.distance

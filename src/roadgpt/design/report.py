@@ -1,4 +1,4 @@
-"""What happened while a design was made: kept with the Run, so that nothing about it is hidden."""
+"""Records how a language model made a design; the record is kept with the Run."""
 
 from typing import Any
 
@@ -7,18 +7,19 @@ from roadgpt.chat import Usage
 
 
 class DesignReport(Frozen):
-    """A report of one draft by a designer that asks a language model."""
+    """The report of one draft by a designer that asks a language model."""
 
     rounds: int = 0
-    """Number of questions that the model was asked."""
+    """Number of requests to the model."""
     changes: tuple[str, ...] = ()
-    """What was changed of the proposal, one sentence each."""
+    """Sentences that say what was changed in the model's proposal."""
     tokens: Usage = Usage()
+    """Tokens that the model read and wrote."""
     seconds: float = 0.0
-    """Time that the model took, in seconds."""
+    """Time in seconds that the model took."""
     cost: float | None = None
     """Cost in USD; None if the price is not known."""
     model: str = ""
-    """Name of the model, as the server gives it."""
+    """Name of the model as its server gives it."""
     proposed: dict[str, Any] | None = None
-    """The model's own design, before any change, in RoadGPT's format."""
+    """The model's proposal before any change, in RoadGPT's segment format; None if there was none."""

@@ -1,4 +1,4 @@
-"""Which turns and straights a draft has, in which order, and to which side every turn goes."""
+"""Draws the sequence of a draft: its turns with their sides, and the required straights between them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,43 +12,43 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import DesignError
 
-HAIRPINS = ("hairpin", "switchback")  # names of turns that take a road up or down a slope
-SEVERAL = 3  # hairpins, where the words say that there are some and not how many
-USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # chances of 1, 2, ... turns on a road whose words leave it open
-MORE = (0.45, 0.30, 0.17, 0.08)  # chances of 0, 1, ... turns more than "at least" asks for
-SWITCH = 0.6  # chance that a turn goes the other way than the one before, where that is open
-WIDE = 100.0  # degrees: turns of so many or more would coil up, so they mostly alternate
+HAIRPINS = ("hairpin", "switchback")  # names of turns with which a road climbs or descends a slope
+SEVERAL = 3  # hairpins, if their number is open
+USUAL = (0.10, 0.20, 0.26, 0.20, 0.14, 0.10)  # probabilities of 1, 2, ... turns, if the number is open
+MORE = (0.45, 0.30, 0.17, 0.08)  # probabilities of 0, 1, ... turns more than the least required number
+SWITCH = 0.6  # probability that a turn goes to the other side than the one before, if its side is open
+WIDE = 100.0  # degrees: larger turns to one side would coil up, so they mostly alternate
 SWITCH_WIDE = 0.9
-SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, by which a number of them turns as far as was asked for
-ROUNDS = 60  # of drawing sides until left and right are as many as asked for
+SMALL, LARGE = 27.0, 105.0  # degrees of usual turns, which bound their number if their sum is required
+ROUNDS = 60  # of drawing sides until the numbers of left and right turns are right
 
 
 OpenTurn = tuple[Feature, bool]
-"""A turn whose side may still be open, and whether it must go the other way than the one before."""
+"""A turn whose side may be open, and whether it must go to the other side than the one before."""
 
 
 class TurnSequence(NamedTuple):
-    """Turns with their sides, and the straights asked for before each of them and after the last one."""
+    """The turns of a road with their sides, and the straights required before, between and after them."""
 
     turns: tuple[Feature, ...]
     gaps: tuple[tuple[Feature, ...], ...]
 
 
 def is_hairpin(feature: Feature) -> bool:
-    """Returns whether the turn was called a hairpin or a switchback."""
+    """Returns whether the description calls the turn a hairpin or a switchback."""
     return feature.name in HAIRPINS
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
-    """Draws the turns, their sides and their sequence, as far as the Outline leaves them open.
+    """Draws the turns, their sides and their order, as far as the Outline leaves them open.
 
     Args:
-        outline: what was asked for.
-        rng: source of chance.
-        plain: take as few turns as may be.
+        outline: the requirements.
+        rng: source of randomness.
+        plain: True to take as few turns as the requirements allow.
 
     Raises:
-        DesignError: the counts of left, right and all turns contradict each other.
+        DesignError: the required numbers of left, right and all turns contradict each other.
     """
     turns, gaps = _listed(outline, rng, plain) if outline.names_all_turns else _free(outline, rng, plain)
     _with_ends(outline, turns, gaps)
@@ -60,7 +60,7 @@ def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> T
 def _listed(
     outline: Outline, rng: np.random.Generator, plain: bool
 ) -> tuple[list[OpenTurn], list[list[Feature]]]:
-    """The groups, one after another."""
+    """Returns the turns and straights of all groups, in order."""
     turns: list[OpenTurn] = []
     gaps: list[list[Feature]] = [[]]
     counts = _group_counts(outline, rng, plain)
@@ -77,7 +77,7 @@ def _listed(
 
 
 def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
-    """Features per group; those of turns add up to a number of turns that was asked for."""
+    """Draws the number of features per group; the turns add up to a required number."""
     groups = outline.groups
     counts = [group.lo for group in groups]
     if not plain:
@@ -101,7 +101,7 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
 def _free(
     outline: Outline, rng: np.random.Generator, plain: bool
 ) -> tuple[list[OpenTurn], list[list[Feature]]]:
-    """Any turns, and the straights that were asked for somewhere between them, in their order."""
+    """Returns any turns, and the required straights at random places between them, in their order."""
     count = _turn_count(outline, rng, plain)
     turns = [(Feature("turn", "turn"), False)] * count
     gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
@@ -121,7 +121,7 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
         sides = {"left": outline.left, "right": outline.right}
         asked = " and ".join(f"{span} to the {side}" for side, span in sides.items() if span != Range())
         raise DesignError(f"no road has turns {outline.turns} in all, {asked}; change one of these numbers")
-    # of a road of which only ups and downs are said, they are what it is to show
+    # a road for which only climbs and falls are required gets few turns
     only_slopes = bool(outline.groups) and all(group.feature.grade for group in outline.groups)
     enough = _turned(outline)
     low, high = max(low, int(min(enough.lo, high))), max(low, min(high, enough.hi))
@@ -134,7 +134,7 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
 
 
 def _turned(outline: Outline) -> Range:
-    """How many usual turns make up the degrees that all are to turn together."""
+    """Returns how many usual turns have the required sum of angles."""
     if outline.turning is None:
         return Range(0)
     most = outline.turning.hi // SMALL if outline.turning.hi < inf else inf
@@ -142,7 +142,7 @@ def _turned(outline: Outline) -> Range:
 
 
 def _with_ends(outline: Outline, turns: list[OpenTurn], gaps: list[list[Feature]]) -> None:
-    """Puts what the road must start and end with at its ends."""
+    """Adds the features with which the road must start and end."""
     for feature, index in ((outline.starts, 0), (outline.ends, -1)):
         if feature is None:
             continue
@@ -158,14 +158,14 @@ def _with_ends(outline: Outline, turns: list[OpenTurn], gaps: list[list[Feature]
 
 
 def _shares(one: Feature, other: Feature) -> bool:
-    """Could one straight be both?"""
+    """Returns whether one straight can meet the requirements of both."""
     return all(
         a.lo <= a.hi for a in (overlap(one.length, other.length), overlap(one.grade, other.grade)) if a
     )
 
 
 def both(one: Feature, other: Feature) -> Feature:
-    """Returns a feature that has the requirements of two."""
+    """Returns one feature with the requirements of two; ranges are intersected and may become empty."""
     return replace(
         one,
         side=one.side or other.side,
@@ -186,7 +186,7 @@ def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator
 
 
 def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
-    """Random sides, leaning to those still missing; None where a fixed side breaks an alternation."""
+    """Draws the sides of turns; None if a required side contradicts a required alternation."""
     sides: list[Side] = []
     for turn, switches in turns:
         if sides and (switches or outline.alternating):

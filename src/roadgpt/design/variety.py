@@ -1,8 +1,10 @@
-"""Never two alike: how far apart two roads are when one is shifted, turned and mirrored onto the other.
+"""Measures how much two roads differ, so that no two roads of a campaign are alike.
 
-The plans are compared at equal stations, told in two ways: at equal shares of both lengths, and at equal
-distances from the start as far as the shorter one goes. As complex numbers, the best turn of one centred line
-onto another is the phase of their inner product, so a thousand earlier roads take one product of matrices.
+The distance of two roads is the root mean square distance of their points after one road is shifted, rotated
+and, if that helps, mirrored so that it is as small as possible. Points are compared in two ways: at equal
+shares of both lengths, and at equal distances from the start as far as the shorter road goes. With points as
+complex numbers, the best rotation is the phase of an inner product, so one matrix product compares a road
+with a thousand others.
 """
 
 from collections.abc import Sequence
@@ -17,33 +19,38 @@ from roadgpt.road import Design, Road, build
 
 POINTS = 80  # at equal shares of the length
 STEP = 6.0  # m between points at equal distances
-MOST = 60  # of those: 360 m
-ENOUGH = 5.5  # m RMS: two roads further apart than this are not alike
-REMEMBERED = 1000  # designs whose shape is kept at hand, besides those of the row: 18 kB each
-FIRST_ROOM = 64  # designs for which there is room at first
+MOST = 60  # points at equal distances: 360 m
+ENOUGH = 5.5  # m RMS: two roads with a smaller distance are alike
+REMEMBERED = 1000  # designs whose shape is kept besides those asked for: 18 kB each
+FIRST_ROOM = 64  # designs for which memory is reserved at first
 
 Complex = NDArray[np.complex128]
 
 
 class PlanShape(NamedTuple):
-    """One plan or many: points as x + iy, and what is needed to compare them."""
+    """The shape of one plan, or of ``m`` stacked plans: points as x + iy, and what speeds up comparisons."""
 
     shares: Complex
-    """At equal shares of the length, centred; ``(POINTS,)`` or ``(m, POINTS)``."""
+    """Points at equal shares of the length, relative to their mean; ``(POINTS,)`` or ``(m, POINTS)``."""
     spread: Array
-    """Metres, root mean square of their distances from their centre; ``()`` or ``(m,)``."""
+    """Root mean square of the distances in metres of ``shares`` from their mean; ``()`` or ``(m,)``."""
     metres: Complex
-    """Every ``STEP`` metres from the start; ``(MOST,)`` or ``(m, MOST)``, 0 beyond the end."""
+    """Points every ``STEP`` metres from the start, 0 beyond the end; ``(MOST,)`` or ``(m, MOST)``."""
     reach: NDArray[np.intp]
     """Number of points of ``metres`` that lie on the road."""
     centres: Complex
-    """Mean of the first 1, 2, ... points of ``metres``."""
+    """Means of the first 1, 2, ... points of ``metres``; ``(MOST,)`` or ``(m, MOST)``."""
     spreads: Array
-    """Of the first 1, 2, ... of ``metres``: root mean square of their distances from that."""
+    """Root mean squares of the distances in metres of the first 1, 2, ... points from their mean."""
 
 
 def shape_of(s: Array, line: Complex) -> PlanShape:
-    """Returns the shape of a line ``x + iy`` that was sampled at stations ``s`` (metres, from 0)."""
+    """Returns the shape of a plan.
+
+    Args:
+        s: stations in metres, from 0, ``(n,)``.
+        line: the points at these stations as x + iy in metres, ``(n,)``.
+    """
     shares = _at(s, line, np.linspace(0.0, float(s[-1]), POINTS))
     shares -= shares.mean()
     reach = min(MOST, int(s[-1] / STEP) + 1)
@@ -63,14 +70,14 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 
 
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
-    """Returns the distance in metres to the nearest of other shapes; infinite where none is similar.
+    """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more.
 
-    Two lines are at least as far apart as their spreads, so most need not be laid onto each other.
+    The difference of two spreads is a lower bound of the distance, so most shapes need not be compared.
 
     Args:
-        shape: of one road.
-        others: of many.
-        by_metres: count those as well that are alike only as far as the shorter one goes.
+        shape: the shape of one road.
+        others: the stacked shapes of other roads.
+        by_metres: True to compare also at equal distances from the start, as far as the shorter road goes.
     """
     near = np.flatnonzero(np.abs(others.spread - shape.spread) < ENOUGH)
     some = others._replace(shares=others.shares[near], spread=others.spread[near])
@@ -88,7 +95,7 @@ def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
 
 
 def _at_least_by_metres(shape: PlanShape, others: PlanShape) -> Array:
-    """A lower bound of the distances at equal distances: from all that both have, and from its first half."""
+    """Returns lower bounds of ``apart_by_metres``, from the spreads of the common part and its first half."""
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     half = (n + 1) // 2
     whole = np.abs(others.spreads[row, n - 1] - shape.spreads[n - 1])
@@ -97,7 +104,7 @@ def _at_least_by_metres(shape: PlanShape, others: PlanShape) -> Array:
 
 
 def apart(shape: PlanShape, others: PlanShape) -> Array:
-    """Returns RMS distances in metres ``(m,)`` at equal shares, after the best shift, turn and mirror."""
+    """Returns the RMS distances in metres to other roads at equal shares of the length, ``(m,)``."""
     own, many = shape.shares, others.shares
     sizes = others.spread**2 + shape.spread**2
     # einsum, not @: sums in one order on every machine, and no threads for so small a product
@@ -107,7 +114,10 @@ def apart(shape: PlanShape, others: PlanShape) -> Array:
 
 
 def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
-    """Returns the same distances at equal stations, as far as both roads go."""
+    """Returns the RMS distances in metres to other roads at equal distances from the start, ``(m,)``.
+
+    Only the part up to the end of the shorter road is compared.
+    """
     n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
     own, centre = shape.centres[n - 1], others.centres[row, n - 1]
     sizes = shape.spreads[n - 1] ** 2 + others.spreads[row, n - 1] ** 2
@@ -118,7 +128,7 @@ def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
 
 
 class Shapes:
-    """Remembers the shapes of designs from draft to draft, as measured on their roads."""
+    """Keeps the shapes of the roads of designs, so that each road is built and sampled only once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Design, PlanShape]] = {}
@@ -126,14 +136,16 @@ class Shapes:
         self._stack = _room_for(FIRST_ROOM)
 
     def of(self, designs: Sequence[Design]) -> PlanShape:
-        """Returns the shapes of designs, stacked in order; a sequence that only grows is not stacked anew."""
+        """Returns the shapes of designs, stacked in order.
+
+        If designs were only appended since the last call, only the new ones are stacked.
+        """
         if len(self._known) > REMEMBERED + len(designs):
             own = {id(design) for design in designs}
             self._known = {key: known for key, known in self._known.items() if key in own}
         same = _alike(self._row, designs)
-        if same < len(self._row) or len(designs) > len(
-            self._stack.reach
-        ):  # what was given out stays as it is
+        # arrays that were returned before must not change
+        if same < len(self._row) or len(designs) > len(self._stack.reach):
             before, self._stack = self._stack, _room_for(2 * max(len(designs), FIRST_ROOM))
             for new, old in zip(self._stack, before, strict=True):
                 new[:same] = old[:same]
@@ -161,6 +173,6 @@ def _room_for(designs: int) -> PlanShape:
 
 
 def _alike(one: Sequence[Design], other: Sequence[Design]) -> int:
-    """How many of the first designs are the same ones."""
+    """Returns how many of the first designs are the same objects."""
     pairs = enumerate(zip(one, other, strict=False))
     return next((at for at, (a, b) in pairs if a is not b), min(len(one), len(other)))

@@ -1,12 +1,13 @@
-"""Vertical radii: how far a grade may change where, so that crests and dips suit the speed that is driven.
+"""Chooses vertical radii so that crests and dips suit the expected speed, and moves grades to make room.
 
-A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint:
+A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint. On a slope
+of length L, the two parabolas at its ends need
 
-    room of a slope of length L   >=   (R1 * |change at its start| + R2 * |change at its end|) / 2
+    L   >=   (R1 * |change at its start| + R2 * |change at its end|) / 2
 
-Comfort asks for R = v^2 / 0.5 m/s^2, the rule ``too_abrupt`` for v^2 / 3 m/s^2; v is the speed that is
-expected there. Where the room is too small for comfort, the grades are moved towards each other first, as
-far as what was promised allows; then radii become smaller, and never smaller than the rule allows.
+A comfortable radius is v^2 / (0.5 m/s^2), the least that the rule ``too_abrupt`` allows is v^2 / (3 m/s^2),
+where v is the expected speed. If there is no room for comfort, the grades are first moved towards each other
+as far as the requirements allow. Then radii become smaller, but never smaller than the rule allows.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -25,39 +26,46 @@ from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve, vertical_curves
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 COMFORT = 0.5  # m/s^2
-EASES = (1.0, 0.5, 0.25, 0.0)  # shares of comfort, in the order in which they are tried
-STEP = 2.0  # m between the stations at which a speed is expected
-SHORTEST_SLOPE = 12.0  # m: of shorter straights, no slope is looked for
-NEAR = 20.0  # m to either side of a joint, of which the fastest place counts
-SPARE, LEAST_SPARE = 1.1, 1.02  # of a comfortable radius, and of the least, for what rounding of grades takes
-ROUNDS = 80  # of moving grades
-ROUNDING = 1e-3  # of a radius
+EASES = (1.0, 0.5, 0.25, 0.0)  # shares of the comfortable radius, in the order in which they are tried
+STEP = 2.0  # m between the stations at which the speed is computed
+SHORTEST_SLOPE = 12.0  # m: shorter straights need no slope of their own
+NEAR = 20.0  # m to either side of a joint, within which the highest speed counts
+SPARE, LEAST_SPARE = 1.1, 1.02  # factors on comfortable and least radii, for the rounding of grades
+ROUNDS = 80  # of moving grades, at most
+ROUNDING = 1e-3  # relative tolerance of a radius
 TENTH = 10.0  # per metre: radii are written to the tenth
 
 
 class Pace:
-    """The radii that the speeds along a plan ask for."""
+    """The vertical radii that the expected speeds along a plan require."""
 
     def __init__(self, knots: Array, bends: Array, length: float, world: World) -> None:
-        """Curvatures ``bends`` (1/m) at stations ``knots`` (m), linear in between, 0 after the last."""
+        """Stores a plan.
+
+        Args:
+            knots: stations in metres, ``(n,)``.
+            bends: curvatures at these stations in 1/m, linear in between and 0 after the last, ``(n,)``.
+            length: length of the plan in metres.
+            world: the speed limit and the friction.
+        """
         self._plan = knots, bends, length
         self._world = world
 
     @classmethod
     def along(cls, elements: Sequence[Element], world: World) -> "Pace":
-        """Returns the radii for a draft of elements."""
+        """Returns the Pace of a draft."""
         return cls(*bends_of(elements), world)
 
     @classmethod
     def of(cls, design: Design, world: World) -> "Pace":
-        """Returns the radii for a design."""
+        """Returns the Pace of the road that is built from a design."""
         road = build(design)
         s = road.sample().s
         return cls(s, road.sample().curvature, road.length, world)
 
     @cached_property
     def _squares(self) -> tuple[float, Array]:
-        """Metres between stations, and the square of the speed at each."""
+        """Returns the metres between stations, and the square of the speed at each."""
         knots, bends, length = self._plan
         s = np.linspace(0.0, length, max(1, round(length / STEP)) + 1)
         bend = np.interp(s, knots, bends, right=0.0)
@@ -69,15 +77,21 @@ class Pace:
         return float(squares[min(first, len(squares) - 1) : last + 1].max())
 
     def comfort(self, s: float) -> float:
-        """Returns the comfortable radius at a station, both in metres."""
+        """Returns the comfortable vertical radius in metres at station ``s`` in metres."""
         return self._square(s) / COMFORT
 
     def least(self, s: float, is_bump: bool = False) -> float:
-        """Returns the least radius that the rule allows at a station, both in metres."""
+        """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres.
+
+        If ``is_bump``, a crest or dip was required there, and the vertical acceleration may reach gravity.
+        """
         return self._square(s) / (GRAVITY if is_bump else MOST)
 
     def eased(self, s: float, ease: float, is_bump: bool = False) -> float:
-        """Returns a share of the comfortable radius at a station, and never less than the least; metres."""
+        """Returns the vertical radius to design at station ``s``, in metres.
+
+        It is ``ease`` times the comfortable radius, and never less than the rule allows.
+        """
         least = LEAST_SPARE * self.least(s, is_bump)
         return max(ease * SPARE * self.comfort(s), least)
 
@@ -89,17 +103,17 @@ def softened(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> list[float]:
-    """Returns grades moved as little as it takes until the parabolas between them fit, within their bounds.
+    """Returns grades, moved within their bounds as little as needed until the parabolas between them fit.
 
-    Each slope that has too little room is put right in turn, by moving it and its neighbours: projections
-    onto convex sets, which come to grades that fit wherever there are such.
+    Slopes with too little room are corrected one after another by moving their grades and those of their
+    neighbours. These are projections onto convex sets, which converge if a solution exists.
 
     Args:
-        grades: percent.
-        lengths: of the slopes, metres.
-        radii: metres, at the joints between them; one fewer.
-        lows: percent, the least of each.
-        highs: percent, the greatest of each.
+        grades: grade of each slope in percent, ``(n,)``.
+        lengths: length of each slope in metres, ``(n,)``.
+        radii: vertical radius in metres at each joint of two slopes, ``(n - 1,)``.
+        lows: least grade of each slope in percent, ``(n,)``.
+        highs: greatest grade of each slope in percent, ``(n,)``.
     """
     out = [min(max(g, lo), hi) for g, lo, hi in zip(grades, lows, highs, strict=True)]
     halves = [0.0, *(radius / 200 for radius in radii), 0.0]
@@ -120,13 +134,13 @@ def made_to_fit(
     pace: Pace,
     roomier: float = 1.0,
 ) -> list[float]:
-    """Returns grades of segments, moved until the parabolas that the rule requires fit.
+    """Returns grades, moved until the parabolas that the rule requires fit between them.
 
     Args:
-        grades: percent, of each segment.
-        lengths: of the segments, metres.
+        grades: grade of each segment in percent.
+        lengths: length of each segment in metres.
         runs: a number for each segment; neighbours with the same number form one slope.
-        bounds: percent, least and greatest grade of each segment.
+        bounds: least and greatest grade of each segment in percent.
         pace: the vertical radii that the expected speeds require.
         roomier: factor on the required radii, to leave more room than the rule requires.
     """
@@ -143,10 +157,14 @@ def made_to_fit(
 
 
 def runs_of(inclines: Sequence[float], joining: Collection[int]) -> list[int]:
-    """Returns numbers for ``made_to_fit`` that are equal for neighbours of one incline.
+    """Returns a number for each segment; neighbours with the same number form one slope.
 
-    Those that only join others go with the neighbour whose incline is nearer: between two slopes, a short
-    third one leaves no room for their parabolas.
+    Neighbours with the same incline form one slope. A segment that only joins others belongs to the slope of
+    the neighbour with the nearer incline, because a short slope of its own would leave parabolas no room.
+
+    Args:
+        inclines: incline of each segment in percent.
+        joining: indices of segments that only join others.
     """
     out, number = [], 0
     for i, incline in enumerate(inclines):
@@ -168,7 +186,7 @@ def _made_room(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> bool:
-    """Was there room on a slope for its parabolas? Else it and its neighbours are moved."""
+    """Returns whether a slope has room for its parabolas; if not, moves its grade and its neighbours'."""
     before = grades[i] - grades[i - 1] if i else 0.0
     after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
     over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * length
@@ -191,13 +209,13 @@ def _made_room(
 def joined(
     segments: Sequence[Segment], pace: Pace, ease: float = 1.0, opened: Collection[int] | None = None
 ) -> tuple[Segment, ...]:
-    """Returns the segments with radii for parabolas that have none, as large as there is room for.
+    """Returns the segments with vertical radii where grades change, as large as there is room for.
 
     Args:
-        segments: in driving order.
+        segments: the segments of a design, in driving order.
         pace: the vertical radii that the expected speeds require.
         ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
-        opened: indices of the segments whose parabola is decided anew; None: of those without a radius.
+        opened: indices of the segments whose radius is chosen anew; None for those without a radius.
     """
     out, at, own = [], 0.0, set[int]()
     for i, segment in enumerate(segments):
@@ -219,7 +237,12 @@ def joined(
 
 
 def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
-    """Returns indices of segments where two slopes meet that met nowhere before."""
+    """Returns indices of segments at whose start two slopes meet that did not meet anywhere before.
+
+    Args:
+        before: the segments of a design before a change.
+        after: the segments after the change.
+    """
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     return frozenset(
         i
@@ -229,9 +252,9 @@ def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> froze
 
 
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
-    """Returns the segments, with parabolas enlarged that are smaller than the rule allows.
+    """Returns the segments with larger radii for parabolas that are smaller than the rule allows.
 
-    Where their neighbours leave them no room, those give way.
+    If neighbouring parabolas leave no room, their radii are chosen anew as well.
     """
     out, opened = tuple(segments), set[int]()
     while small := {parabola.number for parabola in _too_small(out, pace)}:
@@ -250,7 +273,10 @@ def _with_radius(segment: Segment, radius: float | None) -> Segment:
 
 
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
-    """Returns whether a parabola is smaller than the rule allows."""
+    """Returns whether any parabola is smaller than the rule allows.
+
+    If ``bumps``, a crest or dip was required, and the vertical acceleration may reach gravity.
+    """
     return any(True for _ in _too_small(segments, pace, bumps))
 
 

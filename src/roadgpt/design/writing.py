@@ -1,4 +1,4 @@
-"""Writes elements as a Design on the map, at slopes that suit the speed."""
+"""Writes elements as a Design on the map, with grades that change no faster than the speed allows."""
 
 from collections.abc import Sequence
 from math import ceil
@@ -16,13 +16,13 @@ from roadgpt.road.design import MAX_INCLINE
 from roadgpt.road.elevation import elevation_of
 
 ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
-CENTIMETRE = 100.0  # per metre: how heights are written
+CENTIMETRE = 100.0  # per metre: heights are written in centimetres
 
 
 def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...]:
-    """Returns RoadGPT's segments, on slopes that are clearly up, down or flat after rounding.
+    """Returns the segments of elements, with grades rounded so that each is clearly up, down or flat.
 
-    Slopes that change too fast for the speed are moved towards each other.
+    Grades between which the road would be too abrupt for the expected speed are moved towards each other.
     """
     written = [as_written(element) for element in elements]
     pace = Pace.along(written, world)
@@ -39,19 +39,19 @@ def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...
 
 
 def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
-    """Returns the segments of elements with these inclines, percent."""
+    """Returns the segments of elements with these inclines in percent."""
     pairs = zip(written, grades, strict=True)
     sloped = (element._replace(incline=float(rounded(np.array(grade))) + 0.0) for element, grade in pairs)
     return [segment for element in sloped for segment in cut(element)]
 
 
 def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
-    """Returns the design of elements whose lowest point lies a little above the ground."""
+    """Returns a design of these elements that starts at ``place``, its lowest point 1 m above the ground."""
     return design_at(place, segments_of(elements, world), max(0.0, world.z_floor) + ABOVE_GROUND)
 
 
 def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:
-    """Returns the design of segments whose lowest point lies at that height in metres."""
+    """Returns a design of these segments that starts at ``place``, its lowest point at height ``ground``."""
     return Design(
         starting_point=(place.x, place.y, start_height(segments, ground)),
         theta=place.theta,
@@ -60,7 +60,7 @@ def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> D
 
 
 def start_height(segments: Sequence[Segment], ground: float) -> float:
-    """Returns the height of the start in metres at which the lowest point lies at ``ground``."""
+    """Returns the height of the start in metres with which the lowest point is at height ``ground``."""
     profile = elevation_of(segments, 0.0)
     _, sag = lowest(profile, profile.stations[-1])
     return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE

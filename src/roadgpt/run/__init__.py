@@ -20,7 +20,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import designer_of
-from roadgpt.design.offers import no_room
+from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.isolation import driver_of

@@ -1,7 +1,7 @@
-"""The chat designer: a language model writes the road in RoadGPT's format, and is told what is wrong.
+"""The chat designer: a language model designs the road and corrects it after objections.
 
-It gets the Brief, the rules of the map and what earlier roads look like. What it proposes is kept where it
-can be: the road is moved inside the map, then changed as little as it takes (``repair``).
+The model gets the Brief, the rules of the map and a list of earlier roads. Its proposal is repaired as far as
+the settings allow: the road is moved onto the map, then changed as little as needed (``repair``).
 """
 
 from collections.abc import Sequence
@@ -19,10 +19,10 @@ RULES = "chat_rules.txt"
 
 
 class ChatDesigner:
-    """A designer that asks a language model, in rounds."""
+    """A designer that asks a language model, in one or more rounds."""
 
     redrafts = False
-    """It has asked again itself, as often as it may."""
+    """False: this designer itself asks the model again, so it is not called again if rules object."""
 
     def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
         self._settings = settings or configured()
@@ -33,10 +33,18 @@ class ChatDesigner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """Returns the best Design of all rounds, even where it is not valid.
+        """Returns the best Design of all rounds, even if it is not valid.
+
+        Args:
+            brief: the requirements.
+            world: the map and the limits of the rules.
+            notes: objections of rules to an earlier draft.
+            earlier: designs of the campaign so far; the new one should not be like any of them.
+            seed: determines the start that is suggested to the model.
 
         Raises:
-            DesignError, ReplyError: no answer was a road.
+            DesignError: no answer was a road.
+            ReplyError: no answer could be read.
             ChatError: the model could not be asked.
         """
         self.report = None

@@ -1,9 +1,9 @@
-"""Draws a random Design that keeps every promise of the Brief, is valid, and is like none before.
+"""The default designer: draws drafts until one meets the Brief, is valid and differs from earlier roads.
 
-Drafts are drawn until one passes. Tests are asked in the order of what they cost: does it fit on the map,
-does it keep clear of itself, is it new, does its measured line keep the promises, and do the rules pass the
-road that grows from it. Each draft is a little more hasty than the last: shorter straights, smaller turns. So
-wishes that hardly fit are met in the end, and only those that cannot be are refused.
+Tests run in the order of their cost: whether the draft fits on the map, keeps clear of itself, is new, meets
+the requirements as measured on its line, and whether the rules accept the road that is built from it. Every
+draft is drawn with a little more haste than the one before, with shorter straights and smaller turns. So
+requirements that hardly fit are met in the end, and only those that cannot be met are refused.
 """
 
 from collections import Counter
@@ -34,30 +34,28 @@ from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.road.elevation import elevation_of
 
-DRAFTS = 320  # that are drawn for one road at most
-ALIKE = 120  # drafts like earlier roads, after which the least alike is taken
-ALIKE_STRAIGHTS = 12  # where a road has no turns, so that only its length can differ
-CHOOSY = 1 / 8  # of these drafts: for so long, a road that only goes on further is called alike as well ...
-CROWDED = (
-    400  # ... but for a third of it where there are more earlier roads than this, as hardly any are left
-)
-FINISHED = 100  # drafts that fit, of which none keeps every promise, before the search is given up
-LAST_RESORTS = 20  # drafts like earlier roads that are tried where there are no others
-TRIALS = (1, 2, 3, 4)  # seeds with which it is tried whether there is room
-TRIED = 110  # drafts that are drawn for each of these
-GROWN = 20  # drafts of a road whose length was asked for, that grow on the map where no other was found
-GROWN_ON_TRIAL = 5  # of these, where it is tried whether there is room
-NO_HASTE = 16  # drafts that are drawn freely
-SHOULDERS = 0.6  # of the drafts: for so long, legs keep off each other's shoulders as well
-FAILED_ON_HEIGHTS = 40  # slopes that broke a promise or the rule: then the speed may be what stood in the way
-SLOWER = (50.0, 30.0)  # km/h, that are tried in order to say so
+DRAFTS = 320  # for one road, at most
+ALIKE = 120  # drafts like earlier roads, after which the least similar one is taken
+ALIKE_STRAIGHTS = 12  # the same for a road without turns, where only the length can differ
+CHOOSY = 1 / 8  # share of these drafts for which a road that only continues an earlier one is also alike
+CROWDED = 400  # earlier roads, above which that share is divided by three
+FINISHED = 100  # drafts that fit and fail a requirement or rule, after which the search is given up
+LAST_RESORTS = 20  # drafts like earlier roads that are finished if there are no others
+TRIALS = (1, 2, 3, 4)  # seeds with which ``fits`` tests whether there is room
+TRIED = 110  # drafts for each of these seeds
+GROWN = 20  # grown drafts of a road of required length, if no composed draft was accepted
+GROWN_ON_TRIAL = 5  # the same in ``fits``
+NO_HASTE = 16  # drafts without haste
+SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its own shoulders
+FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
+SLOWER = (50.0, 30.0)  # km/h, speed limits that may be advised
 CORRECTIONS = 8  # of straights whose measured lengths or grades are wrong
 EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried where a crest or a dip is required
-STARTS_AT = (0.0, 6.0)  # m, height of the lowest place of a road
+STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 
 
 class Planner:
-    """The default designer, which searches by drawing drafts."""
+    """The default designer: draws drafts until one is accepted."""
 
     def __init__(self) -> None:
         self._shapes = Shapes()
@@ -65,10 +63,17 @@ class Planner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """Returns a Design for the Brief. ``notes`` only change the seed, as every draft is checked anyway.
+        """Returns a Design that meets the Brief and is valid.
+
+        Args:
+            brief: the requirements.
+            world: the map and the limits of the rules.
+            notes: objections to an earlier draft; only their number matters, as it changes the seed.
+            earlier: designs of the campaign so far; the new one differs from them as far as possible.
+            seed: seed of the random generator.
 
         Raises:
-            DesignError: no draft passed; says which wish stood in the way, and what to do.
+            DesignError: no draft was accepted; the message says which requirement failed, and what to do.
         """
         rng = np.random.default_rng([seed, len(notes)])
         design, road = _Search(brief, world, self._shapes.of(earlier), rng).run()
@@ -77,7 +82,7 @@ class Planner:
 
 
 def fits(brief: Brief, world: World) -> bool:
-    """Returns whether a road can be drafted within few drafts, for each of some seeds."""
+    """Returns whether a road can be found within 110 drafts for each of four seeds."""
     try:
         searches = [_Search(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
         return all(search.found(TRIED) is not None for search in searches)
@@ -103,10 +108,10 @@ class _Search:
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
-        """Returns the first draft that passes; where all are similar to earlier roads, the least similar.
+        """Returns the first draft that is accepted; if all are like earlier roads, one of the least similar.
 
         Raises:
-            DesignError: none did.
+            DesignError: no draft was accepted.
         """
         found = self.found()
         if found is None:
@@ -117,7 +122,7 @@ class _Search:
         return found
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
-        """Returns the first draft that passes, or None."""
+        """Returns the first draft that is accepted, or None."""
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
@@ -155,7 +160,7 @@ class _Search:
         return None
 
     def _growth(self) -> PlacedPlan | None:
-        """A plan that has grown on the map; only where a length was asked for."""
+        """Returns a plan that was grown on the map; None without room, or if no length is required."""
         if self.outline.length is None:
             return None
         order = drawn_sequence(self.outline, self.rng, plain=True)
@@ -165,7 +170,7 @@ class _Search:
         return found
 
     def _speed_that_would_do(self) -> float | None:
-        """A lower limit, km/h, at which the slopes asked for can be had, if they stood in the way."""
+        """Returns a lower speed limit in km/h at which the required slopes are possible, if they failed."""
         if self.failed_on_heights < FAILED_ON_HEIGHTS:
             return None
         limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.speed_limit]
@@ -187,7 +192,7 @@ class _Search:
         return PlacedPlan(elements, line, where)
 
     def _finished(self, drafted: PlacedPlan) -> tuple[Design, Road] | None:
-        """The Design and its Road, where some heights keep the promises and every rule passes its road."""
+        """Returns the Design and the Road of a plan; None if they violate a requirement or a rule."""
         segments = self._with_heights(drafted)
         if segments is None:
             return None

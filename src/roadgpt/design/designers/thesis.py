@@ -1,17 +1,17 @@
-"""The method of RoadGPT's thesis as it stands, to be the baseline of every comparison.
+"""The method of RoadGPT's thesis, unchanged, as a baseline for comparisons.
 
-One question with the thesis' system prompt, one answer in JSON, no second question and no repair; the road is
-the spline through the ends of the segments, and where it is not valid it counts as invalid. Source: sections
-5.3.1 and 5.3.2 of the thesis. Its prompt is told in our words, and settled where it contradicts itself or its
-program:
+The model gets one request with the thesis' system prompt and answers once in JSON; nothing is asked again or
+repaired. The road is the spline through the ends of the segments; if it is not valid, it counts as invalid.
+Source: sections 5.3.1 and 5.3.2 of the thesis. The prompt is paraphrased. Where it contradicts itself or the
+thesis' program, this designer does the following:
 
-* theta 0 is "along the y axis" in the prompt and +x in the program: here +x, as the program builds it;
+* theta 0 is "along the y axis" in the prompt and +x in the program: +x is used;
 * x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": the prompt names
-  four fifths of the map;
+  four fifths of the side of the map;
 * right turns are negative in the prompt, and its own example has a left turn of -20: the direction wins;
-* the program shifts the start by (5, 5), which is left out, and begins with 5 m of level road, which is kept.
+* the program begins with 5 m of level road, which is kept, and shifts the start by (5, 5), which is omitted.
 
-Answers were Python dictionaries that the program ran through ``eval``; here they are JSON, read as data.
+The thesis' program passed answers, which were Python dictionaries, to ``eval``; here answers are JSON.
 """
 
 from collections.abc import Sequence
@@ -28,10 +28,10 @@ RULES = "thesis_rules.txt"
 
 
 class ThesisDesigner:
-    """A designer that works as in RoadGPT's thesis: it asks one question and takes the answer as it is."""
+    """A designer that works as in RoadGPT's thesis: it sends one request and uses the answer unchanged."""
 
     redrafts = False
-    """An invalid road counts as one."""
+    """False: an invalid road counts as invalid and is not drafted again."""
     geometry: Geometry = "spline"
 
     def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
@@ -42,10 +42,17 @@ class ThesisDesigner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> Design:
-        """Returns the Design that the model answers with. ``notes``, ``earlier`` and ``seed`` are not used.
+        """Returns the Design that the model answers with.
+
+        Args:
+            brief: the description that is sent to the model.
+            world: the map and the limits that the prompt names.
+            notes: not used.
+            earlier: not used.
+            seed: not used.
 
         Raises:
-            ReplyError: the answer is no design.
+            ReplyError: the answer is not a design.
             ChatError: the model could not be asked.
         """
         self.report = None
@@ -58,7 +65,7 @@ class ThesisDesigner:
         reply = chat.ask(asked)
         try:
             design, remarks = read_design(read_object(reply.text))
-            build(design, self.geometry)  # of nodes that coincide there is no road
+            build(design, self.geometry)  # raises an error if nodes coincide
         except (NotReadableError, UsageError) as error:
             raise UnparsableError(f"the answer of the model is no road: {error}", reply.text) from None
         spent = chat.spent.since(before)
