@@ -5,15 +5,20 @@ method ``road.at(s, t)`` returns the point at station ``s``, the distance along 
 ``t``, the distance to the left of the centre line.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from roadgpt.road.builder import Geometry, build
 from roadgpt.road.design import Design, Segment, read_design
 from roadgpt.road.moving import moved
-from roadgpt.road.opendrive import ImportedRoad, read_opendrive
 from roadgpt.road.profile import Edges, Profile
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.short_segments import in_short_segments
-from roadgpt.road.source import read_blueprint, read_road
 from roadgpt.road.world import World
+
+if TYPE_CHECKING:
+    from roadgpt.road.opendrive import ImportedRoad, read_opendrive
+    from roadgpt.road.source import read_blueprint, read_road
 
 __all__ = [
     "Design",
@@ -33,3 +38,17 @@ __all__ = [
     "read_opendrive",
     "read_road",
 ]
+
+_LATER = {
+    "ImportedRoad": "opendrive",
+    "read_blueprint": "source",
+    "read_opendrive": "opendrive",
+    "read_road": "source",
+}
+"""Names whose modules are loaded when they are first used: most commands read no road files."""
+
+
+def __getattr__(name: str) -> Any:
+    if name in _LATER:
+        return getattr(import_module(f"roadgpt.road.{_LATER[name]}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
