@@ -169,6 +169,19 @@ def test_another_study_is_left_alone(tmp_path: Path) -> None:
         open_folder(plan, tmp_path / "x")
 
 
+def test_a_designer_that_asks_a_model_joins_a_study_in_which_none_was_asked(tmp_path: Path) -> None:
+    """The second command of the guide 'Evaluate roads', in the folder of the first one."""
+    plan = small("a road")
+    open_folder(plan, tmp_path)
+    asking = QUICK.model_copy(update={"chat": ChatSettings(model="one")})
+    both = plan.model_copy(update={"designers": ("planner", "thesis"), "setup": asking})
+    open_folder(both, tmp_path)
+    assert read_plan(tmp_path) == both
+    another = asking.model_copy(update={"chat": ChatSettings(model="two")})
+    with pytest.raises(UsageError, match="another study"):
+        open_folder(both.model_copy(update={"setup": another}), tmp_path)
+
+
 def test_a_plan_survives_its_file(tmp_path: Path) -> None:
     truth = Truth.model_validate(
         {"sequence": [{"kind": "turn", "dir": "left", "deg": [80, None]}], "hilly": 2}

@@ -98,6 +98,8 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
 
 def _same(there: StudyPlan, asked: StudyPlan, folder: Path) -> None:
     one, other = there.essence(), asked.essence()
+    if one.setup.chat is None:  # no model was asked yet, so the first designer that asks one may join
+        other = other.model_copy(update={"setup": other.setup.model_copy(update={"chat": None})})
     free = ("roads", "designers", "source", "command")  # more roads and more designers may join
     differs = [name for name in type(one).model_fields if getattr(one, name) != getattr(other, name)]
     wrong = [name for name in differs if name not in free]
