@@ -20,7 +20,6 @@ from roadgpt.campaign import campaign
 from roadgpt.campaign.batch_scheduler import GIVE_UP
 from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
-from roadgpt.chat import Meter
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road
 from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of
@@ -471,13 +470,11 @@ def made_of(home: Path, workers: int, roads: int = 6, kills: bool = False) -> di
     words = {"one": "a road with two turns", "other": "a hairpin, then a straight"}
     briefs = {name: brief_of(text, setup=setup) for name, text in words.items()}
     folders = {
-        name: RunFolder.opened(Request(words=text, seed=3, setup=setup), roads, home / name)
+        name: RunFolder.opened(Request(words=text, seed=3, setup=setup), briefs[name], roads, home / name)
         for name, text in words.items()
     }
     seen, before = [], {*children._running}
-    for folder in folders.values():
-        assert not folder.begin()
-    for name, ended in work_in(home, folders, briefs, meter=None if workers else Meter(), workers=workers):
+    for name, ended in work_in(home, folders, workers=workers):
         seen.append((name, ended.result.number))
         assert (home / name / f"test.{ended.result.number:04d}.json").is_file()
         assert (ended.run is None) == bool(workers)
@@ -502,13 +499,12 @@ def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
 ) -> None:
     put_on_shelf(monkeypatch, double=Unable(lambda seed: seed in {seed_of(7, n) for n in range(1, 5)}))
     folders = {
-        name: RunFolder.opened(Request(words=name, seed=seed, setup=NO_DRIVE), 4, tmp_path / name)
+        name: RunFolder.opened(
+            Request(words=name, seed=seed, setup=NO_DRIVE), Brief(words=name), 4, tmp_path / name
+        )
         for name, seed in (("able", 7), ("unable", 8))
     }
-    for folder in folders.values():
-        folder.begin()
-    briefs = {name: Brief(words=name) for name in folders}
-    tests = [name for name, _ in work_in(tmp_path, folders, briefs, meter=Meter())]
+    tests = [name for name, _ in work_in(tmp_path, folders)]
     assert tests == ["able"] * 4
     assert folders["able"].failure == ""
     assert "9 hairpins" in folders["unable"].failure
@@ -518,10 +514,8 @@ def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
 def test_workers_that_die_over_a_road_leave_one_error(tmp_path: Path) -> None:
     setup = Setup(reader="grammar", drives=False)
     request = Request(words="a straight road", seed=1, setup=setup)
-    folder = RunFolder.opened(request, 2, tmp_path / "c")
-    folder.begin()
-    briefs = {"c": brief_of(request.words, setup=setup)}
-    ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, briefs, draw=Deadly(), workers=1)]
+    folder = RunFolder.opened(request, brief_of(request.words, setup=setup), 2, tmp_path / "c")
+    ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, Deadly(), workers=1)]
     assert [one.outcome for one in ended] == ["VALID", "ERROR"]
     assert "3 workers ended over it" in ended[1].description
     assert read_run(tmp_path / "c" / "runs" / "0002").description == ended[1].description

@@ -10,7 +10,6 @@ from roadgpt import design, plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import Campaign, run_folder
 from roadgpt.campaign.model import Cell
-from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.campaign.single_test import Task
 from roadgpt.chat import Meter
 from roadgpt.errors import DesignError
@@ -87,7 +86,9 @@ def folder_of(
     (patch or (lambda name, value: setattr(run_folder, name.rpartition(".")[2], value)))(
         "roadgpt.campaign.run_folder.run_test", run_test
     )
-    return Campaign(RunFolder.opened(request, roads, out), Brief(words=request.words), draw)
+    made = Campaign.opened(request, Brief(words=request.words), roads, out)
+    made.draw = draw
+    return made
 
 
 def put_on_shelf(monkeypatch: pytest.MonkeyPatch, **parts: Any) -> None:

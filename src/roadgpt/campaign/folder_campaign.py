@@ -1,7 +1,8 @@
 """Campaigns whose tests are written into folders of runs, as ``roadgpt run`` and studies have them."""
 
 from collections.abc import Generator, Iterator, Mapping
-from contextlib import closing
+from contextlib import ExitStack, closing
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from roadgpt import plugins
@@ -26,62 +27,70 @@ from roadgpt.run.folder import run_folder
 def work_in(
     home: Path,
     folders: Mapping[str, RunFolder],
-    briefs: Mapping[str, Brief],
     draw: Draw | None = None,
     meter: Meter | None = None,
     workers: int = 0,
+    with_earlier: bool = False,
 ) -> Generator[tuple[str, FinishedRun], None, None]:
     """Runs the tests that folders of runs lack; the work happens while the caller iterates.
 
-    The caller has prepared each folder with ``RunFolder.begin``, and holds ``alone_in`` for as long as it
-    iterates. The files do not depend on the number of workers.
+    If no road can be designed for a folder, its ``failure`` gives the reason, and nothing is left in it.
 
     Args:
         home: the folder that messages name, and where workers write their log.
         folders: the folders, by name.
-        briefs: what was read from the description of each folder.
         draw: draws pictures into the folders; None: no pictures.
-        meter: counts the use of language models, if the tests run in this process.
-        workers: number of worker processes; 0: the tests run in this process, and their Runs are returned.
+        meter: counts the use of language models, if the tests run in this process; None: a new one.
+        workers: number of worker processes, which do not change the files; 0: the tests run in this process.
+        with_earlier: whether to yield first the tests that earlier sessions ran.
 
     Yields:
         The name of the folder and the test, as soon as the files of the test are complete.
 
-    If no road could be designed for a folder, its ``failure`` gives the reason, and nothing is left in it.
-
     Raises:
         ChatError: a language model cannot be asked, or a limit is reached; finished tests are kept.
         GivenUpError: the simulator failed three times in a row; these three tests have to be run again.
-        UsageError: a plug-in is not installed.
+        UsageError: a plug-in is not installed, or another process works in one of the folders.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
+    with ExitStack() as stack:
+        for folder in folders.values():
+            stack.enter_context(alone_in(folder.folder))
+        left = {name: folder for name, folder in folders.items() if not folder.begin()}
+        if with_earlier:
+            for name, folder in folders.items():
+                for number in sorted(folder.tests):
+                    run = read_run(run_folder(folder.folder, number))
+                    yield name, replace(folder.tests[number], run=run)
+        if left:
+            yield from _worked(home, left, draw, meter, workers)
+
+
+def _worked(
+    home: Path, left: dict[str, RunFolder], draw: Draw | None, meter: Meter | None, workers: int
+) -> Iterator[tuple[str, FinishedRun]]:
+    """Runs the tests of folders that are ready for it; removes finished folders from ``left``."""
     cells = [
-        Cell(
-            name,
-            folder.request,
-            briefs[name],
-            generator=WITHOUT_GOAL,
-            goal=None,
-            budget=Budget(tests=folder.roads),
-            in_sequence=True,
-        )
-        for name, folder in folders.items()
+        Cell(name, each.request, each.brief, WITHOUT_GOAL, None, {}, Budget(tests=each.roads), True)
+        for name, each in left.items()
     ]
-    writer = RunWriter({name: folder.path for name, folder in folders.items()}, draw, meter)
-    setups = tuple(dict.fromkeys(folder.request.setup for folder in folders.values()))
+    setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
     refuse_links(home / LOG)
     staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)
     kind: type[Executor] = plugins.find("executors", "processes") if workers else InProcess
-    left = dict(folders)
+    writer = RunWriter(
+        {name: each.folder for name, each in left.items()}, draw, None if workers else meter or Meter()
+    )
     try:
-        with FolderStore(home, folders, cells) as store:
-            scheduler = Scheduler(store, staff, kind, run_test=writer)
-            with closing(scheduler.run()) as steps:
-                for _ in steps:
-                    written, store.written = store.written, []
-                    yield from written
-                    for name in [name for name, folder in left.items() if folder.is_complete]:
-                        left.pop(name).close(draw)
+        with (
+            FolderStore(home, dict(left), cells) as store,
+            closing(Scheduler(store, staff, kind, run_test=writer).run()) as steps,
+        ):
+            for _ in steps:
+                written, store.written = store.written, []
+                yield from written
+                for name in [name for name, folder in left.items() if folder.is_complete]:
+                    left.pop(name).close(draw)
     except ChatError:
         for folder in left.values():
             folder.drop_held_back()
@@ -95,52 +104,32 @@ def work_in(
         folder.drop_held_back()
 
 
-class Campaign:
+@dataclass(repr=False, eq=False)
+class Campaign(RunFolder):
     """Makes the Runs of one description; iterate over it to make them. Each Run is on disk when it is
     yielded."""
 
-    def __init__(
-        self, runs: RunFolder, brief: Brief, draw: Draw | None = None, meter: Meter | None = None
-    ) -> None:
-        """Takes the folder, the requirements, what draws pictures, and the meter; adds the cost of earlier
-        roads to the meter."""
-        self._runs, self._brief, self._draw = runs, brief, draw
-        self.meter = meter or Meter()
-        """Counts the use of language models, for earlier roads of the folder as well."""
-        self.meter.add(runs.spent)
+    draw: Draw | None = None
+    """Draws pictures into the folders of Runs; None: no pictures."""
+    meter: Meter = field(default_factory=Meter)
+    """Counts the use of language models, for earlier roads of the folder as well."""
 
     def __repr__(self) -> str:
-        done = f"{len(self.kept)} of {self.roads} roads"
+        done = f"{len(self.tests)} of {self.roads} roads"
         return f"Campaign({self.request.words!r}, seed {self.request.seed}, {done}, in {str(self.folder)!r})"
-
-    @property
-    def folder(self) -> Path:
-        """The folder of the Runs."""
-        return self._runs.path
-
-    @property
-    def request(self) -> Request:
-        """The request that the Runs have in common."""
-        return self._runs.request
-
-    @property
-    def roads(self) -> int:
-        """Number of roads requested."""
-        return self._runs.roads
 
     @property
     def kept(self) -> tuple[int, ...]:
         """Numbers of the finished roads."""
-        return tuple(sorted(self._runs.tests))
+        return tuple(sorted(self.tests))
 
-    @property
-    def is_complete(self) -> bool:
-        """True if all roads are finished."""
-        return self._runs.is_complete
+    def earlier_runs(self) -> Iterator[Run]:
+        """Yields the Runs that an earlier session made, read from disk."""
+        return (read_run(run_folder(self.folder, index)) for index in self.kept)
 
     def __iter__(self) -> Iterator[Run]:
         """Yields the Runs that are still to be made, one by one; raises what ``all_runs`` raises."""
-        return self._all(with_earlier=False)
+        return self._runs(with_earlier=False)
 
     def all_runs(self) -> Iterator[Run]:
         """Yields the Runs that exist, read from disk, then makes the missing ones and yields them.
@@ -153,27 +142,16 @@ class Campaign:
             UsageError: a plug-in is not installed, or another process is using the folder.
             RoadGPTError: a file cannot be written.
         """
-        return self._all(with_earlier=True)
+        return self._runs(with_earlier=True)
 
-    def earlier_runs(self) -> Iterator[Run]:
-        """Yields the Runs that an earlier session made, read from disk."""
-        for index in self.kept:
-            yield read_run(run_folder(self.folder, index))
-
-    def _all(self, with_earlier: bool) -> Iterator[Run]:
-        runs = self._runs
-        with alone_in(runs.path):
-            is_finished = runs.begin()
-            if with_earlier:
-                yield from self.earlier_runs()
-            if is_finished:
-                return
-            with closing(work_in(runs.path, {"": runs}, {"": self._brief}, self._draw, self.meter)) as tests:
-                for _, ended in tests:
-                    if ended.run is not None:
-                        yield ended.run
-        if runs.failure:
-            raise DesignError(runs.failure)
+    def _runs(self, with_earlier: bool) -> Iterator[Run]:
+        tests = work_in(self.folder, {"": self}, self.draw, self.meter, with_earlier=with_earlier)
+        with closing(tests):
+            for _, ended in tests:
+                assert ended.run is not None
+                yield ended.run
+        if self.failure:
+            raise DesignError(self.failure)
 
 
 def campaign(
@@ -212,4 +190,7 @@ def campaign(
     request = Request(words=brief.words, seed=seed, world=world, setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, world)
-    return Campaign(RunFolder.opened(request, n, out), brief, draw, meter)
+    made = Campaign.opened(request, brief, n, out)
+    made.draw, made.meter = draw, meter
+    meter.add(made.spent)
+    return made

@@ -61,7 +61,7 @@ class FolderStore(Store):
             if not isinstance(one, FinishedRun):  # its workers died, perhaps over its pictures
                 task = Task(one.result.number, one.result.batch, one.result.proposal)
                 run = error_run(task, self._cells[name], one.result.description)
-                one = RunWriter({name: self._folders[name].path}).written(run, task, name)
+                one = RunWriter({name: self._folders[name].folder}).written(run, task, name)
             self.written += [(name, each) for each in self._folders[name].add(one)]
 
     def reopen(self, cell: str, number: int, batch: int) -> None:

@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Self
 
+from roadgpt.brief.model import Brief
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
 from roadgpt.chat import Meter, Spent
@@ -32,7 +34,7 @@ class FinishedRun(FinishedTest):
     entry: TallyEntry | None = None
     """The values that the folder's tables count."""
     run: Run | None = None
-    """The Run, if it was made in this process."""
+    """The Run; None if a worker process made it."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +78,10 @@ def writing(folder: Path) -> AbstractContextManager[None]:
 class RunFolder:
     """A folder of Runs of one request, new or from an earlier session."""
 
-    path: Path
+    folder: Path
     request: Request
+    brief: Brief
+    """The requirements that were read from the description."""
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
@@ -92,7 +96,7 @@ class RunFolder:
     _held_back: list[FinishedRun] = field(default_factory=list)
 
     @classmethod
-    def opened(cls, request: Request, roads: int, out: Path | str | None) -> "RunFolder":
+    def opened(cls, request: Request, brief: Brief, roads: int, out: Path | str | None) -> Self:
         """Opens a folder: a new one, or one that holds tests of the same request.
 
         Raises:
@@ -103,13 +107,13 @@ class RunFolder:
         if out is None:
             made = missing(HOME)
             path = new_folder(request.words, request.seed)
-            return cls(path, request, roads, (path, *made))
+            return cls(path, request, brief, roads, (path, *made))
         path = Path(out)
         with explained(UsageError, f"cannot use {path}", "name another folder"):
             made = missing(path)
             path.mkdir(parents=True, exist_ok=True)
             is_new = all(_may_lie_in_a_new_folder(each) for each in path.iterdir())
-        folder = cls(path, request, roads, made)
+        folder = cls(path, request, brief, roads, made)
         if not is_new:
             folder.take_up()
         return folder
@@ -125,17 +129,17 @@ class RunFolder:
         Raises:
             UsageError: the folder holds Runs of another request, or more than were requested.
         """
-        card = read_card(self.path)
+        card = read_card(self.folder)
         there_was = card.request.essence()
         other = [name for name, value in self.request.essence() if getattr(there_was, name) != value]
         if other:
             raise UsageError(
-                f"{self.path} holds other roads (different {' and '.join(other)}); name another folder"
+                f"{self.folder} holds other roads (different {' and '.join(other)}); name another folder"
             )
-        there = finished(self.path)
+        there = finished(self.folder)
         if there and there[-1] > self.roads:
             raise UsageError(
-                f"{self.path} holds road {there[-1]} already; ask for at least so many "
+                f"{self.folder} holds road {there[-1]} already; ask for at least so many "
                 "roads or name another folder"
             )
         for index in there:
@@ -145,7 +149,7 @@ class RunFolder:
 
     def _read(self, index: int) -> None:
         try:
-            run = read_run(run_folder(self.path, index))
+            run = read_run(run_folder(self.folder, index))
         except UsageError:
             return
         if run.index == index:
@@ -159,15 +163,15 @@ class RunFolder:
 
         Another process may have worked in the folder since it was opened.
         """
-        if (self.path / CARD).is_file() and self.take_up().is_finished and self.is_complete:
+        if (self.folder / CARD).is_file() and self.take_up().is_finished and self.is_complete:
             return True
-        with writing(self.path):
-            refuse_links(self.path / RUNS)
-            sweep(self.path)
+        with writing(self.folder):
+            refuse_links(self.folder / RUNS)
+            sweep(self.folder)
             self._write_card(is_finished=False)
-            (self.path / RUNS).mkdir(exist_ok=True)
-            sweep(self.path / RUNS)
-            write_description(self.request, self.roads, self.path)
+            (self.folder / RUNS).mkdir(exist_ok=True)
+            sweep(self.folder / RUNS)
+            write_description(self.request, self.roads, self.folder)
         return False
 
     def add(self, ended: FinishedRun) -> list[FinishedRun]:
@@ -180,47 +184,47 @@ class RunFolder:
         if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
             return []
         written, self._held_back = self._held_back, []
-        with writing(self.path):
+        with writing(self.folder):
             for one in written:
-                write_whole(self.path / test_name(one.result.number), one.test_file)
+                write_whole(self.folder / test_name(one.result.number), one.test_file)
                 self._count(one)
-                self._tally.write(self.path)
+                self._tally.write(self.folder)
         return written
 
     def remove(self, number: int) -> None:
         """Removes a test that has no drive, so that it is run when the campaign continues."""
         ended = self.tests.pop(number, None)
-        with writing(self.path):
-            remove_run(number, self.path)
+        with writing(self.folder):
+            remove_run(number, self.folder)
             if ended is not None and ended.entry is not None:
                 self._tally.take_back(ended.entry)
-            self._tally.write(self.path)
+            self._tally.write(self.folder)
 
     def write_tables(self) -> None:
         """Writes the tables, which count all tests in the folder."""
-        with writing(self.path):
-            self._tally.write(self.path)
+        with writing(self.folder):
+            self._tally.write(self.folder)
 
     def close(self, draw: Draw | None = None) -> None:
         """Writes the tables, draws the picture of all roads, and marks the campaign as finished."""
-        with writing(self.path):
-            self._tally.write(self.path)
+        with writing(self.folder):
+            self._tally.write(self.folder)
             if draw is not None:
-                draw.of_campaign(self.path)
+                draw.of_campaign(self.folder)
             self._write_card(is_finished=True)
 
     def drop_held_back(self) -> None:
         """Removes the tests for which no road could be designed, and the folder if it then holds no test."""
-        with writing(self.path):
+        with writing(self.folder):
             for one in self._held_back:
-                remove_run(one.result.number, self.path)
+                remove_run(one.result.number, self.folder)
                 self.failure = one.result.description
             self._held_back = []
             if self.tests:
-                self._tally.write(self.path)
+                self._tally.write(self.folder)
             else:
                 names = (CARD, DESCRIPTION, *TABLES, LOCK)
-                take_away((self.path / name for name in names), (self.path / RUNS, *self.made))
+                take_away((self.folder / name for name in names), (self.folder / RUNS, *self.made))
 
     def _count(self, ended: FinishedRun) -> None:
         self.tests[ended.result.number] = replace(ended, test_file="", run=None)
@@ -229,7 +233,7 @@ class RunFolder:
 
     def _write_card(self, is_finished: bool) -> None:
         card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
-        write_whole(self.path / CARD, json_text(card.model_dump(mode="json")))
+        write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
 
 
 def _may_lie_in_a_new_folder(path: Path) -> bool:

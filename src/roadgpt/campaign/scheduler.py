@@ -42,9 +42,6 @@ class Progress:
     total: int | None
     """Number of tests; None if only time limits it."""
     outcomes: Counter[str] = field(default_factory=Counter)
-    cells: int = 0
-    """Number of cells that are done."""
-    of_cells: int = 0
     under_way: int = 0
 
     @property
@@ -99,7 +96,7 @@ class Scheduler:
         self._run_test = run_test or execute
         counts = store.query("SELECT outcome, count(*) FROM tests WHERE outcome IS NOT NULL GROUP BY outcome")
         total = tests and tests * len(self._names)
-        self.progress = Progress(total, Counter(dict(counts)), of_cells=len(self._names))
+        self.progress = Progress(total, Counter(dict(counts)))
         self._next = 0
         self._schedules: list[BatchScheduler] = []
         self._out: dict[int, _Out] = {}
@@ -186,7 +183,6 @@ class Scheduler:
             schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
             self._next += 1
             if schedule.is_done:
-                self.progress.cells += 1
                 continue
             self._schedules.append(schedule)
             name = schedule.cell.name
@@ -324,7 +320,6 @@ class Scheduler:
         if any(out.schedule is schedule for out in self._underfunded) or self._has_pending(schedule):
             return
         self._schedules.remove(schedule)
-        self.progress.cells += 1
         name = schedule.cell.name
         for batch in self._shared.pop(name):
             self.executor.forget(f"{name}/{batch}")

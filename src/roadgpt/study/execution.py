@@ -5,11 +5,10 @@ Every part draws its own seeds, so the files are the same for any number of work
 """
 
 from collections.abc import Callable, Iterable
-from contextlib import ExitStack, closing
+from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.brief.model import Brief
 from roadgpt.campaign.folder_campaign import campaign, work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
@@ -76,7 +75,7 @@ class _Session:
 
     def make(self, parts: Iterable[StudyPart], workers: int) -> None:
         """Makes the roads of all parts together; no language model is asked."""
-        folders, briefs = dict[str, RunFolder](), dict[str, Brief]()
+        folders = dict[str, RunFolder]()
         for part in parts:
             setup = self.plan.setup_of(part.designer)
             try:
@@ -85,17 +84,11 @@ class _Session:
                 self.problems[part.name] = Problem(part.name, str(error))
                 continue
             request = Request(words=brief.words, seed=self.plan.seed, world=self.plan.world, setup=setup)
-            runs = RunFolder.opened(request, self.plan.roads, self._place(part))
-            folders[part.name], briefs[part.name] = runs, brief
-        with ExitStack() as stack:
-            for runs in folders.values():
-                stack.enter_context(alone_in(runs.path))
-            folders = {name: runs for name, runs in folders.items() if not runs.begin()}
-            if folders:
-                several = workers if workers > 1 else 0
-                tests = work_in(self.folder, folders, briefs, self.draw, workers=several)
-                for name, _ in stack.enter_context(closing(tests)):
-                    self._count(name)
+            folders[part.name] = RunFolder.opened(request, brief, self.plan.roads, self._place(part))
+        several = workers if workers > 1 else 0
+        with closing(work_in(self.folder, folders, self.draw, workers=several)) as tests:
+            for name, _ in tests:
+                self._count(name)
         for name, runs in folders.items():
             if runs.failure:
                 self.problems[name] = Problem(name, runs.failure)
