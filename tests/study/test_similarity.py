@@ -10,9 +10,10 @@ from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, build
 from roadgpt.study import compare
-from roadgpt.study.similarity import CRITERIA, between, edits, likeness, spread
+from roadgpt.study.similarity import between, edits, likeness, spread
 from strategies import designs
 
+CRITERIA = ("turns", "sequence", "direction", "length", "incline", "shape", "general")
 BEND = [[20, 20, 0], [60, 30, 2], [100, 60, 4], [110, 110, 7], [150, 140, 8], [190, 140, 8]]
 
 

@@ -18,7 +18,7 @@ from roadgpt.run.atomic import alone_in
 from roadgpt.run.folder import Draw, finished
 from roadgpt.study.plan import StudyPart, StudyPlan
 
-AT_ONCE = 200  # parts whose folders are locked together: a process may open about 1,000 files
+AT_ONCE = 100  # parts whose folders are locked together: macOS lets a process open 256 files
 
 Tell = Callable[[int], object]
 """A function that is called with the number of finished roads of the study."""

@@ -36,7 +36,6 @@ Array = NDArray[np.float64]
 HALF_GRADE = 2.0  # percentage points, mean of the differences: what a driver feels as another hill
 HALF_SHAPE = ENOUGH  # m RMS: what the planner keeps its roads apart by
 STEP = 5.0  # m between the points of a whole road's steps; the competition's are 1 m apart, of 60 m only
-CRITERIA = ("turns", "sequence", "direction", "length", "incline", "shape", "general")
 
 
 @dataclass(frozen=True)
