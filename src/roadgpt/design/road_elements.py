@@ -11,7 +11,7 @@ they all go up, down or level.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Literal
 
 import numpy as np
@@ -151,12 +151,49 @@ def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
     return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
 
 
-def shows(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether a measured road has the turns of the elements, each to its side and on its slope."""
-    if not shows_turns(found, elements):
-        return False
+def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
+    """Returns whether each measured turn goes up, down or level as it is written, or has the grade asked for.
+
+    The road must have the turns of the elements.
+    """
     turns = (one for one in elements if one.is_turn)
-    return all(way(turn.grade) == way(one.incline) for turn, one in zip(found.turns, turns, strict=True))
+    return all(
+        way(turn.grade) == way(one.incline)
+        or (one.asked is not None and one.asked.grade is not None and turn.grade in one.asked.grade)
+        for turn, one in zip(found.turns, turns, strict=True)
+    )
+
+
+def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
+    """Returns the measured feature of an element; None where it is not seen by itself.
+
+    The road must have the turns of the elements. Of several elements between two turns, the longest is seen.
+    """
+    turns = [element.name for element in elements if element.is_turn]
+    if name in turns:
+        return found.turns[turns.index(name)]
+    number, between = 0, list[RoadElement]()
+    for element in elements:
+        if element.is_turn:
+            if name in [other.name for other in between]:
+                break
+            number, between = number + 1, []
+        elif element.segments:
+            between.append(element)
+    if not between or max(between, key=lambda element: element.length).name != name:
+        return None
+    return next((feature for feature in found.gaps[number] if feature.kind == "straight"), None)
+
+
+def numbered(elements: RoadElements) -> RoadElements:
+    """Returns the elements with the indices that their segments have when they are joined."""
+    firsts = accumulate((len(element.segments) for element in elements), initial=0)
+    return tuple(replace(element, first=first) for element, first in zip(elements, firsts, strict=False))
+
+
+def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadElements:
+    """Returns numbered elements made of other segments, as many of them as before."""
+    return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
 
 
 def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:

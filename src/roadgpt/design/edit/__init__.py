@@ -14,16 +14,16 @@ from typing import NamedTuple
 from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.candidates import EditCandidate, alternating_candidates, change_candidates
+from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.diff_text import sentences
-from roadgpt.design.edit.insertion import insertion_candidates
+from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.removal import removal_candidates
 from roadgpt.design.edit.request import Change, EditRequest, What
-from roadgpt.design.edit.search import tried
-from roadgpt.design.edit.steps import Adjust, EditStep, Mirror
+from roadgpt.design.edit.search import made
+from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror
+from roadgpt.design.repair import changes_between
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
@@ -87,15 +87,15 @@ def _by_rules(design: Design, request: EditRequest, world: World, geometry: Geom
             idle.append(change)
     if not rows:
         raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
-    result = tried(design, elements, _agreed(rows), world, geometry)
-    if result.made is None:
+    road, objection, draft = made(design, elements, _agreed(rows), world, geometry)
+    if road is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
-        raise EditError(f"{said} cannot be done on this road: {result.objection}; ask for less, or elsewhere")
-    if result.made.design.segments == design.segments and not _is_mirror(request):
+        raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+    if road.design.segments == design.segments and not _is_mirror(request):
         raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
-    told = sentences(design, elements, found, result.made)
+    told = sentences(design, elements, found, road, changes_between(draft, road.design))
     told += tuple(f"'{change.words}' was so already" for change in idle)
-    return Edited(result.made.design, told, request.unused)
+    return Edited(road.design, told, request.unused)
 
 
 def _agreed(rows: Sequence[tuple[Change, Sequence[EditCandidate]]]) -> list[Sequence[EditCandidate]]:

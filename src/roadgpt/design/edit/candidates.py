@@ -1,62 +1,51 @@
-"""The ways in which a change can be made, the preferred one first: later ones give way where the map is full.
+"""The steps that make a change: which values to aim at, and what range may be measured in their stead.
 
-Words without numbers leave room ('sharper'), numbers do not: then only what was not said gives way, such as
-the radius of a turn whose angle was.
+Words without numbers leave room ('sharper'). Numbers do not: then only what was not said gives way, such as
+the radius of a turn whose angle was said. A second candidate has wider ranges, or lets more elements change.
 """
 
 from collections.abc import Callable, Sequence
-from math import radians
+from math import inf
 
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import KINDS
-from roadgpt.check.measures import Measures
-from roadgpt.design.edit.length_candidates import road_length_candidates
+from roadgpt.brief.words import KINDS, PERCENT_SLACK, Range
+from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.slope_candidates import (
-    bounded_slope_candidates,
-    road_slope_candidates,
-    slope_candidates,
+from roadgpt.design.edit.steps import (
+    Adjust,
+    Become,
+    EditCandidate,
+    EditStep,
+    Mirror,
+    RoadLength,
+    SlopeOfAll,
+    Wanted,
+    near,
+    straight,
 )
-from roadgpt.design.edit.steps import Adjust, Become, EditStep, Mirror, straight
 from roadgpt.design.elements import least_radius
-from roadgpt.design.road_elements import RoadElement, is_turn
+from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
-EditCandidate = tuple[EditStep, ...]
-
-SHARPER = (
-    (1.25, 0.75),
-    (1.15, 0.8),
-    (1.35, 0.7),
-    (1.1, 0.75),
-    (1.2, 1.0),
-    (1.0, 0.75),
-    (1.1, 0.9),
-    (1.1, 1.0),
-)
-GENTLER = (
-    (0.75, 1.33),
-    (0.7, 1.2),
-    (0.8, 1.2),
-    (0.75, 1.0),
-    (0.85, 1.15),
-    (0.6, 1.5),
-    (0.9, 1.1),
-    (1.0, 1.2),
-)
-TIGHTER = ((1.0, 0.7), (1.0, 0.8), (1.0, 0.6), (1.0, 0.88))
-WIDER = ((1.0, 1.4), (1.0, 1.25), (1.0, 1.6), (1.0, 1.15))
-FLIPPED = (
-    (0.9, 1.0), (1.1, 1.0), (1.0, 0.8), (0.8, 1.0), (1.0, 1.25), (1.2, 1.0), (0.65, 1.0), (0.8, 0.8),
-)  # fmt: skip
-RADII = (1.0, 0.85, 1.2, 0.7, 1.4, 0.55, 1.7)  # where the angle was said, and the radius was not
-LONGER, SHORTER = (1.4, 1.25, 1.6, 1.2, 1.9), (0.65, 0.75, 0.55, 0.8, 0.88)
+SHARPER, GENTLER = (1.25, 0.75), (0.75, 1.33)  # shares of angle and radius to aim at
+TIGHTER, WIDER = 0.7, 1.4  # shares of the radius
+LONGER, SHORTER = 1.4, 0.65  # shares of a length
+ROAD_LONGER, ROAD_SHORTER = 1.3, 0.75  # shares of the length of a road
+FLIPPED = Range(0.65, 1.25)  # shares of angle and radius that a turn may have when it goes the other way
+CLEARLY, FURTHER = 0.6, 1.6  # shares of a change that was only named ('sharper') that will do
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
+SEEN_STEP = 8.0  # degrees: a smaller change of angle is hardly seen
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
 MOST_ANGLE = 210.0
 SEEN = 10.6  # m: the shortest straight that is seen
+KEPT = 17.5  # m of a straight that others are shortened to
+ROAD_SLACK = 0.02  # of the length of a road
+STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
+STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
+LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
+STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
 def change_candidates(
@@ -65,29 +54,30 @@ def change_candidates(
     """Returns all candidates, the preferred one first; none where everything is as was asked for already.
 
     Args:
-        change: anything but adding, removing and mirroring.
-        elements: those that are meant.
-        found: measures of the whole road.
-        world: limits.
+        change: Anything but an addition, a removal or a mirror image.
+        elements: The elements that are meant.
+        found: The measures of the whole road.
+        world: The limits of the rules.
 
     Raises:
-        EditError: no road can be like that.
+        EditError: No road can be like that.
     """
     if change.bound:
         elements = [element for element in elements if _is_beyond(change, element, found)]
         if change.what == "slope" and elements:
-            return bounded_slope_candidates(change, elements)
+            return _bounded_slopes(change, elements)
+    is_road = change.target is not None and change.target.noun == "road"
     match change.what:
         case "angle" | "radius" | "shape":
             return _each(elements, lambda element: _bends(change, element, world))
+        case "length" if is_road:
+            return _road_lengths(change, elements, world)
         case "length":
-            if change.target is not None and change.target.noun == "road":
-                return road_length_candidates(change, elements, found, world)
             return _each(elements, lambda element: _lengths(change, element, world))
+        case "slope" if is_road:
+            return _road_slopes(change, elements, found, world)
         case "slope":
-            if change.target is not None and change.target.noun == "road":
-                return road_slope_candidates(change, elements, found, world)
-            return _each(elements, lambda element: slope_candidates(change, element, found, world))
+            return _each(elements, lambda element: _slopes(change, element, found, world))
         case "side":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
@@ -98,7 +88,7 @@ def change_candidates(
 
 
 def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
-    """Returns whether an element is beyond the bound of a change."""
+    """Is an element beyond the bound of a change?"""
     assert change.to is not None
     seen = element.seen
     if change.what == "slope":
@@ -132,38 +122,6 @@ def _each(
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
 
 
-def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]:
-    seen = element.seen
-    if element.kind != "turn" or seen is None:
-        raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
-    least = least_radius(world)
-    if change.what == "shape":
-        pairs = _shapes(change, element, least)
-    elif change.what == "angle":
-        pairs = _angles(change, element)
-    else:
-        pairs = _radii(change, element, world)
-    is_said = change.by is not None or change.to is not None or change.times is not None
-    free = change.what == "angle" and is_said
-    out: list[EditStep] = []
-    for degrees, radius in pairs:
-        radius = max(radius, min(least, seen.radius)) if not is_said or free else max(radius, least)
-        radius = min(radius, max(WIDEST, seen.radius))
-        if not is_turn(degrees) or degrees > MOST_ANGLE:
-            continue
-        is_other = abs(degrees - seen.degrees) > 2.5 or abs(radius / seen.radius - 1) > 0.045
-        if not is_other and not is_said:
-            continue
-        slack = (1.0, 0.25 if free else 0.05) if is_said else (3.0, 0.12)
-        if change.what == "radius" and is_said:
-            slack = (4.0, 0.05)
-        out.append(Adjust(element, degrees, radius, slack=slack))
-    if not out and pairs:
-        where = f"the turn of {seen.degrees:.0f} degrees with a radius of {seen.radius:.0f} m"
-        raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
-    return out
-
-
 def _aim(change: Change, now: float) -> float | None:
     """The number that was asked for, where one was: said itself, as a difference or as a multiple."""
     if change.to is not None:
@@ -173,65 +131,89 @@ def _aim(change: Change, now: float) -> float | None:
     return None if change.times is None else now * change.times
 
 
-def _angles(change: Change, element: RoadElement) -> list[tuple[float, float]]:
+def _towards(now: float, aim: float) -> Wanted:
+    """A value that was not said: clearly on the way from one to the other, or somewhat further."""
+    ends = now + CLEARLY * (aim - now), now + FURTHER * (aim - now)
+    return Wanted(aim, Range(min(ends), max(ends)))
+
+
+def _not_away(now: float, aim: float) -> Wanted:
+    """A value that may stay as it is, or go the way of the aim."""
+    ends = now, now + FURTHER * (aim - now)
+    return Wanted(aim, Range(0.99 * min(ends), 1.01 * max(ends)))
+
+
+def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]:
+    seen = element.seen
+    if element.kind != "turn" or seen is None:
+        raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
+    d, r, least = seen.degrees, seen.radius, least_radius(world)
+    if change.what == "shape":
+        return _shaped(change, element, least)
+    aim = _aim(change, d if change.what == "angle" else r)
+    if aim is not None:
+        return [_bent_to(change, element, aim, world)]
+    if change.what == "radius" and not (change.more < 0 and 0.93 * r < least):
+        aim = r * (1 + ((TIGHTER if change.more < 0 else WIDER) - 1) * min(change.dose, 1.4))
+        radius = _towards(r, min(max(aim, min(least, r)), max(WIDEST, r)))
+        return [Adjust(element, near(d, 3.0), radius)]
+    if change.what == "radius":  # as tight as may be: then it turns further
+        return [Adjust(element, _towards(d, 1.25 * d), near(r, 0.12 * r))]
+    further, wider = SHARPER if change.more > 0 else GENTLER
+    degrees = d * (1 + (further - 1) * change.dose)
+    if change.more > 0:
+        degrees = min(max(degrees, d + LEAST_STEP * change.dose), max(180.0, d + 5))
+    else:
+        degrees = max(degrees, min(LEAST_ANGLE, d))
+    aim = r * max(1 + (wider - 1) * change.dose, 0.4)
+    aim = min(max(aim, min(least, r)), max(WIDEST, r))
+    if degrees > MOST_ANGLE or (abs(degrees - d) <= 2.5 and abs(aim / r - 1) <= 0.045):
+        where = f"the turn of {d:.0f} degrees with a radius of {r:.0f} m"
+        raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
+    if abs(degrees - d) >= SEEN_STEP:
+        return [Adjust(element, _towards(d, degrees), _not_away(r, aim))]
+    return [Adjust(element, _not_away(d, degrees), _towards(r, aim))]
+
+
+def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> EditStep:
+    """A turn whose angle, or radius, was said."""
     seen = element.seen
     assert seen is not None
-    aim = _aim(change, seen.degrees)
-    if aim is not None:
+    if change.what == "angle":
         if not LEAST_ANGLE - 1.5 <= aim <= MOST_ANGLE:
             raise EditError(
                 f"a turn of {aim:.0f} degrees cannot be made; "
                 f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
             )
-        return [(aim, seen.radius * share) for share in RADII]
-    out = []
-    for more, wider in SHARPER if change.more > 0 else GENTLER:
-        more, wider = 1 + (more - 1) * change.dose, max(1 + (wider - 1) * change.dose, 0.4)
-        degrees = seen.degrees * more
-        if more > 1:
-            degrees = max(degrees, seen.degrees + LEAST_STEP * change.dose)
-            degrees = min(degrees, max(180.0, seen.degrees + 5))
-        elif more < 1:
-            degrees = max(degrees, min(LEAST_ANGLE, seen.degrees))
-        out.append((degrees, seen.radius * wider))
-    return out
+        return Adjust(element, near(aim, 1.0), Wanted(seen.radius, Range(0.5 * seen.radius, 2 * seen.radius)))
+    if aim < world.min_radius:
+        raise EditError(
+            f"a radius of {aim:.1f} m is tighter than the {world.min_radius:.1f} m that the rules allow; "
+            f"ask for {least_radius(world):.0f} m or more"
+        )
+    if aim > WIDEST:
+        raise EditError(
+            f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
+        )
+    aim = max(aim, least_radius(world))
+    return Adjust(element, near(seen.degrees, 4.0), near(aim, 0.05 * aim))
 
 
-def _radii(change: Change, element: RoadElement, world: World) -> list[tuple[float, float]]:
-    seen = element.seen
-    assert seen is not None
-    aim = _aim(change, seen.radius)
-    if aim is not None:
-        if aim < world.min_radius:
-            raise EditError(
-                f"a radius of {aim:.1f} m is tighter than the {world.min_radius:.1f} m that the rules allow; "
-                f"ask for {least_radius(world):.0f} m or more"
-            )
-        if aim > WIDEST:
-            raise EditError(
-                f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
-            )
-        return [(seen.degrees * share, aim) for share in (1.0, 0.96, 1.04)]
-    pairs = TIGHTER if change.more < 0 else WIDER
-    least = least_radius(world)
-    if change.more < 0 and seen.radius * 0.93 < least:  # as tight as may be: then it turns further
-        return [(seen.degrees * more, seen.radius) for more in (1.25, 1.15, 1.1)]
-    return [(seen.degrees * a, seen.radius * (1 + (r - 1) * min(change.dose, 1.4))) for a, r in pairs]
-
-
-def _shapes(change: Change, element: RoadElement, least: float) -> list[tuple[float, float]]:
-    """Angles and radii that a hairpin, or a gentle turn, may have; empty where it is one."""
+def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep]:
+    """A hairpin, a sharp or a gentle turn; nothing where it is one."""
     seen = element.seen
     assert seen is not None
     d, r = seen.degrees, seen.radius
     if change.kind in ("hairpin", "u_turn", "switchback"):
-        meaning = KINDS[change.kind]
-        assert meaning.degrees is not None
-        tight = min(max(min(r, 22.0), least), 30.0)
-        if d in meaning.degrees and r <= 34 and not (change.sharpness == "sharp" and r > 20):
+        angles = KINDS[change.kind].degrees or Range()
+        if d in angles and r <= 34 and not (change.sharpness == "sharp" and r > 20):
             return []
-        angles = (d,) if d in meaning.degrees else (170.0, 165.0, 180.0, 158.0, 152.0)
-        return [(angle, radius) for angle in angles for radius in (tight, max(17.0, least), 26.0)]
+        tight = min(max(min(r, 22.0), least), 30.0)
+        return [
+            Adjust(
+                element, Wanted(d if d in angles else 170.0, angles), Wanted(tight, Range(0.98 * least, 34.0))
+            )
+        ]
     if change.kind is not None:
         raise EditError(
             "one turn cannot be made several; say: remove the turn, and add the others in its place"
@@ -239,84 +221,193 @@ def _shapes(change: Change, element: RoadElement, least: float) -> list[tuple[fl
     if change.sharpness == "sharp":
         if r <= 29 and d >= 32:
             return []
-        angle = max(d, 45.0)
-        return [
-            (angle, max(min(0.75 * r, 22.0), least)),
-            (angle, least),
-            (max(d, 60.0), 20.0),
-            (max(d, 35.0), 24.0),
-        ]
+        radius = Wanted(max(min(0.75 * r, 22.0), least), Range(0.98 * least, 29.0))
+        return [Adjust(element, Wanted(max(d, 45.0), Range(max(d, 35.0) - 2, max(d, 60.0) + 10)), radius)]
     bound = 60.0 if change.sharpness == "sweeping" else 40.0
     if r >= bound * 1.02 and 15 <= d <= 120:
         return []
-    angle = min(max(d, 18.0), 115.0)
-    wide = max(bound * 1.12, r)
-    return [(min(angle, most), wide) for most in (115.0, 70.0, 50.0, 35.0, 25.0, 20.0)]
+    radius = Wanted(max(bound * 1.12, r), Range(bound * 1.03, WIDEST))
+    return [
+        Adjust(element, Wanted(min(max(d, 18.0), 115.0), Range(16.0, min(max(d, 18.0), 115.0) + 3)), radius)
+    ]
 
 
 def _lengths(change: Change, element: RoadElement, world: World) -> list[EditStep]:
     seen = element.seen
     before = seen.length if seen else element.length
-    if change.to is not None:
-        lengths, slack = [change.to], 1.0
-    elif change.by is not None:
-        lengths, slack = [before + change.more * change.by], 1.0
-    elif change.times is not None:
-        lengths, slack = [before * change.times], 1.0
-    else:
-        shares = LONGER if change.more > 0 else SHORTER
-        lengths = [before * (1 + (share - 1) * change.dose) for share in shares]
-        if change.more > 0:
-            lengths[0] = max(lengths[0], before + 15)
-        slack = 2.5
+    aim = _aim(change, before)
+    share = 1 + ((LONGER if change.more > 0 else SHORTER) - 1) * change.dose
+    wished = before * share if aim is None else aim
     if element.kind == "turn":
         assert seen is not None
+        wanted = near(wished, 0.06 * wished) if aim is not None else _towards(before, wished)
         tight = least_radius(world)
-        out: list[EditStep] = []
-        for length in lengths:
-            radius = seen.radius * length / before
-            if radius < tight:  # then it also turns less far
-                degrees = seen.degrees * max(length / before / (tight / seen.radius), 0.3)
-                out.append(Adjust(element, degrees, max(tight, min(seen.radius, radius)), slack=(4.0, 0.12)))
-            else:
-                out.append(
-                    Adjust(element, seen.degrees, None, length, slack=(2.0, 0.1), length_slack=0.06 * length)
-                )
-        return out
-    if change.to is None and change.by is None and change.times is None:
-        lengths = [max(length, min(SEEN + 1, before)) for length in lengths]
-    if lengths[0] < SEEN - 0.6:
+        if seen.radius * wished / before >= tight:
+            return [Adjust(element, near(seen.degrees, 2.0), None, wanted)]
+        degrees = seen.degrees * max(
+            wished / before / (tight / seen.radius), 0.3
+        )  # then it also turns less far
+        return [Adjust(element, near(degrees, 4.0), near(max(tight, min(seen.radius, tight)), 0.12 * tight))]
+    if aim is None:
+        if change.more > 0:
+            wished = max(wished, before + 15)
+        wished = max(wished, min(SEEN + 1, before))
+        length = _towards(before, wished)
+        return [
+            Adjust(
+                element, length=Wanted(wished, Range(max(length.room.lo, SEEN), max(length.room.hi, SEEN)))
+            )
+        ]
+    if wished < SEEN - 0.6:
         raise EditError(
-            f"a straight of {max(lengths[0], 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
+            f"a straight of {max(wished, 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
         )
-    return [
-        Adjust(element, length=max(length, SEEN), length_slack=max(slack, 0.02 * length))
-        for length in lengths
+    return [Adjust(element, length=near(max(wished, SEEN), max(1.0, 0.02 * wished)))]
+
+
+def _road_lengths(change: Change, elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
+    """Another length of the road: by its straights alone, or by its turns as well."""
+    own = sum(element.length for element in elements)
+    aim = _aim(change, own)
+    if aim is None:
+        aim = own * (1 + ((ROAD_LONGER if change.more > 0 else ROAD_SHORTER) - 1) * change.dose)
+    if aim < world.min_length:
+        raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.min_length:g} m or more")
+    slack = max(2.0, ROAD_SLACK * aim)
+    whole = RoadLength(Range(aim - slack, aim + slack))
+    lengths = [(e, e.seen.length) for e in elements if e.kind == "gap" and e.seen is not None]
+    spare = [length if aim > own else max(length - KEPT, 0.0) for _, length in lengths]
+    share = (aim - own) / max(sum(spare), 1e-9)
+    straights: list[EditStep] = [
+        Adjust(element, length=Wanted(length + share * part, Range(SEEN)))
+        for (element, length), part in zip(lengths, spare, strict=True)
     ]
+    everything: list[EditStep] = [
+        Adjust(element, length=Wanted(now, Range(SEEN))) for element, now in lengths
+    ]
+    for seen, element in ((e.seen, e) for e in elements if e.kind == "turn"):
+        assert seen is not None
+        radius = Range(min(least_radius(world), seen.radius), max(WIDEST, seen.radius))
+        everything.append(Adjust(element, near(seen.degrees, 2.0), Wanted(seen.radius, radius)))
+    can = sum(spare) and share > -1
+    return ((*straights, whole), (*everything, whole)) if can else ((*everything, whole),)
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """The mirror image of each; where that finds no room, turned a little less or more as well."""
-    flips = (Mirror(frozenset(element.name for element in elements)),)
-    least = least_radius(world)
-    out: list[EditCandidate] = [flips]
-    for more, wider in FLIPPED:
-        bends: list[EditStep] = []
-        for element in elements:
-            seen = element.seen
-            assert seen is not None
-            degrees, radius = seen.degrees * more, seen.radius * wider
-            if is_turn(degrees - 3) and degrees <= MOST_ANGLE and radius >= min(least, seen.radius):
-                bends.append(Adjust(element, degrees, radius, slack=(3.0, 0.12)))
-        if len(bends) == len(elements):
-            out.append((*flips, *bends))
-    return tuple(out)
+    steps: list[EditStep] = [Mirror(frozenset(element.name for element in elements))]
+    for element in elements:
+        d, r = (element.seen.degrees, element.seen.radius) if element.seen else (0.0, inf)
+        degrees = Range(
+            max(FLIPPED.lo * d, min(LEAST_ANGLE, d - 1)), min(FLIPPED.hi * d, max(MOST_ANGLE, d + 1))
+        )
+        radius = Range(max(FLIPPED.lo * r, min(world.min_radius, 0.98 * r)), FLIPPED.hi * r)
+        steps.append(Adjust(element, Wanted(d, degrees), Wanted(r, radius)))
+    return (tuple(steps),)
 
 
 def _straightened(element: RoadElement) -> list[EditStep]:
-    """A straight in the place of a turn: as long as the turn was, or as long as its chord."""
+    """A straight in the place of a turn, as long as the turn was if there is room for it."""
     if element.kind != "turn" or element.seen is None:
         return []
-    chord = 2 * element.seen.radius * abs(radians(min(element.seen.degrees, 180)) / 2) * 0.8
-    lengths = [element.length, chord, 25.0, 60.0]
-    return [Become(element, (straight(length, element.incline),)) for length in lengths]
+    return [Become(element, (straight(element.length, element.incline),))]
+
+
+def _slopes(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
+    """One turn or straight on another grade."""
+    now = element.seen.grade if element.seen else element.incline
+    limit = 100 * world.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
+        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
+    )
+    sign = sign or (-1 if found.grade <= -LEVEL else 1)
+    aim: float | None = None
+    if change.to is not None and change.way != "flat":
+        aim = sign * change.to
+    elif change.by is not None:
+        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
+    elif change.times is not None:
+        aim = now * change.times
+    if change.to is not None or (change.by is not None and aim is not None):
+        _refuse_too_steep(max(abs(aim or 0.0), change.to or 0.0), limit)
+    if aim is not None:
+        return _graded(element, aim, (0.5, PERCENT_SLACK))
+    if change.way == "flat":
+        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
+            return []
+        return _graded(element, 0.0, (0.5, CLEARLY_LEVEL))
+    if change.way and not change.more:
+        if way(now) == change.way:
+            return []
+        return [
+            Adjust(element, grade=_signed(5.0, low, high, sign)) for low, high in ((3.0, 12.0), (1.3, 13.0))
+        ]
+    if change.more > 0 and change.way and way(now) != change.way:
+        return [Adjust(element, grade=_signed(6.0, 3.0, 12.0, sign))]
+    if change.more < 0:
+        ends = 0.1 * now, 0.9 * now
+        is_level = abs(now) < LEVEL
+        return [] if is_level else [Adjust(element, grade=Wanted(FLATTER * now, Range(min(ends), max(ends))))]
+    steep = max(abs(now) * (1 + (STEEPER - 1) * change.dose), abs(now) + STEEPER_BY * change.dose)
+    steep = min(steep if abs(now) >= LEVEL else STEEP_FROM, limit - 0.3)
+    if steep <= abs(now) + 0.4:
+        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
+    low, high = min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)
+    return [Adjust(element, grade=_signed(steep, low, high, sign))]
+
+
+def _refuse_too_steep(grade: float, limit: float) -> None:
+    if grade > limit:
+        raise EditError(f"{grade:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
+
+
+def _graded(element: RoadElement, aim: float, slacks: Sequence[float]) -> list[EditStep]:
+    return [Adjust(element, grade=near(aim, slack)) for slack in slacks]
+
+
+def _signed(aim: float, low: float, high: float, sign: int) -> Wanted:
+    """A grade between two sizes, uphill where the sign is 1."""
+    return Wanted(sign * aim, Range(low, high) if sign > 0 else Range(-high, -low))
+
+
+def _road_slopes(
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+) -> tuple[EditCandidate, ...]:
+    """Many elements on other grades."""
+    names = frozenset(element.name for element in elements)
+    limit = 100 * world.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
+    _refuse_too_steep(change.to or 0.0, limit)
+    if change.way == "flat" or change.to == 0:
+        return ((SlopeOfAll(names, times=0.0),),)
+    if change.to is not None:
+        sign = sign or (-1 if found.grade < 0 else 1)
+        return ((SlopeOfAll(names, way=sign, low=change.to, high=change.to),),)
+    if change.by is not None:
+        return ((SlopeOfAll(names, more=(change.more or 1) * change.by),),)
+    if change.times is not None:
+        return ((SlopeOfAll(names, times=change.times),),)
+    inclines = [segment.incline for element in elements for segment in element.segments]
+    if sign and not change.more:
+        if inclines and min(incline * sign for incline in inclines) >= 1.5:
+            return ()
+        return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
+    if change.more < 0:
+        return tuple((SlopeOfAll(names, times=times),) for times in (FLATTER, 0.75))
+    if all(abs(incline) < LEVEL for incline in inclines):
+        return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
+    most = limit - 0.3
+    return tuple(
+        (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-most, high=most),)
+        for times in (STEEPER, 1.3, 1.15)
+    )
+
+
+def _bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> tuple[EditCandidate, ...]:
+    """Slopes within the bound of a change."""
+    assert change.to is not None
+    names = frozenset(element.name for element in elements)
+    if change.bound < 0:
+        return ((SlopeOfAll(names, low=-change.to, high=change.to),),)
+    up = sum(element.incline * element.length for element in elements) >= 0
+    return ((SlopeOfAll(names, way=1 if up else -1, low=change.to),),)

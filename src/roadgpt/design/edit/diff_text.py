@@ -3,8 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import MeasuredFeature, Measures
-from roadgpt.design.edit.search import Made, seen_as
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
+from roadgpt.design.fit import Look
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, seen_as
 from roadgpt.road import Design, Geometry
 
 MOVED = 0.005  # m
@@ -12,21 +12,30 @@ FADING = 12.0  # m that a straight gains at most from turns that fade into it
 AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
 
 
-def sentences(before: Design, elements: RoadElements, found: Measures, made: Made) -> tuple[str, ...]:
-    """Returns a sentence for each turn and straight that has changed, and for the road as a whole."""
-    besides = [said for said in made.besides if not said.startswith(AGAIN)]
+def sentences(
+    before: Design, elements: RoadElements, found: Measures, after: Look, besides: Sequence[str] = ()
+) -> tuple[str, ...]:
+    """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
+
+    Args:
+        before: The road before the edit.
+        elements: Its elements.
+        found: Its measures.
+        after: The road after the edit.
+        besides: Sentences about what was changed only to keep the road valid.
+    """
+    besides = [said for said in besides if not said.startswith(AGAIN)]
     if besides:
         besides = [f"to keep it valid: {'; '.join(besides)}"]
-    things, whole = _things(elements, made), _whole(found, made.found)
-    return (*things, *whole, *_placing(before, made.design), *besides)
+    things, whole = _things(elements, after.elements, after.found), _whole(found, after.found)
+    return (*things, *whole, *_placing(before, after.design), *besides)
 
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
     """Returns sentences that compare two designs, turn by turn where both have the same elements."""
     (elements, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
-    made = Made(after, new, measured)
     same = [element.name for element in elements] == [element.name for element in new]
-    things = tuple(_things(elements, made)) if same else _counted(found, measured)
+    things = tuple(_things(elements, new, measured)) if same else _counted(found, measured)
     return (*things, *_whole(found, measured), *_placing(before, after))
 
 
@@ -36,20 +45,20 @@ def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
     return tuple(said)
 
 
-def _things(before: RoadElements, made: Made) -> Iterator[str]:
-    after = {element.name: element for element in made.elements}
+def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterator[str]:
+    after = {element.name: element for element in new}
     names = _names(before)
     for element in before:
         now = after.get(element.name)
         if now is None or (now.kind != element.kind):
             yield _gone(element, names[element.name], now)
         elif now.segments != element.segments:
-            yield from _other(element, now, names[element.name], made)
-    numbers = _names(made.elements)
-    for element in made.elements:
+            yield from _other(element, now, names[element.name], seen_as(now.name, new, found))
+    numbers = _names(new)
+    for element in new:
         if element.name in names or element.name.endswith(" rest"):
             continue
-        seen = seen_as(element.name, made.elements, made.found)
+        seen = seen_as(element.name, new, found)
         if element.kind == "turn" and seen:
             yield f"{numbers[element.name]} is new: {_turn(seen)}"
         elif element.kind == "gap":
@@ -84,9 +93,9 @@ def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
     return f"{name} is gone"
 
 
-def _other(element: RoadElement, now: RoadElement, name: str, made: Made) -> Iterator[str]:
+def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeature | None) -> Iterator[str]:
     """What is different about an element that stayed."""
-    was, seen = element.seen, seen_as(element.name, made.elements, made.found)
+    was = element.seen
     if not now.segments or (was is not None and seen is None and now.length < was.length):
         short = f"{name}: {now.length:g} m as written, too short to be seen"
         yield short if now.segments else f"{name} is gone"

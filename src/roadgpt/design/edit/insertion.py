@@ -1,15 +1,29 @@
-"""Ways to add turns and straights; what stands around them keeps every number."""
+"""Ways to add turns and straights, and to take them away; all around them keeps every number."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
 
 from roadgpt.brief.model import OTHER_SIDE, Side
-from roadgpt.design.edit.candidates import EditCandidate
+from roadgpt.brief.outline import Feature
+from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.spacing import SEPARATE, gap
-from roadgpt.design.edit.steps import Adjust, EditStep, Goal, Insert, turn_segments
+from roadgpt.design.edit.steps import (
+    FREE_STRAIGHT,
+    HIDDEN,
+    SEPARATE,
+    Adjust,
+    Become,
+    EditCandidate,
+    EditStep,
+    Insert,
+    Wanted,
+    gap,
+    near,
+    straight,
+    turn_segments,
+)
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -18,23 +32,22 @@ from roadgpt.road import World
 JOINT = 8.0  # m between turns of either hand
 LEAD = 17.0  # m before the first turn and behind the last
 NEW_STRAIGHT = 40.0  # m of one whose length was not said
-SPARE = ((0.0, 0.0), (20.0, 0.0), (0.0, 20.0), (25.0, 25.0), (45.0, 0.0), (0.0, 45.0))
+SPARE = (0.0, 20.0)
 """Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
 TRANSITION_SHARE = 0.22  # of the arc
-
-# Degrees and radii, metres, that are tried.
-ANY = ((60, 25), (50, 22), (45, 32), (75, 22), (90, 20), (40, 20), (35, 28), (110, 18), (30, 40))
-KINDS = {
-    "hairpin": ((168, 18), (160, 16.5), (176, 21), (152, 17), (146, 19)),
-    "u_turn": ((178, 18), (170, 16.5), (184, 21), (160, 17)),
-    "s_bend": ((50, 25), (40, 22), (60, 20), (35, 30)),
-    "chicane": ((45, 20), (40, 18), (55, 18), (35, 22)),
+PREFERRED = {
+    "": (60.0, 25.0),
+    "hairpin": (168.0, 18.0),
+    "u_turn": (178.0, 18.0),
+    "s_bend": (50.0, 25.0),
+    "chicane": (45.0, 20.0),
+    "sharp": (80.0, 20.0),
+    "gentle": (40.0, 55.0),
+    "sweeping": (40.0, 75.0),
 }
-SHARPNESS = {
-    "sharp": ((80, 20), (60, 18), (95, 17.5), (50, 20), (42, 21)),
-    "gentle": ((40, 55), (30, 52), (25, 50), (50, 48), (60, 46)),
-    "sweeping": ((40, 75), (30, 72), (25, 70), (55, 68)),
-}
+"""Degrees, and metres of radius, of a new turn of which no more is said."""
+FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a turn that goes
+SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent that are aimed at
 
 
 def insertion_candidates(
@@ -54,14 +67,13 @@ def insertion_candidates(
     before, splits = _place(change, elements)
     if change.target is not None and change.target.noun == "straight":
         return _straight_ways(change, elements, before, splits, number)
-    out: list[EditCandidate] = []
-    # first all places with the first measures, then all with the second, ...
-    for spare in SPARE:
-        for measures in _measures(change, world):
-            for sides in _sides(change, elements, before):
-                for split in splits:
-                    out.append((_turns(change, elements, before, split, sides, measures, spare, number),))
-    return tuple(out)
+    shape = _shape(change, world)
+    return tuple(
+        (_turns(change, elements, before, split, sides, shape, spare, number),)
+        for spare in SPARE
+        for sides in _sides(change, elements, before)
+        for split in splits
+    )
 
 
 def _place(change: Change, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
@@ -128,12 +140,8 @@ def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
     return found
 
 
-def _measures(change: Change, world: World) -> list[tuple[float, float]]:
-    pairs: Sequence[tuple[float, float]] = ANY
-    if change.kind in KINDS:
-        pairs = KINDS[change.kind]
-    elif change.sharpness in SHARPNESS:
-        pairs = SHARPNESS[change.sharpness]
+def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
+    """Angle and radius of the new turns."""
     least = least_radius(world)
     if change.radius is not None and change.radius < world.min_radius:
         raise EditError(
@@ -142,12 +150,20 @@ def _measures(change: Change, world: World) -> list[tuple[float, float]]:
         )
     if change.degrees is not None and not 11 <= change.degrees <= 240:
         raise EditError(f"a turn of {change.degrees:g} degrees cannot be added; ask for 15 to 210 degrees")
-    out: list[tuple[float, float]] = []
-    for degrees, radius in pairs:
-        pair = (change.degrees or degrees, max(change.radius or radius, least))
-        if pair not in out:
-            out.append(pair)
-    return out
+    word: str = change.sharpness or ""
+    meant = SHARPNESS[change.sharpness] if change.sharpness else KINDS["turn"]
+    if change.kind and change.kind in PREFERRED:
+        word, meant = change.kind, KINDS[change.kind]
+    aim, radius = PREFERRED[word]
+    angles, radii = meant.degrees or Range(), meant.radius or Range(0, 35.0 if word else 45.0)
+    degrees = Wanted(aim, Range(angles.lo + 2, angles.hi - 5))
+    if change.degrees is not None:
+        degrees = near(change.degrees, 1.5)
+    radius = max(radius, least)
+    wanted = Wanted(radius, Range(max(1.03 * radii.lo, 0.98 * least), max(0.97 * radii.hi, radius)))
+    if change.radius is not None:
+        wanted = near(max(change.radius, least), 0.05 * change.radius)
+    return degrees, wanted
 
 
 def _sides(change: Change, elements: RoadElements, before: str) -> list[list[Side]]:
@@ -177,8 +193,8 @@ def _turns(
     before: str,
     split: tuple[str, int],
     sides: Sequence[Side],
-    measures: tuple[float, float],
-    spare: tuple[float, float],
+    shape: tuple[Wanted, Wanted],
+    spare: float,
     number: int,
 ) -> EditStep:
     names = [element.name for element in elements]
@@ -192,42 +208,37 @@ def _turns(
         gap_before, gap_after = gap_before + first, gap_after - first
     incline = _incline(elements, at)
     new: list[RoadElement] = []
-    goals: list[Goal] = []
-    lead = _lead(turn_before, sides[0], gap_before) + spare[0]
+    lead = _lead(turn_before, sides[0], gap_before) + spare
     if lead:
         new.append(gap(f"new {number} lead", lead, incline))
-    degrees, radius = measures
+    (degrees, angles), (radius, radii) = shape
+    asked = Feature("turn", "turn", None, angles, radii, None, _grade(change))
     transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
     for i, side in enumerate(sides):
         if i:
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
-        segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, incline)
-        new.append(RoadElement(name, "turn", segments, side))
-        goals += _goals(change, name, degrees, radius)
-    tail = _lead(turn_after, sides[-1], gap_after) + spare[1]
+        slope = _incline_asked(change, incline)
+        segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
+        new.append(RoadElement(name, "turn", segments, side, asked=asked))
+    tail = _lead(turn_after, sides[-1], gap_after) + spare
     if tail:
         new.append(gap(f"new {number} tail", tail, incline))
-    return Insert(before, tuple(new), tuple(goals), *split)
+    return Insert(before, tuple(new), *split)
 
 
-def _goals(change: Change, name: str, degrees: float, radius: float) -> list[Goal]:
-    slack = 1.5 if change.degrees is not None else 4.0
-    out = [Goal(name, "degrees", degrees, degrees - slack, degrees + slack)]
-    if change.radius is not None or change.sharpness or change.kind:
-        high = radius * (1.05 if change.radius is not None else 1.3)
-        low = radius * (0.95 if change.radius is not None else 0.88)
-        if change.sharpness == "sharp":
-            high = min(high, 29.0)
-        out.append(Goal(name, "radius", radius, low, high))
+def _grade(change: Change) -> Range | None:
+    """The grade in percent that was asked for."""
     if change.grade is not None:
-        out.append(Goal(name, "grade", change.grade, change.grade - 0.6, change.grade + 0.6))
-    elif change.way:
-        low, aim, high = {"up": (3.0, 5.0, 12.0), "down": (-12.0, -5.0, -3.0), "flat": (-0.8, 0.0, 0.8)}[
-            change.way
-        ]
-        out.append(Goal(name, "grade", aim, low, high))
-    return out
+        return Range(change.grade - 0.6, change.grade + 0.6)
+    return SLOPES[change.way].grade if change.way else None
+
+
+def _incline_asked(change: Change, incline: float) -> float:
+    """The percent that a new element is written with: as asked, else those of the place."""
+    if change.grade is not None:
+        return change.grade
+    return SLOPED[change.way] if change.way else incline
 
 
 def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
@@ -261,20 +272,37 @@ def _straight_ways(
     lengths = [change.length] if change.length is not None else [NEW_STRAIGHT, 30.0, 60.0, 22.0]
     if lengths[0] < 10:
         raise EditError(f"a straight of {lengths[0]:g} m is not seen as one; ask for 10 m or more")
-    incline = _incline(elements, at)
-    if change.grade is not None:
-        incline = change.grade
-    elif change.way:
-        incline = {"up": 5.0, "down": -5.0, "flat": 0.0}[change.way]
+    incline = _incline_asked(change, _incline(elements, at))
     beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
     if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
-        return ((Adjust(beside, length=change.length),),)
+        return ((Adjust(beside, length=near(change.length, 1.0)),),)
     stands_alone = beside.kind == "gap" and beside.seen is None
-    name = f"new {number} straight"
     out = []
     for split in splits:
         for length in lengths:
-            new = (gap(name, length + 2.0, incline),)
-            goal = Goal(name, "length", length, length - 2.0, length + 2.0)
-            out.append((Insert(before, new, (goal,) if stands_alone else (), *split),))
+            new = gap(f"new {number} straight", length + 2.0, incline)
+            if stands_alone:
+                room = Range(length - 2.0, length + 2.0)
+                new = replace(new, asked=replace(FREE_STRAIGHT, length=room))
+            out.append((Insert(before, (new,), *split),))
     return tuple(out)
+
+
+def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
+    """Returns all candidates that replace turns or straights by nothing or by a straight."""
+    if len(gone) == len([b for b in elements if b.segments]):
+        raise EditError("then no road would be left; remove fewer")
+    return tuple(tuple(_without(element, elements, filler) for element in gone) for filler in FILLERS)
+
+
+def _without(element: RoadElement, elements: RoadElements, filler: float) -> EditStep:
+    at = elements.index(element)
+    if element.kind == "gap":
+        bends = tuple(s for s in element.segments if s.turn_degrees)
+        sides = [
+            b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
+        ]
+        if len(sides) == 2 and sides[0] == sides[1]:
+            return Adjust(element, length=near(HIDDEN, 0.6))
+        return Become(element, bends)
+    return Become(element, (straight(filler, element.incline),) if filler else ())

@@ -1,54 +1,42 @@
-"""Steps: small changes of elements, each with what must be measured afterwards.
+"""Steps: small changes of elements. What must be measured afterwards is written into ``RoadElement.asked``.
 
-A step is given ``aims``: the values to write so that the wished ones are measured. They start as the wish
-itself and are corrected by what the finished road shows, as a short turn between other slopes, or one with
-long clothoids, measures otherwise than it is written.
+A step writes the values that are wished for. ``design.fit`` then moves the elements that have something asked
+of them, where the road would break a rule, or is measured otherwise than it is written.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, radians
-from typing import Literal, Protocol
-
-import numpy as np
+from typing import NamedTuple, Protocol
 
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import LEAST_STRAIGHT
+from roadgpt.brief.outline import Feature
+from roadgpt.brief.words import Range
 from roadgpt.design.elements import cut, turn_element
+from roadgpt.design.fit.grades import with_grade
 from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.sequence import both
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
-Quantity = Literal["degrees", "radius", "length", "grade"]
-Aims = Mapping[tuple[str, Quantity], float]
 MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
 LEAST = 1.0  # m that a straight segment keeps
 TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
-
-
-@dataclass(frozen=True, slots=True)
-class Goal:
-    """What must be measured of an element afterwards: the value to aim at, and what is good enough."""
-
-    element: str
-    """Its name; empty for the whole road."""
-    quantity: Quantity
-    aim: float
-    low: float
-    high: float
+SEPARATE = 18.0  # m between turns of one hand, so that they are seen as two
+HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two, but no straight is seen
+FREE_STRAIGHT = Feature("straight", "straight")
 
 
 class EditStep(Protocol):
     """A change of elements."""
 
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """What must be measured afterwards."""
-        ...
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the change."""
         ...
+
+
+EditCandidate = tuple[EditStep, ...]
+"""Steps that together make one change."""
 
 
 def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], RoadElement]) -> RoadElements:
@@ -56,88 +44,71 @@ def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], R
     return tuple(change(element) if element.name == name else element for element in elements)
 
 
+class Wanted(NamedTuple):
+    """A value to aim at, and the range in which it may be measured."""
+
+    aim: float
+    room: Range
+
+
+def near(aim: float, slack: float) -> Wanted:
+    """Returns a value that may be missed by ``slack``."""
+    return Wanted(aim, Range(aim - slack, aim + slack))
+
+
 @dataclass(frozen=True, slots=True)
 class Adjust:
     """Gives one element other measures; what is None stays as it is."""
 
     element: RoadElement
-    degrees: float | None = None
-    radius: float | None = None
-    length: float | None = None
-    grade: tuple[float, float, float] | None = None
-    """Percent: the value to aim at, and the two ends of what is good enough."""
-    slack: tuple[float, float] = (1.0, 0.05)
-    """Degrees, and share of the radius, by which it may miss."""
-    length_slack: float = 1.0
-    """Metres of length by which it may miss."""
+    degrees: Wanted | None = None
+    radius: Wanted | None = None
+    length: Wanted | None = None
+    grade: Wanted | None = None
+    """Percent."""
 
-    @property
-    def goals(self) -> tuple[Goal, ...]:
-        """The wanted measures that can be seen on the finished road."""
-        is_hidden = self.element.seen is None and bool(self.element.segments)
-        return tuple(
-            goal
-            for goal in self._wanted()
-            if (self.element.seen is not None if goal.quantity == "grade" else not is_hidden)
-            and (goal.quantity != "length" or self.element.is_turn or goal.aim >= LEAST_STRAIGHT)
-        )
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements, of which this one is bent, stretched or sloped, and is asked to be so."""
+        return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
-    def _wanted(self) -> Iterator[Goal]:
-        name, (off, wide) = self.element.name, self.slack
-        pairs: tuple[tuple[Quantity, float | None, float], ...] = (
-            ("degrees", self.degrees, off),
-            ("radius", self.radius, wide * (self.radius or 0.0)),
-            ("length", self.length, self.length_slack),
-        )
-        for quantity, aim, by in pairs:
-            if aim is not None:
-                yield Goal(name, quantity, aim, aim - by, aim + by)
+    def _applied(self, now: RoadElement, world: World) -> RoadElement:
+        if now.kind != self.element.kind:  # another step has made it a straight
+            return now
         if self.grade:
-            aim, *ends = self.grade
-            yield Goal(name, "grade", aim, min(ends), max(ends))
-
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Returns the elements, of which this one is bent, stretched or sloped."""
-        name = self.element.name
-        values = {goal.quantity: aims.get((name, goal.quantity), goal.aim) for goal in self._wanted()}
-        grade = values.pop("grade", None)
-        if grade is not None:
-            elements = changed(elements, name, lambda e: _sloped(e, grade, world))
-        if values and self.element.is_turn:
-            return changed(elements, name, lambda e: _bent(e, self.element, values))
-        if values:
+            now = with_grade(now, self.grade.aim, world)
+        if self.element.is_turn:
+            now = self._bent(now)
+        elif self.length:
             seen = self.element.seen
-            more = values["length"] - (seen.length if seen else self.element.length)
-            return changed(elements, name, lambda e: stretched(e, more))
-        return elements
+            more = self.length.aim - (seen.length if seen else self.element.length)
+            now = stretched(now, self.element.length + more - now.length)
+        asked = self._asked()
+        return replace(now, asked=both(now.asked, asked) if now.asked else asked)
 
+    def _asked(self) -> Feature:
+        degrees, radius, length, grade = (
+            wanted and wanted.room for wanted in (self.degrees, self.radius, self.length, self.grade)
+        )
+        if not self.element.is_turn:
+            return Feature("straight", "straight", None, None, None, length, grade)
+        return Feature("turn", "turn", None, degrees, radius, length, grade)
 
-def _bent(element: RoadElement, before: RoadElement, values: Mapping[Quantity, float]) -> RoadElement:
-    """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
-    seen = before.seen
-    assert seen is not None
-    turn = abs(before.degrees)
-    more = (turn + values["degrees"] - seen.degrees) / turn if "degrees" in values else 1.0
-    wider = values["radius"] / seen.radius if "radius" in values else 1.0
-    if "length" in values:
-        wider *= values["length"] / seen.length
-    least = max((abs(s.turn_degrees) for s in before.segments), default=0.0)
-    if least * more > MAX_TURN >= least:
-        return rewritten(element, turn * more, seen.radius * wider)
-    return element.with_segments(scaled(s, more, wider) for s in element.segments)
-
-
-def _sloped(element: RoadElement, grade: float, world: World) -> RoadElement:
-    """Inclines in proportion where they all go the same way, else all alike."""
-    limit = 100 * world.max_grade - 0.2
-    aim = float(np.clip(grade, -limit, limit))
-    inclines = np.array([s.incline for s in element.segments])
-    mean = element.incline
-    if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
-        wanted = np.clip(inclines * aim / mean, -limit, limit)
-    else:
-        wanted = np.full(len(inclines), aim)
-    return element.with_segments(with_incline(s, g) for s, g in zip(element.segments, wanted, strict=True))
+    def _bent(self, now: RoadElement) -> RoadElement:
+        """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
+        before, seen = self.element, self.element.seen
+        assert seen is not None
+        turn = abs(now.degrees)
+        more = (abs(before.degrees) + self.degrees.aim - seen.degrees) / turn if self.degrees else 1.0
+        wider = self.radius.aim / seen.radius if self.radius else 1.0
+        if self.length:
+            wider *= self.length.aim / seen.length
+        wider *= (before.length / abs(before.degrees)) / (now.length / turn)
+        if abs(more - 1) < 1e-9 and abs(wider - 1) < 1e-9:
+            return now
+        most = max((abs(s.turn_degrees) for s in now.segments), default=0.0)
+        if most * more > MAX_TURN >= most:
+            return rewritten(now, turn * more, seen.radius * wider)
+        return now.with_segments(scaled(s, more, wider) for s in now.segments)
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
@@ -166,6 +137,11 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
 def straight(length: float, incline: float) -> Segment:
     """Returns a straight segment with its numbers rounded as they are written."""
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
+
+
+def gap(name: str, length: float, incline: float) -> RoadElement:
+    """Returns a new straight, whose length may be changed."""
+    return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
@@ -209,10 +185,52 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
     return segment.model_copy(update={"distance": distance})
 
 
-def with_incline(segment: Segment, incline: float) -> Segment:
-    """Returns the segment with another incline in percent."""
-    rounded = round(float(incline) * TENTH) / TENTH
-    return segment if rounded == segment.incline else segment.model_copy(update={"incline": rounded})
+@dataclass(frozen=True, slots=True)
+class RoadLength:
+    """Asks for a length of the whole road in metres; other steps say which elements may change for it."""
+
+    room: Range
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements as they are."""
+        return elements
+
+
+@dataclass(frozen=True, slots=True)
+class SlopeOfAll:
+    """Changes the slopes of many elements: each incline is multiplied, increased and then clipped."""
+
+    names: frozenset[str]
+    times: float = 1.0
+    more: float = 0.0
+    low: float = -100.0
+    high: float = 100.0
+    way: int = 0
+    """1 or -1 makes every slope one uphill or downhill first."""
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements with each segment's incline changed by itself."""
+        return tuple(
+            element.with_segments(self._sloped(segment, world) for segment in element.segments)
+            if element.name in self.names
+            else element
+            for element in elements
+        )
+
+    def _sloped(self, segment: Segment, world: World) -> Segment:
+        incline = round(self._one(segment.incline, world) * TENTH) / TENTH
+        return segment if incline == segment.incline else segment.model_copy(update={"incline": incline})
+
+    def _one(self, incline: float, world: World) -> float:
+        limit = 100 * world.max_grade - 0.2
+        if self.way:
+            incline = self.way * abs(incline)
+        incline = incline * self.times + (self.more if incline >= 0 else -self.more)
+        if self.way:
+            incline = self.way * min(max(abs(incline), self.low), self.high)
+        else:
+            incline = min(max(incline, self.low), self.high)
+        return min(max(incline, -limit), limit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,9 +239,8 @@ class Mirror:
 
     names: frozenset[str] | None = None
     """Names of the elements to mirror; None for all elements."""
-    goals: tuple[Goal, ...] = ()
 
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements, those of these names bent to the other side."""
         return tuple(flipped(e) if self.names is None or e.name in self.names else e for e in elements)
 
@@ -250,15 +267,13 @@ class Become:
 
     element: RoadElement
     segments: Sequence[Segment] = ()
-    goals: tuple[Goal, ...] = ()
 
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with a gap in place of this one."""
-        return changed(
-            elements,
-            self.element.name,
-            lambda b: replace(b, kind="gap", side=None, seen=None, segments=tuple(self.segments)),
+        gap = replace(
+            self.element, kind="gap", side=None, seen=None, segments=tuple(self.segments), asked=FREE_STRAIGHT
         )
+        return changed(elements, self.element.name, lambda _: gap)
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,32 +282,22 @@ class Insert:
 
     before: str
     elements: RoadElements
-    goals: tuple[Goal, ...] = ()
     split: str = ""
     """The gap that is split in two first; its second half is what the new elements stand before."""
     index: int = 0
     """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
 
-    def apply(self, elements: RoadElements, aims: Aims, world: World) -> RoadElements:
-        """Returns the elements with the new ones in their place, on the slope that is aimed at."""
-        new = tuple(self._aimed(element, aims) for element in self.elements)
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements with the new ones in their place."""
         if self.split:
             return tuple(
-                part for b in elements for part in (self._halves(b, new) if b.name == self.split else (b,))
+                part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))
             )
         names = [element.name for element in elements]
         at = names.index(self.before) if self.before else len(elements)
-        return (*elements[:at], *new, *elements[at:])
+        return (*elements[:at], *self.elements, *elements[at:])
 
-    def _aimed(self, element: RoadElement, aims: Aims) -> RoadElement:
-        length, aim = aims.get((element.name, "length")), aims.get((element.name, "grade"))
-        if length is not None:
-            element = element.with_segments(_with_distance(s, length) for s in element.segments)
-        if aim is None:
-            return element
-        return element.with_segments(with_incline(s, min(max(aim, -14.8), 14.8)) for s in element.segments)
-
-    def _halves(self, element: RoadElement, new: RoadElements) -> RoadElements:
+    def _halves(self, element: RoadElement) -> RoadElements:
         segments, at = list(element.segments), self.index
         if not at:
             longest = max(range(len(segments)), key=lambda i: segments[i].distance)
@@ -308,4 +313,4 @@ class Insert:
             element.with_segments(segments[:at]),
             replace(element, name=f"{element.name} rest", seen=None),
         )
-        return (first, *new, second.with_segments(segments[at:]))
+        return (first, *self.elements, second.with_segments(segments[at:]))

@@ -1,17 +1,113 @@
-"""Which element of a proposal answers which wish of the Brief."""
+"""Repairs a proposed Design by the smallest change that makes it valid and meets its Brief: ``repair``.
+
+    none   nothing is touched
+    place  the road is moved, turned only where that is not enough, and raised above the ground
+    full   then lengths and angles, radii and grades are changed as little as it takes; turns, their sides and
+           whether they go up, down or level stay those that were proposed
+
+A road that cannot be repaired comes back placed at best; ``check.inspect`` says what is still wrong with it.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations, islice, pairwise
+from typing import Literal, NamedTuple
 
-from roadgpt.brief.model import OTHER_SIDE
+import numpy as np
+
+from roadgpt.brief.model import OTHER_SIDE, Brief
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.design.fit import Look, Requirements, fit, look
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_as_proposed
 from roadgpt.design.sequence import both
+from roadgpt.errors import UsageError
+from roadgpt.road import Design, Segment, World
 
+How = Literal["none", "place", "full"]
 MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
 FREE_TURN = Feature("turn", "turn")
+ALL_LISTED = 60  # changed segments; of more, only the number is given
+
+
+class Repaired(NamedTuple):
+    """A repaired Design, and sentences that say what was changed."""
+
+    design: Design
+    changes: tuple[str, ...]
+
+
+def repair(design: Design, brief: Brief | None, world: World, how: How = "none") -> Repaired:
+    """Returns the proposed design, made valid as far as ``how`` allows.
+
+    Args:
+        design: The design as proposed.
+        brief: The requirements; None where there are none.
+        world: The map and the limits of the rules.
+        how: "none", "place" or "full"; see above.
+    """
+    if how == "none":
+        return Repaired(design, ())
+    elements = elements_as_proposed(design.segments)
+    valid = Requirements(world, promises_of(Brief(), world))
+    try:
+        after = _fitted(design, elements, brief, valid) if how == "full" else look(design, elements, valid)
+    except (UsageError, ValueError, np.linalg.LinAlgError):  # no road can be built of such geometry
+        return Repaired(design, ())
+    return Repaired(after.design, changes_between(design, after.design))
+
+
+def _fitted(design: Design, elements: RoadElements, brief: Brief | None, valid: Requirements) -> Look:
+    """The road that meets its Brief; one that is only valid where it cannot, or has other turns."""
+    if brief:
+        outline = promises_of(brief, valid.world)
+        asked = with_wishes(elements, outline)
+        if asked:
+            found = fit(design, asked, valid._replace(outline=outline, brief=brief))
+            if found.keeps_all_but_slopes:
+                return found
+    return fit(design, elements, valid)
+
+
+def changes_between(before: Design, after: Design) -> tuple[str, ...]:
+    """Returns a sentence for the start, one for the heading, and one for each segment that changed."""
+    out = list(_placing(before, after))
+    pairs = zip(before.segments, after.segments, strict=True)
+    told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
+    if len(told) > ALL_LISTED:
+        return (*out, f"{len(told)} segments changed")
+    return (*out, *told)
+
+
+def _placing(before: Design, after: Design) -> Iterator[str]:
+    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
+    if (x, y) != (x1, y1):
+        yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
+    if z != z1:
+        yield f"start raised from {z:g} to {z1:g} m" if z1 > z else f"start lowered from {z:g} to {z1:g} m"
+    turned = (after.theta - before.theta + 180) % 360 - 180
+    if abs(turned) > 1e-9:
+        yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
+
+
+def _segment(number: int, before: Segment, after: Segment) -> str:
+    said = []
+    if after.distance != before.distance:
+        said.append(f"distance {before.distance:g} -> {after.distance:g} m")
+    if after.turn_degrees != before.turn_degrees:
+        said.append(f"turn {before.turn_degrees:g} -> {after.turn_degrees:g} degrees")
+    if after.incline != before.incline:
+        said.append(f"grade {before.incline:g} -> {after.incline:g} %")
+    for name in ("radius", "transition", "vertical_radius"):
+        one, other = getattr(before, name), getattr(after, name)
+        if one != other:
+            said.append(f"{name.replace('_', ' ')} {_metres(one)} -> {_metres(other)}")
+    return f"segment {number}: {', '.join(said)}" if said else ""
+
+
+def _metres(value: float | None) -> str:
+    return "open" if value is None else f"{value:g} m"
 
 
 def with_wishes(elements: Sequence[RoadElement], outline: Outline) -> RoadElements | None:

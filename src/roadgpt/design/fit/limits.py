@@ -14,7 +14,6 @@ import numpy as np
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.repair.polyline import PlanPolyline
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
@@ -45,6 +44,8 @@ class Margins(NamedTuple):
     """Margin inside a required range of lengths or radii, as a share of its bounds."""
 
 
+TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
+"""Margins of a changed road, most of which stays as it is, and which may lie close to the limits."""
 MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
 
 
@@ -90,7 +91,7 @@ class Rows:
 def limits_of(
     segments: Sequence[Segment],
     elements: Sequence[RoadElement],
-    figure: PlanPolyline,
+    peak: Array,
     outline: Outline,
     world: World,
     margins: Margins,
@@ -104,11 +105,11 @@ def limits_of(
         if segment.turn_degrees:
             turn = abs(radians(segment.turn_degrees))
             rows.add({}, {index: -METRES_PER_RADIAN}, -METRES_PER_RADIAN * SHARE_KEPT * turn)
-            rows.add({index: -1.0}, {index: radius * min(figure.peak[index], shortest)}, 0.0)
+            rows.add({index: -1.0}, {index: radius * min(peak[index], shortest)}, 0.0)
     for element in elements:
-        _seen(rows, element, figure, margins)
+        _seen(rows, element, peak, margins)
         if element.asked:
-            _wish(rows, element, element.asked, figure, margins)
+            _wish(rows, element, element.asked, peak, margins)
     _separate(rows, elements, margins)
     whole = range(len(segments))
     rows.within(whole, Range(world.min_length + 2.0))
@@ -120,7 +121,7 @@ def limits_of(
     return rows.done()
 
 
-def _seen(rows: Rows, element: RoadElement, figure: PlanPolyline, margins: Margins) -> None:
+def _seen(rows: Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
     """A turn stays one that is seen, and whole; a slighter bend stays slight."""
     members = list(element.members)
     if not element.degrees:
@@ -133,17 +134,16 @@ def _seen(rows: Rows, element: RoadElement, figure: PlanPolyline, margins: Margi
     bends = [abs(segment.turn_degrees) / segment.distance for segment in element.segments]
     tightest = members[bends.index(max(bends))]
     for index in {*members[1:-1], tightest}:
-        peak = figure.peak[index] if index == tightest else 1.0
-        rows.add({index: 1.0}, {index: -peak * CLEARLY}, 0.0)
+        bent = peak[index] if index == tightest else 1.0
+        rows.add({index: 1.0}, {index: -bent * CLEARLY}, 0.0)
 
 
-def _wish(rows: Rows, element: RoadElement, wish: Feature, figure: PlanPolyline, margins: Margins) -> None:
+def _wish(rows: Rows, element: RoadElement, wish: Feature, peak: Array, margins: Margins) -> None:
     members = list(element.members)
     length = _drawn_in(wish.length, margins.promise) if wish.length else None
+    rows.within(members, length)
     if not element.degrees:
-        rows.within(members, Range(length.lo + 3.0, length.hi) if length and length.lo > 0 else length)
         return
-    rows.within(members, Range(length.lo + 2.0, length.hi) if length else None)
     if wish.degrees:
         margin = min(ANGLE_MARGIN, 0.2 * (wish.degrees.hi - wish.degrees.lo))
         rows.turned(members, Range(wish.degrees.lo + margin, wish.degrees.hi - margin))
@@ -151,10 +151,10 @@ def _wish(rows: Rows, element: RoadElement, wish: Feature, figure: PlanPolyline,
         radius = _drawn_in(wish.radius, margins.promise)
         for index in members:
             if radius.lo > 0:
-                rows.add({index: -1.0}, {index: radius.lo * max(figure.peak[index], 1.0)}, 0.0)
+                rows.add({index: -1.0}, {index: radius.lo * max(peak[index], 1.0)}, 0.0)
         if radius.hi < inf:
-            tightest = max(members, key=lambda i: figure.peak[i])
-            rows.add({tightest: 1.0}, {tightest: -radius.hi * max(figure.peak[tightest], 1.0)}, 0.0)
+            tightest = max(members, key=lambda i: peak[i])
+            rows.add({tightest: 1.0}, {tightest: -radius.hi * max(peak[tightest], 1.0)}, 0.0)
 
 
 def _drawn_in(span: Range, share: float) -> Range:

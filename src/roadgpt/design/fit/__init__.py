@@ -1,0 +1,352 @@
+"""Changes the free elements of a road as little as it takes to meet requirements: ``fit``.
+
+    elements --look--> what is wrong? --least_change--> lengths and turns --slopes--> look --> ... --> Look
+
+Repairs leave all elements of a proposal free. Changes of a road freeze every element that nobody spoke of:
+its lengths, turns and radii stay exactly as they are. The road as a whole may be moved or turned, so that it
+stays inside the map.
+"""
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import ceil, floor, inf, radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.check.matching import fits, turn_complaints
+from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.rules import below_floor, inside_map
+from roadgpt.check.rules.promises import complaints
+from roadgpt.design.fit.grades import graded
+from roadgpt.design.fit.limits import MARGINS, TIGHT, Margins, limits_of
+from roadgpt.design.fit.slopes import CLASSES, sloped
+from roadgpt.design.fit.solver import Aim, PlanPolyline, least_change, polyline_of
+from roadgpt.design.layout import moved_onto_map
+from roadgpt.design.road_elements import (
+    RoadElement,
+    RoadElements,
+    elements_as_proposed,
+    numbered,
+    seen_as,
+    shows_slopes,
+    shows_turns,
+    with_segments,
+)
+from roadgpt.design.writing import ABOVE_GROUND, start_height
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Design, Geometry, Road, Segment, World, build
+from roadgpt.road.design import MAX_TURN
+
+MOST_SEGMENTS = (
+    60  # that are free, in a list that is fitted; on more, a road of a map's size is no longer a list
+)
+ROUNDS = 2  # of solving: the second with the transitions that came of the first
+TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
+SHORTEST_TRANSITION = 0.1  # m
+FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter than it is written
+
+
+class Requirements(NamedTuple):
+    """What a road must meet, besides what is asked of each of its elements."""
+
+    world: World
+    """The map and the limits of the rules."""
+    outline: Outline
+    """Requirements of the whole road."""
+    brief: Brief | None = None
+    """The Brief that the rule ``promises`` compares with the road. If it is None, the measured elements are
+    compared with what is asked of each."""
+    before: Design | None = None
+    """The road that is changed: parabolas between its slopes stay. None for a proposal, whose turns must be
+    measured on the slopes that were proposed."""
+    geometry: Geometry = "arcs"
+
+
+@dataclass(frozen=True)
+class Look:
+    """A road as it was built, checked and measured once."""
+
+    design: Design
+    """The design, moved inside the map and above the ground where it was not."""
+    elements: RoadElements
+    road: Road
+    findings: tuple[check.Finding, ...]
+    requirements: Requirements
+
+    @cached_property
+    def found(self) -> Measures:
+        """The measured turns, straights and grades."""
+        return measure(self.road.centreline())
+
+    @cached_property
+    def objection(self) -> str:
+        """A sentence that says which rule or requirement the road does not meet; empty if it meets all."""
+        if self.findings:
+            return self.findings[0].sentence
+        if not shows_turns(self.found, self.elements):
+            wanted, shown = sum(element.is_turn for element in self.elements), len(self.found.turns)
+            if wanted != shown:
+                return f"{shown} turns would be seen and not {wanted}, as some run into each other"
+            return "a turn would be seen to the wrong side"
+        if self.requirements.before is None and not shows_slopes(self.found, self.elements):
+            return "a turn would be seen on another slope"
+        return "" if self.requirements.brief else _unmet(self.elements, self.found, self.requirements.outline)
+
+    @property
+    def keeps_all_but_slopes(self) -> bool:
+        """Whether the rules are met and the turns are seen, each to its side."""
+        return not self.findings and shows_turns(self.found, self.elements)
+
+
+def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
+    """Returns the design as it is built, inside the map and above the ground where that is possible."""
+    world, geometry = requirements.world, requirements.geometry
+    road = build(design, geometry)
+    moved = _moved(design, road, world)
+    if moved != design:
+        road = build(moved, geometry)
+    return Look(moved, elements, road, check.inspect(road, requirements.brief, world), requirements)
+
+
+def _moved(design: Design, road: Road, world: World) -> Design:
+    if inside_map.inspect(road, None, world):
+        # a design that becomes a spline is placed as if it were built of arcs, which lie close by
+        design = moved_onto_map(design, world) or design
+    if below_floor.inspect(road, None, world):
+        x, y, _ = design.starting_point
+        height = start_height(design.segments, world.z_floor + ABOVE_GROUND)
+        design = design.model_copy(update={"starting_point": (x, y, height)})
+    return design
+
+
+def _unmet(elements: RoadElements, found: Measures, outline: Outline) -> str:
+    """What is asked of an element, or of the whole road, and is measured otherwise."""
+    turns = 0
+    for element in elements:
+        turns += element.is_turn
+        asked = element.asked
+        seen = seen_as(element.name, elements, found) if asked else None
+        if asked and not seen and asked.length and asked.length.lo >= LEAST_STRAIGHT:
+            return f"a straight of {element.length:.1f} m would not be seen"
+        if not asked or not seen or fits(seen, asked):
+            continue
+        if element.is_turn:
+            return turn_complaints(turns, seen, asked)[0].sentence
+        wanted = f"asked for {asked.length or 'any'} m at {asked.grade or 'any'} %"
+        return f"the straight would be {seen.length:.1f} m long at {seen.grade:.1f} %, {wanted}"
+    return next((complaint.sentence for complaint in complaints(found, outline)), "")
+
+
+def fit(
+    design: Design,
+    elements: RoadElements,
+    requirements: Requirements,
+    frozen: Collection[str] = frozenset(),
+) -> Look:
+    """Returns the road nearest to a design that meets all requirements, and whose ``objection`` is empty.
+
+    Args:
+        design: The road as it was proposed, or as a change request wants it.
+        elements: Its turns and straights in driving order, each with what is asked of it; together they have
+            all segments of the design.
+        requirements: What the road must meet besides.
+        frozen: Names of the elements whose lengths, turns and radii stay as they are.
+
+    Returns:
+        Where no such road is found: one that meets all but the slopes that were proposed, else the design,
+        moved inside the map if possible.
+
+    Raises:
+        UsageError: No road can be built of these segments.
+    """
+    elements = numbered(elements)
+    if requirements.before is None:
+        first = look(design, elements, requirements)
+    else:
+        first = _on_grades(design, elements, requirements, requirements.before)
+    free = np.array([element.name not in frozen for element in elements for _ in element.segments])
+    if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
+        return first
+    best, last = None, first
+    for margins in MARGINS if requirements.before is None else (TIGHT, *MARGINS):
+        segments = _planned(first, last, free, margins)
+        if segments is None:  # there is no such road; with wider margins even less
+            break
+        if requirements.before and segments == last.design.segments:
+            continue
+        last = _on_slopes(first, segments)
+        if not last.objection:
+            return last if requirements.before else _restored(last, first)
+        if best is None and requirements.before is None and last.keeps_all_but_slopes:
+            best = last
+    return best or first
+
+
+def _on_slopes(first: Look, segments: tuple[Segment, ...]) -> Look:
+    """The road of a changed plan, on slopes that are kept where they were not asked to change."""
+    elements, needs = with_segments(first.elements, segments), first.requirements
+    design = first.design.model_copy(update={"segments": segments})
+    if needs.before is not None:
+        return _on_grades(design, elements, needs, needs.before)
+    pieces = list(_of_one_slope(first.elements, needs.brief is None))
+    design = sloped(design, first.design.segments, pieces, needs.outline, needs.world)
+    return look(design, with_segments(elements, design.segments), needs)
+
+
+def _of_one_slope(elements: RoadElements, is_asked_only: bool) -> Iterator[RoadElement]:
+    """Yields the elements; those between turns are cut where they begin to go up, down or level.
+
+    Args:
+        elements: The elements of the road.
+        is_asked_only: Whether a grade that is asked for is written already, and may only not change its way.
+    """
+    for element in elements:
+        grade = element.asked.grade if element.asked else None
+        if element.asked and grade and is_asked_only:
+            now = replace(element.asked, grade=CLASSES[way((grade.lo + grade.hi) / 2)])
+            yield replace(element, asked=now)
+        elif element.is_turn or grade:
+            yield element
+        else:
+            for part in elements_as_proposed(element.segments):
+                yield replace(part, kind="gap", first=element.first + part.first)
+
+
+def _on_grades(design: Design, elements: RoadElements, needs: Requirements, before: Design) -> Look:
+    """The changed road on the first slopes that the rules allow; else on the last that were tried."""
+    now: Look | None = None
+    for sloped_ in graded(design, elements, before, needs.world):
+        now = look(sloped_, with_segments(elements, sloped_.segments), needs)
+        if all(finding.rule != "too_abrupt" for finding in now.findings):
+            break
+    assert now is not None
+    return now
+
+
+def _planned(
+    first: Look, last: Look, free: NDArray[np.bool_], margins: Margins
+) -> tuple[Segment, ...] | None:
+    """The segments with lengths and turns that keep the limits."""
+    world, outline = first.requirements.world, first.requirements.outline
+    proposed = first.design.segments
+    lengths = np.array([s.distance for s in proposed])
+    turns = np.radians([s.turn_degrees for s in proposed])
+    elements = _as_written(first, last)
+    now: tuple[Segment, ...] | None = None
+    for _ in range(ROUNDS):
+        figure = polyline_of(now or proposed)
+        rows, most = limits_of(proposed, elements, figure.peak, outline, world, margins)
+        found = least_change(Aim(lengths, turns, free, figure, rows, most, world, margins))
+        if found is None:
+            break
+        now = _written(proposed, found.lengths, found.turns, free, world.min_radius * margins.radius)
+    return now
+
+
+def _as_written(first: Look, last: Look) -> RoadElements:
+    """The elements, with lengths, angles and radii asked for as they must be written to be measured so."""
+    figure = polyline_of(last.design.segments)
+    is_seen = first.requirements.brief is None and shows_turns(last.found, last.elements)
+    out = []
+    for element, now in zip(first.elements, last.elements, strict=True):
+        asked = element.asked if element.segments else None
+        if asked:
+            seen = seen_as(now.name, last.elements, last.found) if is_seen else None
+            asked = _shifted(asked, now, seen, figure)
+        out.append(replace(element, asked=asked))
+    return tuple(out)
+
+
+def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, figure: PlanPolyline) -> Feature:
+    """What must be written so that the ranges of a feature are measured."""
+    degrees, radius, length = asked.degrees, asked.radius, asked.length
+    if seen is None:
+        if length and length.lo > 0:
+            length = Range(length.lo + FADES[bool(now.degrees)], length.hi)
+        return replace(asked, length=length)
+    if length:
+        more = now.length - seen.length
+        length = Range(length.lo + more, length.hi + more)
+    if degrees:
+        more = abs(now.degrees) - seen.degrees
+        most = MAX_TURN * len(now.segments)
+        degrees = Range(degrees.lo + more, min(degrees.hi + more, max(most, abs(now.degrees))))
+    if radius:
+        tightest = min(
+            segment.distance / max(figure.peak[i], 1.0) / radians(abs(segment.turn_degrees))
+            for i, segment in zip(now.members, now.segments, strict=True)
+            if segment.turn_degrees
+        )
+        radius = Range(radius.lo * tightest / seen.radius, radius.hi * tightest / seen.radius)
+    return replace(asked, degrees=degrees, radius=radius, length=length)
+
+
+def _written(
+    proposed: tuple[Segment, ...], lengths: Array, turns: Array, free: NDArray[np.bool_], radius: float
+) -> tuple[Segment, ...]:
+    """Segments with new measures, rounded; radii and transitions grow with them, or give way."""
+    out = []
+    for segment, length, turn, may_change in zip(proposed, lengths, turns, free, strict=True):
+        if not may_change:
+            out.append(segment)
+            continue
+        distance, degrees = (
+            _rounded(float(length), segment.distance),
+            _rounded(float(np.degrees(turn)), segment.turn_degrees),
+        )
+        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
+        if segment.radius and degrees:
+            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
+            fits_in = grown >= radius
+            update["radius"] = (
+                ceil(grown * CENTIMETRE) / CENTIMETRE
+                if fits_in and grown != segment.radius
+                else segment.radius
+                if fits_in
+                else None
+            )
+            if not fits_in:
+                update["transition"] = None
+        transition = update.get("transition", segment.transition)
+        if degrees and not update.get("radius"):
+            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
+            if (transition or min(distance / 4, 12.0)) > most:
+                update["transition"] = floor(most * TENTH) / TENTH
+        out.append(segment.model_copy(update=update))
+    return tuple(out)
+
+
+def _rounded(value: float, before: float) -> float:
+    """To a tenth; what was written, where hardly anything changed."""
+    return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
+
+
+def _restored(mended: Look, first: Look) -> Look:
+    """The road with all that need not have changed put back as proposed, the smallest changes first."""
+    trials: list[tuple[float, int, str]] = []
+    pairs = zip(first.design.segments, mended.design.segments, strict=True)
+    for index, (one, other) in enumerate(pairs):
+        for name in ("distance", "turn_degrees", "incline", "transition", "vertical_radius", "radius"):
+            before, after = getattr(one, name), getattr(other, name)
+            if before != after:
+                away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)
+                trials.append((inf if name == "radius" else away, index, name))
+    for _, index, name in sorted(trials):
+        rows = list(mended.design.segments)
+        was, now = first.design.segments[index], rows[index]
+        if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
+            continue  # it belongs to them
+        rows[index] = now.model_copy(update={name: getattr(was, name)})
+        segments = tuple(rows)
+        tried = first.design.model_copy(update={"segments": segments})
+        seen = look(tried, with_segments(first.elements, segments), first.requirements)
+        if not seen.objection:
+            mended = seen
+    return mended

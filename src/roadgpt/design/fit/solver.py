@@ -1,0 +1,301 @@
+"""Finds the smallest change of the lengths and turns of a plan that keeps all limits: ``least_change``.
+
+The objective is a weighted sum of squared relative changes. Its weights make a few larger changes cost no
+more than many small ones. A penalty is added for each limit that is broken, in metres, and its weight grows
+from round to round. Each step solves for all free lengths, all free turns and the place on the map at once
+(Levenberg-Marquardt). The plan is a polyline that follows its lengths and turns:
+
+    step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
+
+``share_m`` is the share of the segment's turn that is completed at that step. It is taken from the built
+curve, and kept while lengths and turns change a little.
+"""
+
+from collections.abc import Sequence
+from math import radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.design.fit.limits import Margins
+from roadgpt.geometry import PieceCurve
+from roadgpt.geometry.curve import Array
+from roadgpt.geometry.pieces import joined
+from roadgpt.road import Segment, World
+from roadgpt.road.alignment import pieces_of
+
+Complex = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+
+SPACING = 2.0  # m between points of the polyline, about
+MOST_POINTS = 500  # of a polyline, about
+LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
+LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
+SPARSE = 2  # steps between the points that are held apart
+HEADINGS = np.radians([0, 5, -5, 10, -10, 15, -15, 20, -20, 30, -30, 40, -40, 45])  # of the start, in order
+NEIGHBOURS = 27.0  # m along the road: places nearer than this cannot meet
+PENALTIES = (0.05, 1.0, 20.0)  # per square metre by which a limit is broken
+STEPS = 25  # at every penalty, at most
+SETTLED = 1e-5  # relative gain
+FEW = 0.04  # a relative change below which it costs no more to change one thing more
+MOST_WORK = 2e7  # points squared, times steps: after this much no further start is tried (about 2 s)
+BROKEN = 0.15  # m: a limit, margins included, may be broken by this much
+CHEAP = 0.05  # cost of a change for each segment, below which no other start is tried
+STARTS = (1.0, 0.8, 0.6, 0.45, 0.3, 0.2)  # shares of all free turns where the search starts
+
+
+class PlanPolyline(NamedTuple):
+    """A plan as steps of a polyline."""
+
+    owner: NDArray[np.intp]
+    """Index of the segment that each step belongs to, ``(k,)``."""
+    share: Array
+    """Share of its segment's turn that is completed in the middle of each step, ``(k,)``."""
+    peak: Array
+    """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
+
+    def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
+        """Returns points ``(k + 1,)`` as x + iy from the origin, and every step.
+
+        Args:
+            lengths: of the segments, metres.
+            turns: of the segments, radians, left positive.
+            heading: of the start, radians.
+        """
+        count = np.bincount(self.owner, minlength=len(lengths))
+        before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
+        angle = heading + before[self.owner] + self.share * turns[self.owner]
+        steps = (lengths / count)[self.owner] * np.exp(1j * angle)
+        return np.concatenate([[0j], np.cumsum(steps)]), steps
+
+    def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
+        """Returns the derivatives of all points by each length and by each turn, ``(k + 1, n)`` each."""
+        n, k = len(lengths), len(steps)
+        own = self.owner[:, None] == np.arange(n)
+        behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
+        by_length, by_turn = np.zeros((k + 1, n), complex), np.zeros((k + 1, n), complex)
+        np.cumsum(own * (steps[:, None] / lengths), axis=0, out=by_length[1:])
+        np.cumsum(1j * behind * steps[:, None], axis=0, out=by_turn[1:])
+        return by_length, by_turn
+
+
+def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
+    """Returns the polyline of the plan that is built from these segments."""
+    pieces = pieces_of(segments)
+    curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
+    step = max(SPACING, curve.length / MOST_POINTS)
+    owner, share, peak = list[int](), list[Array](), np.zeros(len(segments))
+    at, first = 0.0, 0
+    for index, segment in enumerate(segments):
+        steps = max(2, round(segment.distance / step))
+        owner += [index] * steps
+        middles = at + segment.distance * (np.arange(steps) + 0.5) / steps
+        turn = np.radians(segment.turn_degrees)
+        if abs(turn) < 1e-9:
+            share.append(np.zeros(steps))
+            first += 1
+        else:
+            entry = curve.heading(np.array([at]))
+            share.append((curve.heading(middles) - entry) / turn)
+            bent = max(max(abs(p.k0), abs(p.k1)) for p in pieces[first : first + 5] if p.length > 1e-9)
+            peak[index] = bent * segment.distance / abs(turn)
+            first += 5
+        at += segment.distance
+    return PlanPolyline(np.array(owner), np.concatenate(share), peak)
+
+
+class Aim(NamedTuple):
+    """The lengths and turns that a plan should have, and the limits that it must keep."""
+
+    lengths: Array
+    """Metres, one for each segment."""
+    turns: Array
+    """Radians, left positive."""
+    free: NDArray[np.bool_]
+    """Whether the length and turn of each segment may change; the others are no variables."""
+    figure: PlanPolyline
+    rows: Array
+    """Limits of lengths and turns, ``(m, 2 n)``."""
+    most: Array
+    """Right sides of the limits, ``(m,)``."""
+    world: World
+    margins: Margins
+
+
+class Solution(NamedTuple):
+    """The lengths and turns that were found, what the change costs, and how far limits are broken."""
+
+    lengths: Array
+    """Metres."""
+    turns: Array
+    """Radians, left positive."""
+    cost: float
+    broken: float
+    """Metres by which the limit that is broken most is broken."""
+    steps: int
+    """Number of solver steps that were taken."""
+
+
+def least_change(aim: Aim) -> Solution | None:
+    """Returns the cheapest change that was found; None where none keeps the limits.
+
+    Limits that only concern segments that are not free are left out.
+    """
+    concerned = (aim.rows[:, np.tile(aim.free, 2)] != 0).any(axis=1)
+    aim = aim._replace(rows=aim.rows[concerned], most=aim.most[concerned])
+    found: list[Solution] = []
+    work = 0
+    for share in STARTS:
+        one = _descended(aim, share)
+        work += one.steps * len(aim.figure.owner) ** 2
+        if work > MOST_WORK:
+            found += [one] if one.broken <= BROKEN else []
+            break
+        if one.broken <= BROKEN:
+            found.append(one)
+            if (share == 1.0 and one.cost < CHEAP * len(aim.lengths)) or len(found) == 2:
+                break
+    return min(found, key=lambda one: one.cost, default=None)
+
+
+def _descended(aim: Aim, share: float) -> Solution:
+    n = len(aim.lengths)
+    hands = np.where(aim.turns < 0, -1.0, 1.0)
+    start = np.concatenate([aim.lengths, np.where(aim.free, share, 1.0) * np.abs(aim.turns), [0.0, 0.0, 0.0]])
+    start[2 * n :] = _laid(aim, start, hands)
+    units = _units(aim)
+    weights = np.ones(2 * n)
+    v, steps = start, 0
+    for round_ in range(2):
+        for penalty in PENALTIES[round_:]:
+            v, taken = _settled(aim, hands, units, weights, v, penalty)
+            steps += taken
+        change = np.abs(units * (v[: 2 * n] - _proposed(aim)))
+        weights = np.sqrt(FEW / (change + FEW))
+    change = units * (v[: 2 * n] - _proposed(aim))
+    broken = _misses(aim, hands, v)
+    return Solution(
+        v[:n], hands * v[n : 2 * n], float(change @ change), float(broken.max(initial=0.0)), steps
+    )
+
+
+def _proposed(aim: Aim) -> Array:
+    return np.concatenate([aim.lengths, np.abs(aim.turns)])
+
+
+def _units(aim: Aim) -> Array:
+    turns = np.abs(aim.turns)
+    by_turn = np.where(turns > 0, TURN_WEIGHT / np.maximum(turns, LEAST_TURN_COUNTED), 100.0)
+    return np.concatenate([LENGTH_WEIGHT / aim.lengths, by_turn])
+
+
+def _laid(aim: Aim, v: Array, hands: Array) -> Array:
+    """Heading and start at which the road's box is smallest, and lies in the middle of the map.
+
+    Left at heading 0, a straight road would be made shorter, as a small turn alone gains nothing.
+    """
+    n = len(aim.lengths)
+    z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
+    turned = np.exp(1j * HEADINGS)[:, None] * z
+    box = np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1))
+    fits = np.flatnonzero(box <= aim.world.map_size - aim.world.road_width - 2 * aim.margins.edge)
+    best = int(fits[0]) if fits.size else int(box.argmin())
+    x, y = turned[best].real, turned[best].imag
+    middle = np.array([np.ptp(x) / 2 + x.min(), np.ptp(y) / 2 + y.min()])
+    return np.concatenate([HEADINGS[best : best + 1], aim.world.map_size / 2 - middle])
+
+
+def _settled(
+    aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float
+) -> tuple[Array, int]:
+    """The bottom of the valley that ``v`` lies in, at one penalty, and the steps that it took."""
+    n, damping = len(aim.lengths), 1e-3
+    free = np.concatenate([np.tile(aim.free, 2), [True] * 3])
+    scale = np.concatenate([1 / units, [0.3, 20.0, 20.0]])[free]
+    own = np.diag(np.concatenate([weights**2, np.full(3, 1e-8)])[free])
+
+    def total(at: Array) -> float:
+        change = weights * units * (at[: 2 * n] - _proposed(aim))
+        missed = _misses(aim, hands, at)
+        return float(change @ change + penalty * (missed @ missed))
+
+    now = total(v)
+    for taken in range(STEPS):
+        missed, slopes = _misses_and_slopes(aim, hands, v)
+        slopes = slopes[:, free] * scale
+        change = np.concatenate([weights**2 * units * (v[: 2 * n] - _proposed(aim)), np.zeros(3)])[free]
+        matrix = own + penalty * (slopes.T @ slopes)
+        down = change + penalty * (slopes.T @ missed)
+        for _ in range(6):
+            step = np.linalg.solve(matrix + damping * np.diag(np.diag(matrix) + 1e-6), -down)
+            step *= min(1.0, 0.5 / max(np.abs(step[:-3]).max(), 1e-12))
+            after = v.copy()
+            after[free] += scale * step
+            after[: 2 * n] = np.maximum(after[: 2 * n], 0.0)
+            after[:n] = np.maximum(after[:n], 0.1 * aim.lengths)
+            then = total(after)
+            if then < now:
+                break
+            damping *= 6
+        else:
+            return v, taken
+        v, gained, now, damping = after, now - then, then, max(damping / 8, 1e-9)
+        if gained < SETTLED * (now + 1e-9):
+            break
+    return v, taken
+
+
+def _misses(aim: Aim, hands: Array, v: Array) -> Array:
+    """Metres by which limits are missed, ``(m,)``."""
+    return _misses_and_slopes(aim, hands, v, with_slopes=False)[0]
+
+
+def _misses_and_slopes(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple[Array, Array]:
+    """Metres by which limits are missed, ``(m,)``, and how each changes with every unknown."""
+    n = len(aim.lengths)
+    by_rows = aim.rows @ v[: 2 * n] - aim.most
+    over = by_rows > 0
+    z, steps = aim.figure.walk(v[:n], hands * v[n : 2 * n], v[2 * n])
+    border = aim.world.road_width / 2 + aim.margins.edge
+    x, y = z.real + v[2 * n + 1], z.imag + v[2 * n + 2]
+    outside = np.stack(
+        [border - x, border - y, x + border - aim.world.map_size, y + border - aim.world.map_size]
+    )
+    out = outside > 0
+    one, other = _meeting(z, v[:n], aim)
+    apart = aim.world.road_width + aim.margins.clear
+    away = z[other] - z[one]
+    size = np.maximum(np.abs(away), 1e-6)
+    missed = np.concatenate([by_rows[over], outside[out], apart - size])
+    if not with_slopes:
+        return missed, missed
+    by_length, by_turn = aim.figure.slopes(v[:n], steps)
+    moves = np.concatenate([by_length, by_turn * (hands * (aim.turns != 0)), 1j * z[:, None]], axis=1)
+    rows = np.concatenate([aim.rows[over], np.zeros((int(over.sum()), 3))], axis=1)
+    which, point = np.nonzero(out)
+    sign = np.where(which < 2, -1.0, 1.0)[:, None]
+    along_y = (which % 2)[:, None]
+    own = np.where(along_y, moves[point].imag, moves[point].real)
+    box = sign * np.concatenate([own, 1 - along_y, along_y], axis=1)
+    part = (moves[other] - moves[one]) * (away.conj() / size)[:, None]
+    clear = np.concatenate([-part.real, np.zeros((len(one), 2))], axis=1)
+    return missed, np.concatenate([rows, box, clear])
+
+
+def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
+    """Pairs of points, every other one, that lie nearer to each other than the road may come to itself.
+
+    Points with no free segment between them are left out: they stay as far apart as they are.
+    """
+    owner = aim.figure.owner
+    count = np.bincount(owner, minlength=len(lengths))
+    s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
+    moved = np.concatenate([[0], np.cumsum(aim.free[owner])])[::SPARSE]
+    x, y = z.real[::SPARSE], z.imag[::SPARSE]
+    dx, dy = x[:, None] - x, y[:, None] - y
+    near = dx * dx + dy * dy < (aim.world.road_width + aim.margins.clear) ** 2
+    near &= s - s[:, None] > NEIGHBOURS
+    near &= moved > moved[:, None]
+    one, other = np.nonzero(near)
+    return SPARSE * one, SPARSE * other
