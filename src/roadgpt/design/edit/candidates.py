@@ -226,10 +226,9 @@ def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep
     bound = 60.0 if change.sharpness == "sweeping" else 40.0
     if r >= bound * 1.02 and 15 <= d <= 120:
         return []
+    aim = min(max(d, 18.0), 115.0)
     radius = Wanted(max(bound * 1.12, r), Range(bound * 1.03, WIDEST))
-    return [
-        Adjust(element, Wanted(min(max(d, 18.0), 115.0), Range(16.0, min(max(d, 18.0), 115.0) + 3)), radius)
-    ]
+    return [Adjust(element, Wanted(aim, Range(16.0, aim + 3)), radius)]
 
 
 def _lengths(change: Change, element: RoadElement, world: World) -> list[EditStep]:
@@ -240,24 +239,16 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
     wished = before * share if aim is None else aim
     if element.kind == "turn":
         assert seen is not None
-        wanted = near(wished, 0.06 * wished) if aim is not None else _towards(before, wished)
         tight = least_radius(world)
         if seen.radius * wished / before >= tight:
+            wanted = near(wished, 0.06 * wished) if aim is not None else _towards(before, wished)
             return [Adjust(element, near(seen.degrees, 2.0), None, wanted)]
-        degrees = seen.degrees * max(
-            wished / before / (tight / seen.radius), 0.3
-        )  # then it also turns less far
-        return [Adjust(element, near(degrees, 4.0), near(max(tight, min(seen.radius, tight)), 0.12 * tight))]
+        share = max(wished / before / (tight / seen.radius), 0.3)  # then it also turns less far
+        return [Adjust(element, near(seen.degrees * share, 4.0), near(tight, 0.12 * tight))]
     if aim is None:
-        if change.more > 0:
-            wished = max(wished, before + 15)
-        wished = max(wished, min(SEEN + 1, before))
-        length = _towards(before, wished)
-        return [
-            Adjust(
-                element, length=Wanted(wished, Range(max(length.room.lo, SEEN), max(length.room.hi, SEEN)))
-            )
-        ]
+        wished = max(wished, before + 15 if change.more > 0 else 0.0, min(SEEN + 1, before))
+        room = _towards(before, wished).room
+        return [Adjust(element, length=Wanted(wished, Range(max(room.lo, SEEN), max(room.hi, SEEN))))]
     if wished < SEEN - 0.6:
         raise EditError(
             f"a straight of {max(wished, 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
@@ -326,34 +317,28 @@ def _slopes(change: Change, element: RoadElement, found: Measures, world: World)
         aim = sign * change.to
     elif change.by is not None:
         aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
+    if aim is not None:
+        _refuse_too_steep(abs(aim), limit)
     elif change.times is not None:
         aim = now * change.times
-    if change.to is not None or (change.by is not None and aim is not None):
-        _refuse_too_steep(max(abs(aim or 0.0), change.to or 0.0), limit)
     if aim is not None:
-        return _graded(element, aim, (0.5, PERCENT_SLACK))
+        return _graded(element, 1, aim, (aim - 0.5, aim + 0.5), (aim - PERCENT_SLACK, aim + PERCENT_SLACK))
     if change.way == "flat":
         if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
             return []
-        return _graded(element, 0.0, (0.5, CLEARLY_LEVEL))
+        return _graded(element, 1, 0.0, (-0.5, 0.5), (-CLEARLY_LEVEL, CLEARLY_LEVEL))
     if change.way and not change.more:
-        if way(now) == change.way:
-            return []
-        return [
-            Adjust(element, grade=_signed(5.0, low, high, sign)) for low, high in ((3.0, 12.0), (1.3, 13.0))
-        ]
+        return [] if way(now) == change.way else _graded(element, sign, 5.0, (3.0, 12.0), (1.3, 13.0))
     if change.more > 0 and change.way and way(now) != change.way:
-        return [Adjust(element, grade=_signed(6.0, 3.0, 12.0, sign))]
+        return _graded(element, sign, 6.0, (3.0, 12.0))
     if change.more < 0:
-        ends = 0.1 * now, 0.9 * now
         is_level = abs(now) < LEVEL
-        return [] if is_level else [Adjust(element, grade=Wanted(FLATTER * now, Range(min(ends), max(ends))))]
+        return [] if is_level else _graded(element, 1, FLATTER * now, (0.1 * now, 0.9 * now))
     steep = max(abs(now) * (1 + (STEEPER - 1) * change.dose), abs(now) + STEEPER_BY * change.dose)
     steep = min(steep if abs(now) >= LEVEL else STEEP_FROM, limit - 0.3)
     if steep <= abs(now) + 0.4:
         raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
-    low, high = min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)
-    return [Adjust(element, grade=_signed(steep, low, high, sign))]
+    return _graded(element, sign, steep, (min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
 
 
 def _refuse_too_steep(grade: float, limit: float) -> None:
@@ -361,13 +346,10 @@ def _refuse_too_steep(grade: float, limit: float) -> None:
         raise EditError(f"{grade:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
 
 
-def _graded(element: RoadElement, aim: float, slacks: Sequence[float]) -> list[EditStep]:
-    return [Adjust(element, grade=near(aim, slack)) for slack in slacks]
-
-
-def _signed(aim: float, low: float, high: float, sign: int) -> Wanted:
-    """A grade between two sizes, uphill where the sign is 1."""
-    return Wanted(sign * aim, Range(low, high) if sign > 0 else Range(-high, -low))
+def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
+    """A step for each range, all with the same aim; percent, downhill where the sign is -1."""
+    ends = [sorted((sign * one, sign * other)) for one, other in rooms]
+    return [Adjust(element, grade=Wanted(sign * aim, Range(low, high))) for low, high in ends]
 
 
 def _road_slopes(
