@@ -1,8 +1,8 @@
-"""The smallest change of inclines that keeps every slope what it was proposed to be, and what was promised.
+"""Changes inclines as little as needed, so that every slope is measured as proposed and as required.
 
 Parabolas join the grades of a road, so a short level turn between two climbs is measured as climbing itself.
-The incline of what is measured wrong is moved by what is missing, as far as it stays up, down or level
-itself; then its neighbours are moved towards it.
+The incline of a turn that is measured wrong is moved by what is missing, as far as it stays up, down or level
+itself. What remains is moved at its neighbours.
 """
 
 from collections.abc import Sequence
@@ -23,7 +23,7 @@ from roadgpt.road.design import Design
 from roadgpt.road.elevation import elevation_of
 
 ROUNDS = 24
-ROOMIER = (1.0, 1.5, 2.5)  # times the room that parabolas need, so that a slope is seen between them
+ROOMIER = (1.0, 1.5, 2.5)  # factors on the room for parabolas, so that a slope is measured between them
 TENTH = 10.0  # per percent
 CLEAR = 0.1  # percentage points off the edge of up, down and level
 SURPLUS = 0.05  # percentage points more than is missing
@@ -41,21 +41,31 @@ def sloped(
     outline: Outline,
     world: World,
 ) -> Design:
-    """Returns the design with inclines at which every slope is kept; plan and start stay as they are."""
+    """Returns the design with inclines at which every turn is measured on the slope it should have.
+
+    If none are found, the last inclines that were tried are returned. The plan and the start stay the same.
+
+    Args:
+        design: the design, with the plan that it is to have.
+        proposed: its segments as proposed, with the proposed inclines.
+        elements: its turns and gaps, each with what is required of it.
+        outline: requirements of the whole road.
+        world: the limits of the rules.
+    """
     windows = [_window(element, outline, world) for element in elements]
     own = [window for window, element in zip(windows, elements, strict=True) for _ in element.segments]
-    segments = list(design.segments)
     loose = [_loose(segment, window, world) for segment, window in zip(proposed, own, strict=True)]
+    segments, lengths = design.segments, [segment.distance for segment in design.segments]
     grades = np.array([np.clip(s.incline, r.lo, r.hi) for s, r in zip(proposed, loose, strict=True)])
     if outline.climb:
-        grades = _climbing(grades, segments, loose, outline.climb)
-    points = build(design).centreline()
-    stations = build(design).sample().s
-    pace = Pace.of(design, world)
-    lengths, inclines = [s.distance for s in segments], [s.incline for s in proposed]
+        inner, climb = outline.climb.drawn_in(0.3, 0.2), float(grades @ lengths) / 100
+        if climb not in inner:
+            grades = climbing(grades, np.array(lengths), loose, float(np.clip(climb, inner.lo, inner.hi)))
+    road, pace = build(design), Pace.of(design, world)
+    points, stations = road.centreline(), road.sample().s
     most = 100 * world.max_grade
     unseen = {i for element in elements if not _is_seen(element) for i in element.members}
-    runs = runs_of(inclines, unseen)
+    runs = runs_of([segment.incline for segment in proposed], unseen)
     bounds = [(-most, most) if i in unseen else (room.lo, room.hi) for i, room in enumerate(loose)]
     for roomier in ROOMIER:
         now = grades
@@ -75,26 +85,25 @@ def sloped(
 
 
 def _is_seen(element: RoadElement) -> bool:
-    """Is it long enough for its slope to be looked for?"""
+    """Returns whether an element is long enough to need a slope of its own."""
     return element.is_turn or element.length >= SHORTEST_SLOPE
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> list[Segment]:
-    """Returns the segments with other inclines, rounded to a tenth; unchanged ones stay the same objects."""
-    rounded = [round(float(g) * TENTH) / TENTH for g in grades]
-    return [
-        s if s.incline == g else s.model_copy(update={"incline": g})
-        for s, g in zip(segments, [_plain(g, s) for g, s in zip(rounded, segments, strict=True)], strict=True)
-    ]
+    """Returns the segments with other inclines, rounded to a tenth of a percent.
 
-
-def _plain(grade: float, segment: Segment) -> float:
-    """What was written, where rounding is all that parts them."""
-    return segment.incline if abs(grade - segment.incline) < 0.05 else grade
+    A segment whose incline changes by less than rounding stays the same object.
+    """
+    out = []
+    for segment, grade in zip(segments, grades.tolist(), strict=True):
+        incline = round(grade * TENTH) / TENTH
+        is_same = abs(incline - segment.incline) < 0.05
+        out.append(segment if is_same else segment.model_copy(update={"incline": incline}))
+    return out
 
 
 def _window(element: RoadElement, outline: Outline, world: World) -> Range:
-    """Percent that the measured slope must lie in: its class as proposed, and what was promised."""
+    """Returns the grades in percent that an element may be measured with: its class, and what is required."""
     class_ = CLASSES[way(element.incline)]
     try:
         promised = Windows(outline, world)
@@ -106,54 +115,34 @@ def _window(element: RoadElement, outline: Outline, world: World) -> Range:
 
 
 def _loose(segment: Segment, window: Range, world: World) -> Range:
-    """Percent that a segment may be written with: its own class, and the window where one was promised."""
+    """Returns the inclines in percent that a segment may have: of its own class, and in a required window."""
     limit = Range(-100 * world.max_grade, 100 * world.max_grade)
-    class_ = overlap(_class_of(segment.incline), limit) or limit
-    if window in CLASSES.values():  # nothing was promised: a turn of several slopes keeps every one
+    span = CLASSES[way(segment.incline)]
+    class_ = Range(max(min(span.lo, segment.incline), limit.lo), min(max(span.hi, segment.incline), limit.hi))
+    if window in CLASSES.values():  # nothing is required: a turn of several slopes keeps every one
         return class_
-    meets = overlap(class_, window) or class_
-    if meets.lo <= meets.hi:
-        return meets
-    inside = overlap(window, limit) or limit
-    return inside if inside.lo <= inside.hi else limit
-
-
-def _class_of(incline: float) -> Range:
-    """Up, down or level, wide enough for what was written."""
-    span = CLASSES[way(incline)]
-    return Range(min(span.lo, incline), max(span.hi, incline))
-
-
-def _climbing(grades: Array, segments: Sequence[Segment], loose: Sequence[Range], climb: Range) -> Array:
-    """All grades shifted alike, each as far as it may, until the road climbs what was asked."""
-    lengths = np.array([s.distance for s in segments])
-    margin = min(0.3, 0.2 * (climb.hi - climb.lo))
-    now = grades @ lengths / 100
-    target = float(np.clip(now, climb.lo + margin, climb.hi - margin))
-    return grades if abs(target - now) < 1e-9 else climbing(grades, lengths, loose, target)
+    for room in (overlap(class_, window), overlap(window, limit)):
+        if room and room.lo <= room.hi:
+            return room
+    return limit
 
 
 def _missing(points: Array, elements: Sequence[RoadElement], windows: Sequence[Range]) -> Array:
-    """Percentage points that the slope of every segment's turn is away from its window."""
+    """Returns by how many percentage points the turn of every segment is measured off its window."""
     out = np.zeros(elements[-1].members.stop)
     turns = [pair for pair in zip(elements, windows, strict=True) if pair[0].is_turn]
     found = measure(points).turns
     if len(found) != len(turns):
         return out
-    for stretch, (element, window) in zip(found, turns, strict=True):
-        by = max(window.lo - stretch.grade, 0.0) + min(window.hi - stretch.grade, 0.0)
-        # the measure's own edge of a class, where nothing narrower was promised
-        if (
-            way(stretch.grade) == way(float(np.clip(stretch.grade, window.lo, window.hi)))
-            and window in CLASSES.values()
-        ):
-            by = 0.0
-        out[list(element.members)] = by + np.copysign(SURPLUS, by) if by else 0.0
+    for seen, (element, window) in zip(found, turns, strict=True):
+        by = float(np.clip(seen.grade, window.lo, window.hi)) - seen.grade
+        if by and window != CLASSES[way(seen.grade)]:
+            out[list(element.members)] = by + np.copysign(SURPLUS, by)
     return out
 
 
 def _moved(grades: Array, missing: Array, loose: Sequence[Range]) -> Array:
-    """Grades moved by what is missing, each as far as it may; what remains is moved at its neighbours."""
+    """Returns grades moved by what is missing, as far as they may; the rest is moved at their neighbours."""
     low, high = np.array([r.lo for r in loose]), np.array([r.hi for r in loose])
     wanted = grades + missing
     after = np.clip(wanted, low, high)
@@ -163,6 +152,3 @@ def _moved(grades: Array, missing: Array, loose: Sequence[Range]) -> Array:
             if 0 <= j < len(grades) and not missing[j]:
                 after[j] = np.clip(after[j] + rest[i], low[j], high[j])
     return np.asarray(after)
-
-
-__all__ = ["sloped", "with_inclines"]
