@@ -9,10 +9,10 @@ from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.folder_campaign import campaign, work_in
+from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
-from roadgpt.errors import BriefError, DesignError
+from roadgpt.errors import BriefError
 from roadgpt.run import Request, brief_of
 from roadgpt.run.atomic import alone_in
 from roadgpt.run.folder import Draw, finished
@@ -73,50 +73,44 @@ class _Session:
         self.done = {part.name: len(finished(folder / part.name)) for part in plan.parts()}
         self.problems: dict[str, Problem] = {}
 
-    def make(self, parts: Iterable[StudyPart], workers: int) -> None:
-        """Makes the roads of all parts together; no language model is asked."""
-        folders = dict[str, RunFolder]()
+    def make(self, parts: Iterable[StudyPart], workers: int, meter: Meter | None = None) -> None:
+        """Makes the roads of all parts together; raises ChatError if a language model cannot be asked."""
+        plan, folders = self.plan, dict[str, RunFolder]()
         for part in parts:
-            setup = self.plan.setup_of(part.designer)
+            setup = plan.setup_of(part.designer)
             try:
-                brief = brief_of(part.prompt.prompt, self.plan.world, setup)
+                brief = brief_of(part.prompt.prompt, plan.world, setup, meter)
             except BriefError as error:
                 self.problems[part.name] = Problem(part.name, str(error))
                 continue
-            request = Request(words=brief.words, seed=self.plan.seed, world=self.plan.world, setup=setup)
-            folders[part.name] = RunFolder.opened(request, brief, self.plan.roads, self._place(part))
+            request = Request(words=brief.words, seed=plan.seed, world=plan.world, setup=setup)
+            folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, self._place(part))
+            if meter is not None:
+                meter.add(runs.spent)
         several = workers if workers > 1 else 0
-        with closing(work_in(self.folder, folders, self.draw, workers=several)) as tests:
+        with closing(work_in(self.folder, folders, self.draw, meter, several)) as tests:
             for name, _ in tests:
-                self._count(name)
+                self.done[name] += 1
+                self.tell(sum(self.done.values()))
         for name, runs in folders.items():
             if runs.failure:
                 self.problems[name] = Problem(name, runs.failure)
 
     def make_in_turn(self, parts: Iterable[StudyPart]) -> None:
         """Makes the roads of parts one after another, with one meter for all language models."""
-        meter = Meter.of(self.plan.setup.chat)
-        silent: dict[str, Problem] = {}
+        meter, silent = Meter.of(self.plan.setup.chat), dict[str, Problem]()
         for part in parts:
             if part.designer in silent:  # a designer whose server did not answer is not asked again
                 self.problems[part.name] = silent[part.designer]._replace(part=part.name)
                 continue
-            setup, place, words = self.plan.setup_of(part.designer), self._place(part), part.prompt.prompt
-            plan = self.plan
             try:
-                for _ in campaign(words, plan.roads, plan.seed, plan.world, setup, place, self.draw, meter):
-                    self._count(part.name)
-            except (ChatError, BriefError, DesignError) as error:
-                problem = Problem(part.name, str(error), isinstance(error, ChatError))
-                self.problems[part.name] = problem
-                if problem.is_of_chat and not isinstance(error, ReplyError):
+                self.make([part], 1, meter)
+            except ChatError as error:
+                self.problems[part.name] = problem = Problem(part.name, str(error), is_of_chat=True)
+                if not isinstance(error, ReplyError):
                     silent[part.designer] = problem
 
     def _place(self, part: StudyPart) -> Path:
         place = self.folder / part.name
         place.parent.mkdir(parents=True, exist_ok=True)
         return place
-
-    def _count(self, name: str) -> None:
-        self.done[name] += 1
-        self.tell(sum(self.done.values()))
