@@ -54,7 +54,7 @@ def earlier() -> Iterator[str]:
     """Yields the table of names that commands and options had before."""
     yield "## Earlier names\n"
     yield "They still work, and say the present name in one line on standard error.\n"
-    rows = [(f"roadgpt {' '.join(words)}", f"roadgpt {now.shown}") for words, now in EARLIER.items()]
+    rows = [(f"roadgpt {' '.join(words)}", f"roadgpt {shown}") for words, (_, shown) in EARLIER.items()]
     rows += [*EARLIER_OPTIONS.items(), *EARLIER_VALUES.items()]
     table = ["| earlier | now |", "|---|---|", *(f"| `{old}` | `{new}` |" for old, new in rows)]
     yield "\n".join(table) + "\n"

@@ -3,7 +3,6 @@ work.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 # A line of help stands here so that `roadgpt --help` imports no command.
 HEADINGS = {
@@ -44,28 +43,21 @@ HEADINGS = {
 COMMANDS = {name: line for commands in HEADINGS.values() for name, line in commands.items()}
 
 
-class Earlier(NamedTuple):
-    """The present name of a command that was renamed."""
-
-    words: tuple[str, ...]
-    """The words that replace the earlier name on the command line."""
-    shown: str
-    """The present command as it is shown to the user."""
-
-
 EARLIER = {
-    ("status",): Earlier(("show", "--progress"), "show CAMPAIGN"),
-    ("top",): Earlier(("show", "--watch"), "show --watch CAMPAIGN"),
-    ("plot",): Earlier(("view", "--format", "png"), "view --format png ROAD"),
-    ("redrive",): Earlier(("drive", "--again"), "drive --again CAMPAIGN TEST"),
-    ("parts",): Earlier(("config", "plugins"), "config plugins"),
-    ("beamng", "selftest"): Earlier(("doctor", "beamng"), "doctor beamng"),
-    ("beamng",): Earlier(("doctor", "beamng", "--help"), "doctor beamng"),
-    ("sbft",): Earlier(("compete", "sbft"), "compete sbft"),
-    ("sdc", "serve"): Earlier(("compete", "sdc"), "compete sdc"),
-    ("sdc",): Earlier(("compete", "sdc", "--help"), "compete sdc"),
+    ("status",): (("show", "--progress"), "show CAMPAIGN"),
+    ("top",): (("show", "--watch"), "show --watch CAMPAIGN"),
+    ("plot",): (("view", "--format", "png"), "view --format png ROAD"),
+    ("redrive",): (("drive", "--again"), "drive --again CAMPAIGN TEST"),
+    ("parts",): (("config", "plugins"), "config plugins"),
+    ("beamng", "selftest"): (("doctor", "beamng"), "doctor beamng"),
+    ("beamng",): (("doctor", "beamng", "--help"), "doctor beamng"),
+    ("sbft",): (("compete", "sbft"), "compete sbft"),
+    ("sdc", "serve"): (("compete", "sdc"), "compete sdc"),
+    ("sdc",): (("compete", "sdc", "--help"), "compete sdc"),
 }
-"""The present name of each command that was renamed, by the words of its earlier name."""
+"""For each command that was renamed, by the words of its earlier name: the words that replace them, and the
+present command as it is shown to the user.
+"""
 
 EARLIER_OPTIONS = {"--verge": "--shoulder"}
 EARLIER_VALUES = {"--view bonnet": "--view hood"}
@@ -78,10 +70,10 @@ def renamed(args: Sequence[str]) -> tuple[list[str], str]:
     Args:
         args: The arguments after ``roadgpt``.
     """
-    for words, earlier in EARLIER.items():
+    for words, (new, shown) in EARLIER.items():
         if tuple(args[: len(words)]) == words:
-            told = f"'roadgpt {' '.join(words)}' is now 'roadgpt {earlier.shown}'"
-            return [*earlier.words, *args[len(words) :]], told
+            told = f"'roadgpt {' '.join(words)}' is now 'roadgpt {shown}'"
+            return [*new, *args[len(words) :]], told
     return [*args], ""
 
 

@@ -102,7 +102,7 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Returns the results of a campaign for suggestions; None if it is running or a test failed."""
+    """Summarises a campaign in which no test failed; None if it is running or a test failed."""
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
     from roadgpt.campaign.record import Record
@@ -117,7 +117,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_runs(folder: Path) -> WithoutFailure | None:
-    """Returns the results of a folder of runs for suggestions; None if a road failed."""
+    """Summarises a folder of runs in which no road failed; None if one failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.card import read_card
@@ -129,7 +129,7 @@ def of_runs(folder: Path) -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Returns the results in rows for suggestions; None if a road failed."""
+    """Summarises the rows of roads, none of which failed; None if one failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

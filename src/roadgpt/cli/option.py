@@ -36,7 +36,7 @@ FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
 
 
 class Option(click.Option):
-    """An option, with everything that the help, configuration files and printed commands need of it.
+    """An option of commands, with the data that help, configuration files and printed commands need.
 
     Several commands can share one Option. ``click.Option`` documents the other arguments.
 
@@ -75,7 +75,7 @@ class Option(click.Option):
         self.advice = advice
 
     def under(self, heading: Heading) -> "Option":
-        """Returns the same option as one that every help lists, under another heading."""
+        """Returns a copy of the option that every help lists, under another heading."""
         twin = copy(self)
         twin.heading, twin.is_rare = heading, False
         return twin
@@ -86,7 +86,7 @@ class Option(click.Option):
         return str(self.name)
 
     def read(self, given: Any) -> Any:
-        """Returns the field's value for an option's value: the same, but in the field's unit."""
+        """Returns the value of the field for a value of the option, converted to the field's unit."""
         return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
@@ -201,7 +201,7 @@ class Option(click.Option):
 
 
 class Argument(click.Argument):
-    """An argument of a command, with the advice that is given where it is missing.
+    """An argument of a command, with advice for a user who left it out.
 
     Args:
         name: The name of the function's argument; with "..." behind it, the argument takes several values.

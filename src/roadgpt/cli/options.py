@@ -262,7 +262,7 @@ def choice_of(values: dict[str, Any]) -> "Choice | None":
 
 
 def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
-    """Returns what draws pictures of runs in these formats, with these axes; None without formats."""
+    """Returns a function that draws pictures of runs in these formats; None if there are no formats."""
     if not formats:
         return None
     from roadgpt.report import drawing

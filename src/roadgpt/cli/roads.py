@@ -213,11 +213,6 @@ def shown_runs(
     return [run_of(each, world, geometry) for each in named]
 
 
-def shown_run(file: str, world: "World", geometry: "Geometry") -> "Run":
-    """Returns the Run that a single name refers to, as ``shown_runs`` does."""
-    return shown_runs([file], None, world, geometry, 1, "it")[0]
-
-
 def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
     """Returns the Run of a road, or a new Run without a drive for a road file; prints remarks.
 

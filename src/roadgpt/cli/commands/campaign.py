@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
-BESIDE_A_FILE = {"words", "out", "workers", "executor", "address", "drivers", "junit", "as_json", "quiet"}
+BESIDE_A_FILE = {
+    "words", "out", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat", "junit",
+    "as_json", "quiet",
+}  # fmt: skip
 
 
 # fmt: off
@@ -54,22 +57,7 @@ PARAMETERS = (
 
 @click.command(cls=GroupedCommand, params=[*PARAMETERS])
 @click.pass_context
-def command(
-    ctx: click.Context,
-    /,
-    words: tuple[str, ...],
-    out: Path | None,
-    workers: int,
-    executor: str,
-    address: str,
-    faults: bool,
-    minimise: bool,
-    repeat: int | None,
-    junit: Path | None,
-    as_json: bool,
-    quiet: bool,
-    **rest: Any,
-) -> None:
+def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **given: Any) -> None:
     """Search for roads that a driver fails on, or make thousands of roads.
 
     Give a description, or a FILE.toml that lists prompts, designers, drivers, simulators and seeds; each
@@ -82,25 +70,39 @@ def command(
     roadgpt show study --watch
     """
     from roadgpt import plugins
-    from roadgpt.campaign.lifecycle import begin, work
+    from roadgpt.campaign.lifecycle import begin
     from roadgpt.run.atomic import to_bytes
     from roadgpt.run.folder_names import new_folder
 
     text = to_bytes(" ".join(words)).decode()  # what a broken terminal put into it becomes an escape
-    plan = _filed(ctx, Path(text), rest) if text.endswith(".toml") else _described(text, rest)
+    plan = _filed(ctx, Path(text), given) if text.endswith(".toml") else _described(text, given)
     plan.check()
-    plugins.find("executors", executor)
+    plugins.find("executors", given["executor"])
     if out is None:
         out = new_folder(Path(text).stem if text.endswith(".toml") else text, plan.seeds[0])
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         was_there = begin(plan, out)
-    if not quiet and not as_json:
+    if not given["quiet"] and not given["as_json"]:
         _tell(out, plan, was_there)
-    watch(out, work(out, workers, executor, address, plan), as_json, quiet)
-    if junit is not None:
-        write_folder(junit, out)
-    if look := analysis_options(faults, minimise, repeat, workers, quiet, as_json):
-        analyse_failures(out, look)
+    work_to_the_end(out, plan, given)
+
+
+def work_to_the_end(folder: Path, plan: "Plan", given: dict[str, Any]) -> None:
+    """Runs the tests of a campaign that are missing, prints the results, and writes what else is asked for.
+
+    Args:
+        folder: The campaign.
+        plan: Its plan.
+        given: The options of workers, faults, JUnit and output.
+    """
+    from roadgpt.campaign.lifecycle import work
+
+    steps = work(folder, given["workers"], given["executor"], given["address"], plan)
+    watch(folder, steps, given["as_json"], given["quiet"])
+    if given["junit"] is not None:
+        write_folder(given["junit"], folder)
+    if look := analysis_options(given):
+        analyse_failures(folder, look)
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":

@@ -11,7 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
-from roadgpt.cli.roads import check_file, shown_run
+from roadgpt.cli.roads import check_file, shown_runs
 from roadgpt.errors import RoadGPTError, UsageError, explained
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def command(
     if not no_plot:
         format_of(out)
     world = options.world_of(rest)
-    runs = [shown_run(file, world, rest["geometry"]) for file in (one, other)]
+    runs = [shown_runs([file], None, world, rest["geometry"], 1, "it")[0] for file in (one, other)]
     roads = [run.road for run in runs if run.road is not None]
     if len(roads) < 2:
         missing = one if runs[0].road is None else other

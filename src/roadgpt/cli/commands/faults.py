@@ -59,15 +59,14 @@ class AnalysisOptions(NamedTuple):
             click.echo(text, err=is_news or self.is_apart)
 
 
-def analysis_options(
-    faults: bool, minimise: bool, repeat: int | None, workers: int, is_quiet: bool, is_apart: bool
-) -> AnalysisOptions | None:
-    """Returns the analysis that the ``FAULT_OPTIONS`` of a campaign request; None if they request none."""
-    if not faults and not minimise and repeat is None:
+def analysis_options(given: dict[str, Any]) -> AnalysisOptions | None:
+    """Returns the analysis that the options of a campaign request; None if ``FAULT_OPTIONS`` request none."""
+    if not given["faults"] and not given["minimise"] and given["repeat"] is None:
         return None
     # the campaign's workers may be on other machines
-    here = min(workers, os.cpu_count() or 1)
-    return AnalysisOptions(repeat or REPEAT, minimise, here, is_quiet=is_quiet, is_apart=is_apart)
+    here = min(given["workers"], os.cpu_count() or 1)
+    repeat, is_quiet, is_apart = given["repeat"] or REPEAT, given["quiet"], given["as_json"]
+    return AnalysisOptions(repeat, given["minimise"], here, is_quiet=is_quiet, is_apart=is_apart)
 
 
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:

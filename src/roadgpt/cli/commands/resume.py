@@ -1,13 +1,13 @@
 """``roadgpt resume``: continues a campaign that was interrupted."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.campaigns import watch
-from roadgpt.cli.commands.faults import FAULT_OPTIONS, analyse_failures, analysis_options
-from roadgpt.cli.junit import write_folder
+from roadgpt.cli.commands.campaign import work_to_the_end
+from roadgpt.cli.commands.faults import FAULT_OPTIONS
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
@@ -26,21 +26,7 @@ OPTIONS = (
 
 
 @click.command(cls=GroupedCommand, params=[Argument("campaign", "CAMPAIGN", ADVICE, PATH), *OPTIONS])
-def command(
-    campaign: Path,
-    workers: int,
-    executor: str,
-    address: str,
-    driver: str | None,
-    base_url: str | None,
-    faults: bool,
-    minimise: bool,
-    repeat: int | None,
-    junit: Path | None,
-    as_json: bool,
-    quiet: bool,
-    **limits: float | None,
-) -> None:
+def command(campaign: Path, driver: str | None, base_url: str | None, **rest: Any) -> None:
     """Continue a campaign that was interrupted, with any number of workers.
 
     Tests that had not finished are repeated. The table of results is the same as without the interruption.
@@ -48,7 +34,7 @@ def command(
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2
     """
-    from roadgpt.campaign.lifecycle import plan_of, work
+    from roadgpt.campaign.lifecycle import plan_of
     from roadgpt.campaign.record import Record
     from roadgpt.chat.config import trust_server
     from roadgpt.drive.permission import check_named_driver
@@ -58,13 +44,9 @@ def command(
     check_named_driver(driver, {*plan.drivers}, campaign)
     if base_url is not None:
         trust_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
-    given = {name: value for name, value in limits.items() if value is not None}
-    if given and plan.chat is None:
+    limits = {name: rest[name] for name in ("max_tokens", "max_cost") if rest[name] is not None}
+    if limits and plan.chat is None:
         raise UsageError(f"--max-tokens and --max-cost limit a language model, and {campaign} asks none")
-    if given and plan.chat is not None:
-        plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=given)})
-    watch(campaign, work(campaign, workers, executor, address, plan), as_json, quiet)
-    if junit is not None:
-        write_folder(junit, campaign)
-    if look := analysis_options(faults, minimise, repeat, workers, quiet, as_json):
-        analyse_failures(campaign, look)
+    if limits and plan.chat is not None:
+        plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=limits)})
+    work_to_the_end(campaign, plan, rest)
