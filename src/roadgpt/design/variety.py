@@ -72,35 +72,15 @@ def _at(s: Array, line: Complex, stations: Array) -> Complex:
 def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
     """Returns the distance in metres to the nearest of other shapes; infinite if it is 5.5 m or more.
 
-    The difference of two spreads is a lower bound of the distance, so most shapes need not be compared.
-
     Args:
         shape: the shape of one road.
         others: the stacked shapes of other roads.
         by_metres: True to compare also at equal distances from the start, as far as the shorter road goes.
     """
-    near = np.flatnonzero(np.abs(others.spread - shape.spread) < ENOUGH)
-    some = others._replace(shares=others.shares[near], spread=others.spread[near])
-    least = float(apart(shape, some).min(initial=inf))
-    if by_metres and least >= ENOUGH and len(others.reach):
-        near = np.flatnonzero(_at_least_by_metres(shape, others) < ENOUGH)
-        some = others._replace(
-            metres=others.metres[near],
-            reach=others.reach[near],
-            centres=others.centres[near],
-            spreads=others.spreads[near],
-        )
-        least = float(apart_by_metres(shape, some).min(initial=inf))
+    least = float(apart(shape, others).min(initial=inf))
+    if by_metres and least >= ENOUGH:
+        least = float(apart_by_metres(shape, others).min(initial=inf))
     return least if least < ENOUGH else inf
-
-
-def _at_least_by_metres(shape: PlanShape, others: PlanShape) -> Array:
-    """Returns lower bounds of ``apart_by_metres``, from the spreads of the common part and its first half."""
-    n, row = np.minimum(shape.reach, others.reach), np.arange(len(others.reach))
-    half = (n + 1) // 2
-    whole = np.abs(others.spreads[row, n - 1] - shape.spreads[n - 1])
-    start = np.abs(others.spreads[row, half - 1] - shape.spreads[half - 1]) * np.sqrt(half / n)
-    return np.asarray(np.maximum(whole, start))
 
 
 def apart(shape: PlanShape, others: PlanShape) -> Array:
