@@ -42,7 +42,9 @@ class VariationContext(NamedTuple):
     """The requirements, world and rules that all candidates of a cell share."""
 
     brief: Brief | None
+    """The requirements; None if there are none."""
     world: World
+    """The map and the limits of the rules."""
     rules: Literal["strict", "sbft"] = "strict"
     """With "sbft", a road must also pass the validator of the competition."""
 
@@ -51,12 +53,16 @@ class VariationTask(NamedTuple):
     """Describes one candidate to make, so that any worker can make it."""
 
     kind: Kind
+    """What to make: a new draft ("draft"), a draft after three rounds of mutations ("wild"), a mutated parent
+    ("vary"), a crossover of two parents ("cross"), or a road between two parents ("between")."""
     parents: tuple[Design, ...]
     """The parents: none for a draft, one for a variation, two for a crossover or for a road between two
     roads.
     """
     origin: str
+    """Text that is stored with the candidate and says where it comes from."""
     seed: tuple[int, ...]
+    """Seed of the random generator; a road between two parents needs none."""
     setting: VariationContext
     share: float = 0.5
     """Position of a road between its two parents: 0 is the first parent, 1 the second."""
@@ -67,16 +73,17 @@ class Candidate(NamedTuple):
 
     design: Design
     origin: str
+    """Text that says where the road comes from, taken from its task."""
     features: dict[str, float]
     """Features of the road that are known without a drive, by name."""
     surrogate_features: Array
+    """Features that the surrogate model predicts from, ``(n,)``."""
     shape: PlanShape
+    """Shape of the plan, by which candidates are compared."""
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
-    """Returns the candidate that a task describes; None if no road was found that satisfies the Brief and
-    all rules.
-    """
+    """Returns the candidate that a task describes; None if no valid road was found that meets the Brief."""
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":
@@ -127,8 +134,9 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
 def placed(
     elements: Elements, setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """Returns the design and the road with these elements at a random pose on the map; None if it violates
-    a requirement or a rule.
+    """Returns the design and the road with these elements, at a random place on the map.
+
+    Returns None if the road does not fit on the map or violates a requirement or a rule.
     """
     line = walk([as_written(element) for element in elements])
     where = place(line, setting.world, rng)
@@ -162,7 +170,11 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Returns a road that has been driven as a Candidate, with its features."""
+    """Returns a design that has been driven as a Candidate, with its features.
+
+    Args:
+        known: the design, and the requirements, world and rules of its cell.
+    """
     design, setting = known
     return described(design, setting.world.lay(build(design)), "", setting)
 

@@ -1,7 +1,7 @@
-"""Conversations in which a language model designs one road: all of it at once, or segment by segment.
+"""Conversations in which a language model designs one road, all of it at once or segment by segment.
 
-Whatever it proposes is repaired as far as the settings allow and looked at; what is still wrong goes back to
-it in sentences. Every question is counted.
+Every proposal is repaired as far as the settings allow, and then checked. What is still wrong goes back to
+the model in sentences. Every request to the model is counted.
 """
 
 import json
@@ -19,44 +19,55 @@ from roadgpt.design.repair import How, repair
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.road import Design, World, build
 
-MOST_SHOWN = 6000  # characters of its own answer that a model is shown again
-MOST_SEGMENTS = 40  # of a road that is asked for segment by segment
-MOST_MENDED = 4  # segments that are fitted in by changing others; then there is no room for more
-MOST_LEFT_OUT = 2  # segments in a row that could not be placed; then the road ends
+MOST_SHOWN = 6000  # characters of its own answer that a model gets again
+MOST_SEGMENTS = 40  # of a road that is designed segment by segment
+MOST_MENDED = 4  # segments for which others may be changed; more are not tried
+MOST_LEFT_OUT = 2  # consecutive segments that could not be placed, after which the road ends
 
 
 class DesignTask(NamedTuple):
-    """A road that a language model is to design, and the settings."""
+    """The task of a language model to design one road."""
 
     brief: Brief
     world: World
     settings: ChatSettings
     rules: str
-    """System message."""
+    """The system message, with the rules of the map."""
     question: str
+    """The first message of the user, with the requirements."""
     is_new: Callable[[Design], bool]
-    """Is a design unlike all earlier ones?"""
+    """Returns whether a design differs from all earlier ones of the campaign."""
     seed: int
+    """Seed of the start that is used if the model gives none."""
 
 
 class Outcome(NamedTuple):
     """The result of a dialogue with a language model."""
 
     design: Design
+    """The road, after repairs."""
     proposed: Design
-    """Before any repair, as far as the model's own road is what the design was made from."""
+    """The road as the model proposed it."""
     questions: int
+    """Number of requests to the model."""
     objections: tuple[str, ...]
+    """Sentences that say what is still wrong with the road."""
     remarks: tuple[str, ...] = ()
-    """What was settled of the answer, and what was left out of it."""
+    """Sentences that say what was corrected in the answers, and what was omitted."""
     model: str = ""
+    """Name of the model as its server gives it."""
 
 
 def whole(chat: Chat, task: DesignTask) -> Outcome:
     """Asks for whole roads until one has no objections or all rounds are used up; returns the best one.
 
+    Args:
+        chat: the language model.
+        task: the road to design.
+
     Raises:
-        ReplyError, DesignError: no answer was a road.
+        DesignError: no answer was a road.
+        ReplyError: no answer could be read.
         ChatError: the model could not be asked.
     """
     opening = [Message(role="system", text=task.rules), Message(role="user", text=task.question)]
@@ -111,11 +122,16 @@ def _compact(answer: BaseModel) -> str:
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
     """Asks for one segment at a time and checks each before it asks for the next.
 
-    A segment that will not do is asked for again, at most ``rounds`` times, and then left out; so the run
-    goes on whatever the model answers.
+    A segment with objections is asked for again, at most ``rounds`` times as the settings say, and then
+    omitted. So the road is finished whatever the model answers.
+
+    Args:
+        chat: the language model.
+        task: the road to design.
 
     Raises:
-        ReplyError, DesignError: not one segment could be had.
+        DesignError: no answer was a segment that can be placed.
+        ReplyError: no answer could be read.
         ChatError: the model could not be asked.
     """
     return _Steps(chat, task).walked()
