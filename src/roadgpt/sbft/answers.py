@@ -6,16 +6,17 @@ is installed in the generator's own interpreter, ``answer`` is called there inst
 started.
 """
 
-import os
 import sys
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 
+from roadgpt import __version__
 from roadgpt.check import sbft_verdict
 from roadgpt.check.ribbon import quads_of
 from roadgpt.check.sbft import keeps_clear
+from roadgpt.children import private_streams
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import interpolate
 from roadgpt.sbft.json_lines import Message, received, send
@@ -40,13 +41,6 @@ def answer(asked: Message) -> Message:
         return {"error": f"RoadGPT cannot answer '{op}': {error!r}"}
 
 
-def hello() -> str:
-    """Returns RoadGPT's version."""
-    from roadgpt import __version__
-
-    return __version__
-
-
 def nodes(points: Any) -> Points:
     """Returns the competition's interpolated points ``(m, 2)`` for control points ``(n, 2)``, metres.
 
@@ -59,24 +53,6 @@ def nodes(points: Any) -> Points:
     if np.hypot(*np.diff(table, axis=0).T).sum() > LONGEST:
         raise UsageError(f"a road of more than {LONGEST / 1000:g} km; bring a shorter one")
     return list(interpolate(table).tolist())
-
-
-def verdict(points: Any, map_size: float) -> tuple[bool, str]:
-    """Returns the result of the competition's validator for control points (metres) on a square map with
-    sides of ``map_size`` metres: (is valid, message)."""
-    return sbft_verdict(np.asarray(points, float), map_size)
-
-
-def clear(left: Any, right: Any) -> bool:
-    """Returns whether a road between left and right edge points ``(n, 2)`` does not intersect itself."""
-    return keeps_clear(quads_of(np.asarray(left, float), np.asarray(right, float)))
-
-
-def distance(one: Any, other: Any) -> float:
-    """Returns the competition's edit distance between two sequences of points ``(n, 2)``."""
-    from roadgpt.run.sparseness import distances, steps_of
-
-    return float(distances(steps_of(one), [steps_of(other)])[0])
 
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
@@ -142,11 +118,18 @@ def another() -> Points:
     return [list(point) for point in road]
 
 
+def distance(one: Any, other: Any) -> float:
+    """Returns the competition's edit distance between two sequences of points ``(n, 2)``."""
+    from roadgpt.run.sparseness import distances, steps_of
+
+    return float(distances(steps_of(one), [steps_of(other)])[0])
+
+
 OPS: dict[Any, Callable[..., Any]] = {
-    "hello": hello,
+    "hello": lambda: __version__,
     "nodes": nodes,
-    "verdict": verdict,
-    "clear": clear,
+    "verdict": lambda points, map_size: sbft_verdict(np.asarray(points, float), map_size),
+    "clear": lambda left, right: keeps_clear(quads_of(np.asarray(left, float), np.asarray(right, float))),
     "distance": distance,
     "left_lane": left_lane,
     "spread": spread,
@@ -157,8 +140,7 @@ OPS: dict[Any, Callable[..., Any]] = {
 
 def main() -> None:
     """Answers requests on standard input until it is closed. Output of plug-ins goes to standard error."""
-    hears, tells = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
+    hears, tells = private_streams()
     for line in hears:
         asked = received(line)
         if asked is not None:

@@ -33,7 +33,7 @@ class Service:
         """Fits the risk model to the received tests with known outcomes."""
         oracles = list(requests)
         chosen = oracles[:: max(1, -(-len(oracles) // MOST_OUTCOMES))]
-        features = self._features(oracle.testCase for oracle in chosen)
+        features = [_features_of(oracle.testCase) for oracle in chosen]
         self.model = fit_model(features, [bool(oracle.hasFailed) for oracle in chosen])
         log.info("%d of %d known outcomes were used", len(chosen), len(oracles))
         return message("InitializationReply")(ok=True)
@@ -42,25 +42,21 @@ class Service:
         """Yields the tests most likely to fail, in the order in which they were received."""
         tests = list(requests)
         if tests:
-            for i in self.model.select(self._features(tests)):
+            for i in self.model.select([*map(_features_of, tests)]):
                 yield message("SelectionReply")(testId=tests[i].testId)
 
     def prioritize(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
         """Yields all tests, from the most to the least likely to fail."""
         tests = list(requests)
         if tests:
-            for i in order(self.model.scores(self._features(tests))):
+            for i in order(self.model.scores([*map(_features_of, tests)])):
                 yield message("PrioritizationReply")(testId=tests[i].testId)
 
-    def _features(self, tests: Iterable[Any]) -> list[RiskFeatures]:
-        """Returns the features of each test."""
-        return [risk_features(points_of(test)) for test in tests]
 
-
-def points_of(test: Any) -> list[tuple[float, float]]:
-    """Returns the road points of a test, ordered by their sequence numbers."""
+def _features_of(test: Any) -> RiskFeatures:
+    """Returns the risk features of a test."""
     points = sorted(test.roadPoints, key=lambda point: point.sequenceNumber)
-    return [(point.x, point.y) for point in points]
+    return risk_features([(point.x, point.y) for point in points])
 
 
 def serve(host: str, port: int) -> tuple[Any, int]:
@@ -71,7 +67,8 @@ def serve(host: str, port: int) -> tuple[Any, int]:
     """
     service = Service()
     server = grpc.server(ThreadPoolExecutor(WORKERS))
-    server.add_generic_rpc_handlers((handlers(service),))
+    handlers = {name: _handler(service, name) for name in METHODS}
+    server.add_generic_rpc_handlers((grpc.method_handlers_generic_handler(SERVICE, handlers),))
     try:
         got = server.add_insecure_port(f"{host}:{port}")
     except RuntimeError:
@@ -80,11 +77,6 @@ def serve(host: str, port: int) -> tuple[Any, int]:
         raise UsageError(f"cannot listen on {host}:{port}; if another program uses it, choose another --port")
     server.start()
     return server, got
-
-
-def handlers(service: Service) -> Any:
-    """Returns the RPC handlers of a service for gRPC."""
-    return grpc.method_handlers_generic_handler(SERVICE, {name: _handler(service, name) for name in METHODS})
 
 
 def _handler(service: Service, name: str) -> Any:

@@ -1,11 +1,11 @@
 """The simulator ``mujoco``: rigid bodies by MuJoCo, with RoadGPT's own tyres and road surface."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.drive.camera_sensor import CameraSensor, camera_of
-from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
+from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _NAMES = tuple(COLUMNS)
 _SEEN = tuple(
-    map(_NAMES.index, ("x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"))
+    map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
 )
 
 
@@ -43,48 +43,16 @@ class MujocoSimulator:
             guard.start(road, world, seed)
             middle = float(world.profile_of(road).middle(monitor.start))
             vehicle.put(monitor.start, middle + self.start_offset)
-            rows, ended = _drive(vehicle, guard, monitor, sensor, road, world)
-        columns = Columns({name: rows[:, place] for place, name in enumerate(_NAMES)})
+            rows, step = [vehicle.row.tobytes()], 0
+            while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
+                now = vehicle.row.tolist()
+                *place, steer, vx, vy = (now[i] for i in _SEEN)
+                image = None if sensor is None else sensor.see(vehicle.see())
+                view = View._make((step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image))
+                vehicle.move(*guard.ask(view))
+                look()
+                rows.append(vehicle.row.tobytes())
+                step += 1
+        table = np.frombuffer(b"".join(rows)).reshape(len(rows), -1)
+        columns = Columns({name: table[:, place] for place, name in enumerate(_NAMES)})
         return Drive(guard.name, "mujoco", seed, columns, ended, self.car.box)
-
-
-def _drive(
-    vehicle: Vehicle,
-    guard: DriverGuard,
-    monitor: DriveMonitor,
-    sensor: CameraSensor | None,
-    road: "Road",
-    world: "World",
-) -> tuple[FloatArray, Ended]:
-    log = _Log()
-    row = log.add(vehicle.row)
-    step = 0
-    while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
-        *place, steer, vx, vy = (row[i] for i in _SEEN)
-        image = None if sensor is None else sensor.see(vehicle.see())
-        view = View._make((step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image))
-        vehicle.move(*guard.ask(view))
-        look()
-        row = log.add(vehicle.row)
-        step += 1
-    return log.rows(), ended
-
-
-class _Log:
-    """Collects rows in an array that grows."""
-
-    def __init__(self) -> None:
-        self._rows = np.empty((512, len(COLUMNS)))
-        self._count = 0
-
-    def add(self, row: FloatArray) -> Any:
-        """Keeps the row; returns it as a list of numbers."""
-        if self._count == len(self._rows):
-            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
-        self._rows[self._count] = row
-        self._count += 1
-        return row.tolist()
-
-    def rows(self) -> FloatArray:
-        """Returns all rows, shape (n, columns)."""
-        return self._rows[: self._count]
