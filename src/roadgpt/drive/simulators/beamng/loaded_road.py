@@ -67,10 +67,8 @@ class LoadedRoad:
         package, scene = client(), self.scene
         scenario = package.Scenario(self.session.level, f"{self.prefix}road_scene")
         for strip in scene.strips:
-            if strip.is_mesh:
-                scenario.add_mesh_road(_mesh_road(package, strip))
-            else:
-                scenario.add_road(_decal_road(package, strip))
+            add = scenario.add_mesh_road if strip.is_mesh else scenario.add_road
+            add(_road_of(package, strip))
         scenario.add_checkpoints([_triple(scene.goal)], [(4.0, 4.0, 4.0)], [self.goal])
         self.vehicle = package.Vehicle("ego", self.settings.model)
         self.vehicle.sensors.attach("electrics", package.sensors.Electrics())
@@ -106,7 +104,9 @@ class LoadedRoad:
         with self.session.within(self.settings.poll_timeout, "the car was put down"):
             self._rest()
             if self.session.body is None:
-                self._measure()
+                corners, gravity = self.vehicle.get_bbox(), self.vehicle.get_center_of_gravity()
+                start = self.scene.start
+                self.session.body = CarGeometry.measured(self.vehicle.state, gravity, corners, start)
                 self.vehicle.teleport(*self._start(), True)
                 self._rest()
             self._begun = self._clock()
@@ -121,11 +121,6 @@ class LoadedRoad:
             self.vehicle.sensors.poll("state")
             if np.linalg.norm(self.vehicle.state["vel"]) < CALM:
                 break
-
-    def _measure(self) -> None:
-        state = self.vehicle.state
-        gravity = self.vehicle.get_center_of_gravity()
-        self.session.body = CarGeometry.measured(state, gravity, self.vehicle.get_bbox(), self.scene.start)
 
     @property
     def body(self) -> CarGeometry:
@@ -271,18 +266,14 @@ class LoadedRoad:
             session.drop()
 
 
-def _mesh_road(package: Any, strip: Strip) -> Any:
-    road = package.MeshRoad(strip.material, rid=strip.name)
-    road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))
-    return road
-
-
-def _decal_road(package: Any, strip: Strip) -> Any:
-    # BeamNGpy numbers a scenario's decal roads anew, from 0 in the order in which they are added, and so does
-    # level_road: whichever holds, it is the same.
-    road = package.Road(
-        strip.material, rid=strip.name, drivability=strip.drivability, render_priority=strip.priority
-    )
+def _road_of(package: Any, strip: Strip) -> Any:
+    if strip.is_mesh:
+        road = package.MeshRoad(strip.material, rid=strip.name)
+    else:
+        # BeamNGpy numbers a scenario's decal roads anew, from 0 in the order in which they are added, and so
+        # does level_road: whichever holds, it is the same.
+        look = {"drivability": strip.drivability, "render_priority": strip.priority}
+        road = package.Road(strip.material, rid=strip.name, **look)
     road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))
     return road
 

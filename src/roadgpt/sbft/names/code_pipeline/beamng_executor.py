@@ -7,7 +7,6 @@ generator. Only ``validate_test`` works without sending anything.
 from __future__ import annotations
 
 import time
-from copy import deepcopy
 from typing import Any, Dict, Optional, Tuple
 
 from code_pipeline.executors import HANDED, AbstractTestExecutor, TestResult, settle
@@ -81,22 +80,6 @@ class BeamngExecutor(AbstractTestExecutor):
 
     def _close(self) -> None:
         """Does nothing."""
-
-    def __reduce__(self) -> Any:
-        raise TypeError(
-            "the executor works only in the process that got it; let other processes send road points there"
-        )
-
-    def __deepcopy__(self, memo: Dict[int, Any]) -> BeamngExecutor:
-        made = object.__new__(type(self))
-        memo[id(self)] = made
-        made.__dict__.update({name: deepcopy(value, memo) for name, value in vars(self).items()})
-        return made
-
-    def __copy__(self) -> BeamngExecutor:
-        made = object.__new__(type(self))
-        made.__dict__.update(vars(self))
-        return made
 
 
 def _is_test(the_test: Any) -> bool:

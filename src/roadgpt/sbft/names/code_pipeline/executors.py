@@ -33,26 +33,17 @@ class Remaining(Dict[str, float]):
     def __float__(self) -> float:
         return self[REMAINING]
 
-    def __lt__(self, other: Any) -> bool:
-        return float(self) < float(other)
-
-    def __le__(self, other: Any) -> bool:
-        return float(self) <= float(other)
-
-    def __gt__(self, other: Any) -> bool:
-        return float(self) > float(other)
-
-    def __ge__(self, other: Any) -> bool:
-        return float(self) >= float(other)
-
-    def __sub__(self, other: Any) -> float:
-        return float(self) - float(other)
-
-    def __rsub__(self, other: Any) -> float:
-        return float(other) - float(self)
-
     def __format__(self, spec: str) -> str:
         return format(float(self), spec) if spec else str(self)
+
+
+def _as_number(name: str) -> Any:
+    method = getattr(float, name)
+    return lambda self, other: method(float(self), float(other))
+
+
+for _name in ("__lt__", "__le__", "__gt__", "__ge__", "__sub__", "__rsub__"):
+    setattr(Remaining, _name, _as_number(_name))
 
 
 class SharedCounter:

@@ -36,6 +36,11 @@ class Connection:
     def __deepcopy__(self, memo: Any) -> Connection:
         return self
 
+    def __reduce__(self) -> Any:
+        raise TypeError(
+            "the executor works only in the process that got it; let other processes send road points there"
+        )
+
     def tell(self, message: Message) -> None:
         """Sends a message to RoadGPT.
 
