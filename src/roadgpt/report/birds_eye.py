@@ -15,7 +15,7 @@ from matplotlib.ticker import MultipleLocator
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, new_figure
-from roadgpt.report.labels import Labels, name_border
+from roadgpt.report.labels import Labels
 from roadgpt.report.places import MarkedPlace, places_of
 from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
 from roadgpt.report.text_width import inches
@@ -63,14 +63,12 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     header.write(figure)
     _draw_key(figure, LEFT, found)
     _ground(axes, frame, world.map_size)
-    border = name_border(axes, frame, world.map_size, centre, frame.width / across)
     draw_road(axes, road, world, frame.width / across)
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
     labels = Labels(axes, frame, frame.width / across, centre, world.profile_of(road).paved_reach + 1.0)
-    if border is not None:
-        labels.keep_clear_of(border)
+    labels.name_border(world.map_size)
     places = places_of(run)
     for place in places:
         mark(axes, run, place)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import islice
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -39,9 +40,17 @@ class Labels:
     _leaders: list[Array] = field(default_factory=list)
     """Points on the lines from labels to their places, each ``(n, 2)``."""
 
-    def keep_clear_of(self, box: Box) -> None:
-        """Marks a box as taken; later labels avoid it."""
-        self._boxes.append(box)
+    def name_border(self, size: float) -> None:
+        """Writes a label beside a border of a map of ``size`` metres that is in view, if there is room."""
+        wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
+        offers = _offers(self.frame, size, wide, HIGH * self.per_inch, GAP * self.per_inch)
+        clear = ((box, turned) for box, turned in offers if _away(box, self.clear_of) > CLEAR)
+        for box, turned in islice(clear, 1):
+            self._boxes.append(box)
+            self.axes.text(
+                (box[0] + box[1]) / 2, (box[2] + box[3]) / 2, BORDER, ha="center", va="center",
+                size=BORDER_SIZE, color=SOFT, rotation=90 if turned else 0, zorder=0.7,
+            )  # fmt: skip
 
     def put(
         self, place: tuple[float, float], text: str, colour: str = INK, away: Array | None = None
@@ -120,30 +129,6 @@ def _holds(box: Box, points: Array) -> bool:
     x0, x1, y0, y1 = box
     x, y = points.T
     return bool(((x > x0) & (x < x1) & (y > y0) & (y < y1)).any())
-
-
-def name_border(axes: Axes, frame: Frame, size: float, centre: Array, per_inch: float) -> Box | None:
-    """Writes the label beside a border that is in view; returns its box, or None where there is no room.
-
-    Args:
-        axes: the axes to write on.
-        frame: what the axes show, in metres.
-        size: side of the map, metres.
-        centre: points on the centre line of the road, ``(n, 2)``, metres.
-        per_inch: metres per inch of the picture.
-    """
-    offers = list(
-        _offers(frame, size, (inches(BORDER, BORDER_SIZE) + 0.1) * per_inch, HIGH * per_inch, GAP * per_inch)
-    )
-    clear = [(box, turned) for box, turned in offers if _away(box, centre) > CLEAR]
-    if not clear:
-        return None
-    box, turned = clear[0]
-    axes.text(
-        (box[0] + box[1]) / 2, (box[2] + box[3]) / 2, BORDER, ha="center", va="center", size=BORDER_SIZE,
-        color=SOFT, rotation=90 if turned else 0, zorder=0.7,
-    )  # fmt: skip
-    return box
 
 
 def _offers(frame: Frame, size: float, wide: float, high: float, gap: float) -> Iterator[tuple[Box, bool]]:

@@ -156,8 +156,10 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
         part: which page of how many, for the header; empty if there is one page.
         size: side of the map, metres.
     """
-    columns = _columns(len(entries))
-    rows = -(-len(entries) // columns)
+    count = len(entries)
+    # so many that the page has about the shape of a sheet of paper
+    columns = min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
+    rows = -(-count // columns)
     cell = min(LARGEST, (WIDEST - 2 * MARGIN) / columns - GAP)
     width = max(6.0, 2 * MARGIN + columns * (cell + GAP) - GAP)
     high = HEADER + rows * (cell + TITLE + GAP) + 0.15
@@ -167,21 +169,11 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
     axes.axis("off")
     _header(axes, about, part, Counter(entry.graded for entry in entries), width)
     _key(axes, entries)
-    for place, entry in zip(_places(len(entries), columns, cell), entries, strict=True):
-        _cell(axes, entry, place, cell, size)
+    for number, entry in enumerate(entries):
+        row, column = divmod(number, columns)
+        corner = MARGIN + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
+        _cell(axes, entry, corner, cell, size)
     return figure
-
-
-def _columns(count: int) -> int:
-    """Returns the number of columns that gives the page about the shape of a sheet of paper."""
-    return min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
-
-
-def _places(count: int, columns: int, cell: float) -> Iterator[tuple[float, float]]:
-    """Yields the upper left corners of the maps, inches from the corner of the page."""
-    for i in range(count):
-        row, column = divmod(i, columns)
-        yield MARGIN + column * (cell + GAP), HEADER + TITLE + row * (cell + TITLE + GAP)
 
 
 def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str], width: float) -> None:

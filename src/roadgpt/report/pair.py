@@ -34,7 +34,7 @@ def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
     runs = (one, other)
     row = SIDE + BOTTOM + TOP
     figure = new_figure(WIDTH, 2 * row)
-    side = max(_side(run) for run in runs)
+    side = max(LEAST, *(float(np.ptp(_plan(run), axis=0).max()) + 2 * MARGIN for run in runs))
     long = max(run.length for run in runs)
     span = max(LOWEST, *(float(np.ptp(_heights(run))) for run in runs)) * 1.25
     for number, run in enumerate(runs):
@@ -48,13 +48,10 @@ def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
         at = (foot + SIDE + 0.32) / (2 * row)
         figure.text(LEFT / WIDTH, at, f"Road {number + 1}", size=11, weight="bold", color=INK)
         figure.text((LEFT + 0.72) / WIDTH, at, title, size=11, color=INK, parse_math=False)
-        said = f"{_seed(run)}{run.length:.0f} m, {run.outcome.lower()}"
+        seed = f"seed {run.request.seed}, road {run.index}, " if run.words else ""
+        said = f"{seed}{run.length:.0f} m, {run.outcome.lower()}"
         figure.text(LEFT / WIDTH, at - 0.2 / (2 * row), said, size=8.5, color=SOFT)
     return figure
-
-
-def _seed(run: Run) -> str:
-    return f"seed {run.request.seed}, road {run.index}, " if run.words else ""
 
 
 def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
@@ -73,10 +70,6 @@ def _plan(run: Run) -> Array:
 def _heights(run: Run) -> Array:
     assert run.road is not None
     return np.asarray(run.road.at(stations_of(run.road))[:, 2])
-
-
-def _side(run: Run) -> float:
-    return max(LEAST, float(np.ptp(_plan(run), axis=0).max()) + 2 * MARGIN)
 
 
 def _square(run: Run, side: float) -> Frame:

@@ -1,6 +1,5 @@
 """Writes a Page as one HTML file that needs no other file."""
 
-from functools import cache
 from html import escape
 from pathlib import Path
 
@@ -9,7 +8,6 @@ from roadgpt.report.page.model import (
     Cards,
     Details,
     Figure,
-    FigureCard,
     Line,
     Page,
     Section,
@@ -31,33 +29,24 @@ def html_of(page: Page) -> str:
     """Returns the whole page, to be written as UTF-8; the same Page gives the same text."""
     lead = f'<p class="lead">{escape(page.lead)}</p>' if page.lead else ""
     summary = "".join(f"<li>{_line(line)}</li>" for line in page.summary)
-    nav = "".join(f'<a href="#{_anchor(n)}">{escape(s.title)}</a>' for n, s in enumerate(page.sections))
-    sections = "\n".join(_section(number, section) for number, section in enumerate(page.sections))
+    nav = "".join(f'<a href="#s{n}">{escape(s.title)}</a>' for n, s in enumerate(page.sections, 1))
+    sections = "\n".join(_section(number, section) for number, section in enumerate(page.sections, 1))
     return (
         "<!doctype html>\n"
         '<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width, initial-scale=1">'
         f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
         '<meta name="color-scheme" content="light dark">'
-        f"<title>{escape(page.title)}</title><style>\n{_style()}</style></head>\n"
+        f"<title>{escape(page.title)}</title><style>\n{STYLE.read_text(encoding='utf-8')}</style></head>\n"
         f"<body><main>\n<header><h1>{escape(page.title)}</h1>{lead}</header>\n"
         f'<ul class="summary">{summary}</ul>\n<nav>{nav}</nav>\n{sections}\n{_card(page)}'
         "</main></body></html>\n"
     )
 
 
-@cache
-def _style() -> str:
-    return STYLE.read_text(encoding="utf-8")
-
-
-def _anchor(number: int) -> str:
-    return f"s{number + 1}"
-
-
 def _section(number: int, section: Section) -> str:
     blocks = "\n".join(_block(block) for block in section.blocks)
-    return f'<section id="{_anchor(number)}"><h2>{escape(section.title)}</h2>\n{blocks}\n</section>'
+    return f'<section id="s{number}"><h2>{escape(section.title)}</h2>\n{blocks}\n</section>'
 
 
 def _block(block: Block) -> str:
@@ -69,16 +58,15 @@ def _block(block: Block) -> str:
             f"<figcaption>{escape(block.caption)}</figcaption></figure>"
         )
     if isinstance(block, Cards):
-        return f'<div class="cards">{"".join(map(_carded, block.cards))}</div>'
+        cards = (
+            f"<article>{card.svg}<h3>{_line(card.title)}</h3>{''.join(map(_block, card.lines))}</article>"
+            for card in block.cards
+        )
+        return f'<div class="cards">{"".join(cards)}</div>'
     if isinstance(block, Details):
         inside = "\n".join(_block(each) for each in block.blocks)
         return f"<details><summary>{escape(block.title)}</summary>\n{inside}\n</details>"
     return f"<p>{_line(block)}</p>"
-
-
-def _carded(card: FigureCard) -> str:
-    lines = "".join(f"<p>{_line(line)}</p>" for line in card.lines)
-    return f"<article>{card.svg}<h3>{_line(card.title)}</h3>{lines}</article>"
 
 
 def _line(line: Line) -> str:

@@ -11,14 +11,11 @@ NARROW = 384.0  # px; a chart that is meant to be narrower is not widened on any
 
 def tag(name: str, content: str = "", /, **attributes: object) -> str:
     """Returns an element; ``_`` in an attribute's name stands for ``-``, and ``class_`` is ``class``."""
-    given = "".join(
-        f' {key.rstrip("_").replace("_", "-")}="{escape(_said(value))}"' for key, value in attributes.items()
-    )
+    given = ""
+    for key, value in attributes.items():
+        text = number(value) if isinstance(value, float) else str(value)
+        given += f' {key.rstrip("_").replace("_", "-")}="{escape(text)}"'
     return f"<{name}{given}>{content}</{name}>" if content else f"<{name}{given}/>"
-
-
-def _said(value: object) -> str:
-    return number(value) if isinstance(value, float) else str(value)
 
 
 def number(value: float) -> str:
