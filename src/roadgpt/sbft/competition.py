@@ -156,15 +156,12 @@ class Competition:
         left = self._deadline - time.monotonic() + self.experiment.grace
         return min(left, self.experiment.patience if self._has_tests_left else self.experiment.grace)
 
-    @property
-    def _patience(self) -> str:
-        return f"{self.experiment.patience:g} s"
-
     def _silent(self) -> Ending:
         if self._is_over:
             sentence = "budget used up; it did not notice, and was stopped"
             return Ending(how="budget", sentence=sentence)
-        return Ending(how="hung", sentence=f"it submitted no test within {self._patience}, and was stopped")
+        patience = f"{self.experiment.patience:g} s"
+        return Ending(how="hung", sentence=f"it submitted no test within {patience}, and was stopped")
 
     def _gone(self, status: int | None) -> Ending:
         if not self._is_begun and self.experiment.python is not None:

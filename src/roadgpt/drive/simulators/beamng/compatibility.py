@@ -7,7 +7,6 @@ source code of BeamNGpy's releases for the protocols.
 """
 
 import logging
-from collections.abc import Iterable
 from typing import NamedTuple
 
 
@@ -55,15 +54,11 @@ def mismatch_advice(game: str, client: str, version: str) -> str:
     """
     theirs = [pair for pair in VERSION_PAIRS if pair.protocol == game]
     ours = [pair for pair in VERSION_PAIRS if pair.protocol == client]
-    said = f"BeamNG.tech {_either(pair.tech for pair in theirs)}" if theirs else "this BeamNG.tech"
+    said = f"BeamNG.tech {' or '.join(pair.tech for pair in theirs)}" if theirs else "this BeamNG.tech"
     start = f"{said} uses protocol {game}, and the installed beamngpy {version} uses {client}"
-    techs = _either(pair.tech for pair in ours)
+    techs = " or ".join(pair.tech for pair in ours)
     other = f"install BeamNG.tech {techs}" if ours else "install the BeamNG.tech that goes with it"
     if not theirs:
         table = ", ".join(f"{pair.tech} with {pair.client}" for pair in VERSION_PAIRS if pair.is_tried)
         return f"{start}; {other}, or the beamngpy that goes with yours ({table})"
     return f"{start}; run 'python -m pip install beamngpy=={theirs[0].client}', or {other}"
-
-
-def _either(names: Iterable[str]) -> str:
-    return " or ".join(names)

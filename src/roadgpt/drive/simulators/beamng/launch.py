@@ -92,11 +92,6 @@ class BeamngProcess:
                 )
             time.sleep(LOOK)
 
-    @property
-    def is_alive(self) -> bool:
-        """Whether BeamNG's process is running."""
-        return self.process.poll() is None
-
     def kill(self) -> None:
         """Ends BeamNG and its child processes, by force if necessary."""
         children.end(self.process, GRACE)

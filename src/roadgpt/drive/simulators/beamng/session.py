@@ -4,8 +4,7 @@ it fails."""
 import atexit
 import logging
 import socket
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, suppress
+from contextlib import AbstractContextManager, suppress
 from importlib import import_module
 from importlib.metadata import version
 from typing import Any
@@ -152,11 +151,9 @@ class Session:
         )
         return self.within(patience, "it was loading its first road")
 
-    @contextmanager
-    def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """Context manager: ends calls to BeamNG that take longer than ``seconds``; see `Watchdog`."""
-        with self.watchdog.within(seconds, doing):
-            yield
+    def within(self, seconds: float, doing: str) -> AbstractContextManager[None]:
+        """Returns a context manager that ends calls to BeamNG after ``seconds``; see `Watchdog`."""
+        return self.watchdog.within(seconds, doing)
 
     def close(self) -> None:
         """Asks BeamNG to quit if RoadGPT started it; otherwise disconnects from it."""

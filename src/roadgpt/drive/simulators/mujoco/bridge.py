@@ -9,13 +9,7 @@ import mujoco
 from roadgpt.drive.compiled import COMPILES, call_at
 from roadgpt.drive.native import FUNCTIONS, addresses
 
-
-def _by_bindings(function: Any, model: Any, data: Any) -> None:
-    """Calls ``function(model, data)``."""
-    function(model, data)
-
-
-call: Any = call_at if COMPILES else _by_bindings
+call: Any = call_at if COMPILES else lambda function, model, data: function(model, data)
 
 
 @functools.cache

@@ -25,7 +25,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     MujocoHandles,
 )
 from roadgpt.drive.simulators.mujoco.hull import hull_points
-from roadgpt.drive.simulators.mujoco.model import SPIN_DOF, STEP, model_of
+from roadgpt.drive.simulators.mujoco.model import SPIN_DOF, STEP, centre_height, model_of
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
@@ -46,15 +46,13 @@ class Vehicle:
         self.car = car
         self._model = model_of(car)
         self._data = mujoco.MjData(self._model)
-        self._handles = _handles(self._model, self._data)
-        self._cars, self._axles = tables(car)
         self._ground = ground
         self._state = np.zeros(STATE)
         self.wheels: FloatArray = np.zeros((4, WHEEL_STATE))
         """The state of the wheels, in the order of `dynamics`: slips, valves, station, load and forces."""
-        self._car_state = CarState(
-            self._state, self.wheels, hull_points(car), np.zeros((4, 2)), np.zeros((2, 16, 2))
-        )
+        scratch = (np.zeros((4, 2)), np.zeros((2, 16, 2)))
+        car_state = CarState(self._state, self.wheels, hull_points(car), *scratch)
+        self._parts = (_handles(self._model, self._data), *tables(car), ground, car_state)
         self.row: FloatArray = np.zeros(len(COLUMNS))
         """The present state of the car, in the order of COLUMNS."""
         self.has_fallen = False
@@ -87,12 +85,13 @@ class Vehicle:
         if speed:
             data.qvel[:3] = frame[:, 0] * speed
             for dof, axle in zip(SPIN_DOF, (car.front, car.front, car.rear, car.rear), strict=True):
-                data.qvel[dof] = speed / (
-                    car.unloaded_radius - car.static_wheel_load(axle) / axle.tyre.vertical_stiffness
-                )
+                data.qvel[dof] = speed / centre_height(car, axle)
         else:
             self._state[BRAKE] = 1.0
-            self._settle()
+            for _ in range(LONGEST_SETTLING):
+                self._move(0.0, 0.0, 1.0, STEPS)
+                if self.has_fallen or np.abs(data.qvel).max() < SETTLED:
+                    break
         data.time = 0.0
         self._move(0.0, 0.0, 0.0 if speed else 1.0, 0)
         self.row[_PLACE["ax"]] = self.row[_PLACE["ay"]] = 0.0
@@ -108,25 +107,9 @@ class Vehicle:
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))
 
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:
-        self.has_fallen = control_step(
-            self._handles,
-            self._cars,
-            self._axles,
-            self._ground,
-            self._car_state,
-            # Always floats: numba compiles a version for each type of number.
-            float(steer),
-            float(throttle),
-            float(brake),
-            steps,
-            self.row,
-        )
-
-    def _settle(self) -> None:
-        for _ in range(LONGEST_SETTLING):
-            self._move(0.0, 0.0, 1.0, STEPS)
-            if self.has_fallen or np.abs(self._data.qvel).max() < SETTLED:
-                break
+        # Always floats: numba compiles a version for each type of number.
+        command = float(steer), float(throttle), float(brake)
+        self.has_fallen = control_step(*self._parts, *command, steps, self.row)
 
     def _row_at(self, s: float) -> FloatArray:
         sampled = self._ground.sampled
