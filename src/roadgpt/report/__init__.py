@@ -41,8 +41,8 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
     """Draws all pictures of a Run into an existing folder; returns their paths, none if there is no road.
 
     Args:
-        run: driven or not, valid or not.
-        folder: where the pictures go; files of the same names are replaced.
+        run: the Run; it may be invalid, and it need not have a drive.
+        folder: the folder for the pictures; files of the same names are replaced.
         axes: "equal" fits the road and is to scale; "thesis" uses the fixed axes of RoadGPT's thesis.
         formats: the file formats; each picture is written in all of them.
     """
@@ -59,7 +59,7 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws the pictures of a campaign while it runs; an argument of ``run.campaign``."""
+    """Draws the pictures of a campaign while it runs; the argument ``draw`` of ``roadgpt.campaign``."""
 
     axes: Scale = "equal"
     formats: tuple[Format, ...] = PNG
@@ -69,10 +69,10 @@ class Drawing:
         return draw(run, folder, self.axes, self.formats)
 
     def of_campaign(self, folder: Path) -> list[Path]:
-        """Draws all roads of a campaign on one page or several, and returns their paths."""
+        """Draws all roads of a campaign on one or more pages, and returns the paths of the pages."""
         return overview(folder, self.formats)
 
 
 def drawing(axes: Scale = "equal", formats: Sequence[Format] = PNG) -> Drawing:
-    """Returns a Drawing with these axes and formats, as ``draw`` takes them."""
+    """Returns a Drawing; ``axes`` and ``formats`` have the same meaning as in ``draw``."""
     return Drawing(axes, tuple(formats))

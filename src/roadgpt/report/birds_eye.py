@@ -1,4 +1,4 @@
-"""The bird's-eye view of a road, north up and to scale; a rim marks where the car was outside its lane."""
+"""Draws the bird's-eye view of a road, to scale and with north at the top."""
 
 from typing import Literal
 
@@ -41,11 +41,11 @@ SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.lins
 
 
 def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
-    """Returns the road from above, the driven path coloured by speed, the place of a failure or finding.
+    """Returns a picture of the road from above, with the driven path and the places of failures and findings.
 
     Args:
         run: a Run that has a road.
-        scale: the axes.
+        scale: which axes to use.
         frame: the part of the map to show, in metres; None shows the whole road.
     """
     road, world = run.road, run.world
@@ -142,7 +142,7 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place, and the car's outline where it stood there."""
+    """Draws a marker at a place, and the outline of the car if the drive has a step there."""
     if place.step is not None and run.drive is not None:
         car = Polygon(
             run.drive.corners(place.step), closed=True, fc="none", ec=place.letters, lw=1.6, zorder=9

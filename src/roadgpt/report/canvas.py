@@ -1,4 +1,4 @@
-"""Colours, header and files of all pictures; the same picture gives the same bytes."""
+"""Defines the colours and the header of all pictures, and writes pictures to files."""
 
 import io
 from collections.abc import Mapping, Sequence
@@ -73,7 +73,7 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def add_axes(figure: Figure, left: float, bottom: float, right: float, top: float) -> Axes:
-    """Adds axes whose borders lie so many inches from the figure's borders."""
+    """Adds axes to a figure; the arguments are the distances in inches from the borders of the figure."""
     wide, high = figure.get_size_inches()
     box = (
         left / wide,
@@ -98,7 +98,7 @@ def dress(axes: Axes) -> Axes:
 
 @dataclass(frozen=True)
 class Header:
-    """The header of a picture: description, outcome in a sentence, seed, length and driver."""
+    """The header of a picture, with description, outcome, seed, length of the road and driver."""
 
     run: Run
     width: float
@@ -108,7 +108,7 @@ class Header:
 
     @classmethod
     def of(cls, run: Run, width: float) -> "Header":
-        """Returns the header of a picture of a width in inches, its text broken to fit."""
+        """Returns the header of a picture that is ``width`` inches wide, with line breaks where needed."""
         room = width - 2 * MARGIN
         title = fitted(run.title, room, TITLE, True, MOST_LINES)
         return cls(run, width, title, fitted(run.description, room - _badge(run), TEXT, lines=MOST_SAID))
@@ -140,7 +140,7 @@ class Header:
 
 
 def outcome_of(run: Run) -> str:
-    """Returns the outcome of a Run as a key of OUTCOMES; a PASS says how far the car was outside its lane."""
+    """Returns the outcome of a Run as a key of OUTCOMES; a PASS includes how far the car was outside."""
     return graded(run.outcome, run.verdict.max_oob if run.verdict else None)
 
 
@@ -150,7 +150,7 @@ def _badge(run: Run) -> float:
 
 
 def origin(run: Run) -> str:
-    """Returns a line with seed and number of the road, its length, driver and simulator."""
+    """Returns one line of text with the seed, number and length of the road, the driver and the simulator."""
     seed = f"seed {run.request.seed}"
     said = [f"{seed}, road {run.index}"] if run.words else [seed] if run.drive is not None else []
     said.append(f"{run.length:.0f} m")

@@ -1,4 +1,4 @@
-"""The picture of one failure: the road around the place where the car left its lane, and the cause."""
+"""Draws the picture of one failure: the road around the place where the car left its lane, and the cause."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -22,7 +22,7 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
     Args:
         run: a Run that failed.
         reason: why it failed.
-        more: a sentence that follows the reason, such as how often it failed again.
+        more: a sentence to add after the reason, such as how often the car failed again; may be empty.
     """
     assert run.road is not None
     s = run.road.sample(1.0)
@@ -36,5 +36,5 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
 
 @in_our_style
 def draw_fault(run: Run, reason: FailureReason, more: str, path: Path) -> Path:
-    """Writes the picture of a failure in the format of the path's suffix; see ``fault_picture``."""
+    """Writes the picture of a failure to ``path``, whose suffix gives the format; see ``fault_picture``."""
     return save(fault_picture(run, reason, more), path)

@@ -1,4 +1,4 @@
-"""Height over distance along the road, to scale or on the axes of RoadGPT's thesis."""
+"""Draws the height over the distance along the road, to scale or on the axes of RoadGPT's thesis."""
 
 from itertools import pairwise
 
@@ -35,7 +35,7 @@ EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
-    """Returns the height over the distance along the road, with the grade of longer stretches."""
+    """Returns a picture of the height over the distance along the road, with grades of longer sections."""
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]

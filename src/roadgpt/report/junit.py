@@ -44,7 +44,7 @@ class Case:
 
 @dataclass(frozen=True)
 class Suite:
-    """Tests that share a description and all settings."""
+    """A group of tests with the same description and settings."""
 
     name: str
     properties: Properties
@@ -69,7 +69,7 @@ class _Counts(NamedTuple):
 
 
 def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> Path:
-    """Writes the suites into one file and returns its path; a file is written completely or not at all.
+    """Writes the suites into one file and returns its path; the file appears only when it is complete.
 
     Raises:
         RoadGPTError: the file cannot be written.

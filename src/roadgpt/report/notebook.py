@@ -1,4 +1,4 @@
-"""Pictures of values in notebooks; ``roadgpt`` registers them with IPython."""
+"""Makes the pictures that notebooks show for values; ``roadgpt`` registers ``png_of`` with IPython."""
 
 from typing import Any
 
@@ -18,10 +18,10 @@ SIDE = 5.0  # inches
 
 @in_our_style
 def png_of(value: Any) -> bytes | None:
-    """Returns the picture of a value as the bytes of a PNG file; None where there is nothing to show.
+    """Returns the picture of a value as the bytes of a PNG file; None if there is nothing to show.
 
     Args:
-        value: a Road, a Design, a Run, or the Campaign of a folder, of which the first page is shown.
+        value: a Road, a Design, a Run, or a Campaign, whose first page is shown.
     """
     figure = _figure(value)
     return None if figure is None else encoded(figure, "png")

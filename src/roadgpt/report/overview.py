@@ -1,4 +1,4 @@
-"""All roads of a campaign on one page: small maps, coloured by outcome."""
+"""Draws all roads of a campaign as small maps, coloured by outcome."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -58,7 +58,7 @@ class Entry:
 
     @property
     def graded(self) -> str:
-        """The outcome; a PASS says how far the car was outside its lane."""
+        """The outcome; for a PASS it includes how far the car was outside its lane."""
         return graded(self.outcome, self.share)
 
 
@@ -66,9 +66,9 @@ class Entry:
 def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
     """Draws ``overview.png`` into a folder of runs, and returns the paths.
 
-    More than 100 roads go on in ``overview-2.png`` and so on; only the first 1,000 are drawn.
+    After 100 roads it continues in ``overview-2.png`` and so on; only the first 1,000 roads are drawn.
 
-    It reads the folder's ``test.NNNN.json``, so folders of the SBFT competition's own tools can be drawn too.
+    It reads the files ``test.NNNN.json``, so it also draws folders that the SBFT competition's tools wrote.
 
     Raises:
         UsageError: there is no test in the folder, or one cannot be read.
@@ -148,12 +148,12 @@ def _loaded(path: Path) -> Any:
 
 
 def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float) -> Figure:
-    """Returns one page of maps, row by row.
+    """Returns one page with the maps of roads, in rows.
 
     Args:
         entries: the roads.
-        about: description and seed, for the header.
-        part: which page of how many, for the header; empty if there is one page.
+        about: the description and the seed, for the header.
+        part: the number of the page and of all pages, for the header; empty if there is only one page.
         size: side of the map, metres.
     """
     count = len(entries)

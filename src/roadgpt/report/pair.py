@@ -1,4 +1,4 @@
-"""Compares two roads, one above the other: bird's-eye view and heights of each, as in the thesis' survey."""
+"""Draws two roads in one figure, with their bird's-eye views and heights, as in the thesis' survey."""
 
 import textwrap
 
@@ -24,11 +24,11 @@ LOWEST = 6.0  # m that the heights span at least
 
 @in_our_style
 def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
-    """Returns a figure of two roads on the same scales, one above the other.
+    """Returns a figure that shows two roads, one above the other, on the same scales.
 
     Args:
-        one: a Run that has a road; it stands above.
-        other: a Run that has a road; it stands below.
+        one: the upper Run; it must have a road.
+        other: the lower Run; it must have a road.
         scale: "equal" fits both roads; "thesis" uses the fixed axes of RoadGPT's thesis.
     """
     runs = (one, other)

@@ -1,4 +1,4 @@
-"""The places of a Run that pictures mark: failures, where the car was farthest outside, findings of rules."""
+"""Finds the places of a Run that pictures mark: failures, largest shares outside the lane, and findings."""
 
 import textwrap
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ RULES = {
 
 @dataclass(frozen=True)
 class MarkedPlace:
-    """A place on a road, in metres on the plane and along the road, with a label."""
+    """A place on a road with a label; x, y and the station s are in metres."""
 
     x: float
     y: float
@@ -46,20 +46,21 @@ class MarkedPlace:
 
     @property
     def sign(self) -> str:
-        """Matplotlib's marker: a cross for a failure or finding, a diamond for a car that passed outside."""
+        """The marker for matplotlib: a cross for a failure or finding, a diamond for a drive that passed."""
         return "X" if self.colour == VERMILLION else "d"
 
     @property
     def letters(self) -> str:
-        """Colour of the label on a light ground."""
+        """Colour of the label on a light background."""
         return DARKER.get(self.colour, self.colour)
 
 
 def places_of(run: Run) -> list[MarkedPlace]:
     """Returns the places to mark.
 
-    A failed drive has one; a drive that passed has the place where the car was farthest outside its lane, if
-    it was outside; an invalid road has those of its findings, three at most.
+    For a failed drive, this is the place of the failure. For a drive that passed, it is the place where the
+    car was farthest outside its lane, if it was outside. For an invalid road, these are the places of the
+    findings, at most three.
     """
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:
@@ -92,13 +93,13 @@ def _said(finding: Finding) -> str:
 
 
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
-    """Writes the labels of places beside their stations, on axes whose x is the distance along the road.
+    """Writes labels next to the stations of places, on axes whose x is the distance along the road.
 
     Args:
         axes: the axes.
-        places: of a road, whose labels stand below each other.
-        length: of the road, metres.
-        at_top: labels stand at the top of the axes instead of the foot.
+        places: the places of a road; each label is written below the one before.
+        length: the length of the road in metres.
+        at_top: whether to write the labels at the top of the axes instead of the bottom.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None

@@ -31,13 +31,13 @@ class Frame:
 
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
-        """Returns the smallest frame around points and a margin, not too narrow and on the map if possible.
+        """Returns a frame around points and a margin, not too narrow, and within the map if possible.
 
         Args:
-            points: what the frame has to show, ``(n, 2)``, metres.
-            margin: around the points, metres.
-            least: least width and height, metres.
-            size: side of the map, metres.
+            points: the points that the frame must show, shape ``(n, 2)``, in metres.
+            margin: the margin around the points in metres.
+            least: the smallest width and height in metres.
+            size: the side of the map in metres.
         """
         low, high = points.min(axis=0) - margin, points.max(axis=0) + margin
         width, height = np.maximum(high - low, least)
@@ -48,22 +48,22 @@ class Frame:
         return cls(corner[0], corner[0] + shape[0], corner[1], corner[1] + shape[1])
 
     def holds(self, x: float, y: float) -> bool:
-        """Returns whether the frame shows a point."""
+        """Returns whether a point is inside the frame."""
         return self.x0 <= x <= self.x1 and self.y0 <= y <= self.y1
 
     @property
     def width(self) -> float:
-        """Width, metres."""
+        """Width in metres."""
         return self.x1 - self.x0
 
     @property
     def height(self) -> float:
-        """Height, metres."""
+        """Height in metres."""
         return self.y1 - self.y0
 
 
 def stations_of(road: Road) -> Array:
-    """Returns stations ``(n,)`` close enough for smooth edges, both ends of the road included."""
+    """Returns stations, shape ``(n,)``, close enough for smooth edges and including both ends of the road."""
     count = int(np.clip(road.length / FINEST, 2, MOST_STATIONS))
     return np.linspace(0.0, road.length, count + 1)
 
@@ -96,7 +96,7 @@ def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: 
 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
-    """Draws a black bar where the road starts and a chequered one where it ends."""
+    """Draws a black bar at the start of the road and a chequered bar at the end."""
     profile = world.profile_of(road)
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
         edges = profile.edges(s)

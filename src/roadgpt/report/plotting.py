@@ -1,4 +1,4 @@
-"""Draws one road on axes of the user: ``roadgpt.plot``."""
+"""Draws one road on the user's own axes (``roadgpt.plot``)."""
 
 from typing import Any
 

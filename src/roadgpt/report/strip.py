@@ -1,4 +1,4 @@
-"""Curvature and grade over the distance, and speed if the road was driven, with the limits of the rules."""
+"""Draws curvature, grade and, after a drive, speed over the distance, with the limits of the rules."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ RADII = (15, 20, 30, 60)  # m, named on the right
 
 
 def strip(run: Run) -> Figure:
-    """Returns the figure: one panel for each quantity, above each other, over the same distance."""
+    """Returns a figure with one panel for each quantity over the distance along the road."""
     assert run.road is not None
     panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
     header = Header.of(run, WIDTH)

@@ -1,4 +1,4 @@
-"""Widths of text, for breaking lines and placing labels."""
+"""Measures the width of text, breaks lines, and shortens text."""
 
 from functools import cache
 
@@ -10,7 +10,7 @@ ELLIPSIS = " …"
 
 
 def plain(text: str) -> str:
-    """Returns text on one line, with a box for each letter that the font lacks."""
+    """Returns text as one line, with a box in place of each letter that the font lacks."""
     return "".join(letter if _advance(letter, False) else UNKNOWN for letter in " ".join(text.split()))
 
 
@@ -20,7 +20,7 @@ def inches(text: str, size: float, bold: bool = False) -> float:
 
 
 def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
-    """Returns text in at most ``lines`` lines of ``width`` inches; an ellipsis stands for the rest."""
+    """Returns text in at most ``lines`` lines of ``width`` inches; an ellipsis replaces what is left out."""
     words = plain(text).split(" ")
     rows: list[str] = []
     while words and len(rows) < lines:

@@ -1,6 +1,6 @@
-"""Films of drives from behind the car or from a hood camera, of one road or two. Main function: ``film_of``.
+"""Makes films of one or two drives, from behind the car or from a hood camera. Main function: ``film_of``.
 
-The frames depend on nothing but the Run and the settings; threads draw them, and PyAV encodes them.
+The frames depend only on the Run and the settings. Threads draw the frames, and PyAV encodes them.
 """
 
 import math
@@ -40,7 +40,7 @@ FIELDS: dict[str, float] = {"chase": math.radians(62), "bonnet": math.radians(72
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a film.
+    """The size, speed and length of a film.
 
     Raises:
         UsageError: a number is out of range.
@@ -70,7 +70,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Renders a Run from one camera at any time; may be used by several threads."""
+    """Renders a Run from one camera at any time; several threads may use it at once."""
 
     scene: Scene
     trip: Trip
@@ -80,12 +80,12 @@ class Pane:
 
     @classmethod
     def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
-        """Returns the pane of a Run for one mount of the camera, with the field of view in FIELDS."""
+        """Returns the pane of a Run for one mount of the camera; FIELDS gives the field of view."""
         camera = Camera(width, height, FIELDS[mount], mount)
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """Returns the picture ``(height, width, 3)`` at a time in seconds; after the drive the last one."""
+        """Returns the picture at ``time`` seconds, shape ``(height, width, 3)``; later than the end, the last."""
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
@@ -96,7 +96,7 @@ class Pane:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """A film of one road or two: its pictures in rows and columns, and the times of its frames in seconds."""
+    """A film of one or two roads: the arrangement of its pictures, and the times of its frames in seconds."""
 
     rows: tuple[tuple[Pane, ...], ...]
     settings: Settings
@@ -133,13 +133,13 @@ class Film:
         return len(self.times)
 
     def frame(self, n: int) -> Frame:
-        """Returns frame n, ``(height, width, 3)``, bytes."""
+        """Returns frame number ``n``, shape ``(height, width, 3)``, uint8."""
         time = self.times[n]
         strips = [_beside([pane.draw(time) for pane in row], axis=1) for row in self.rows]
         return _beside(strips, axis=0)
 
     def frames(self, threads: int | None = None) -> Generator[Frame]:
-        """Yields all frames in order; threads draw a few of them ahead."""
+        """Yields all frames in order; threads draw the next few frames in advance."""
         count = threads or os.cpu_count() or 1
         numbers = iter(range(len(self)))
         with ThreadPoolExecutor(count) as pool:
@@ -175,7 +175,7 @@ def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Se
 def split_film(
     run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
 ) -> Path:
-    """Films two drives side by side, at the same time of each drive; otherwise like ``film_of``."""
+    """Films two drives side by side; each frame shows both drives at the same time. See ``film_of``."""
     return write([run_a, run_b], path, view, settings)
 
 
@@ -183,7 +183,7 @@ def write(
     runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
     watch: Watch | None = None,
 ) -> Path:  # fmt: skip
-    """Films one Run or two, and returns the path; ``watch`` gets each frame before it is written."""
+    """Films one or two Runs, and returns the path; ``watch`` receives each frame before it is written."""
     encoder()  # before anything is drawn
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
     title = " and ".join(dict.fromkeys(run.title for run in runs))

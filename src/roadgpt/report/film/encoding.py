@@ -16,7 +16,7 @@ QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which less is better
 
 
 def encoder() -> Any:
-    """Returns the library PyAV.
+    """Returns the module ``av`` (PyAV).
 
     Raises:
         UsageError: PyAV is not installed, or was built without the encoder.
@@ -34,13 +34,13 @@ def encoder() -> Any:
 
 
 def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -> None:
-    """Writes frames into a file, completely or not at all.
+    """Writes frames into a file; the file appears only when it is complete.
 
     Args:
-        frames: of one size, whose sides are even numbers of pixels.
+        frames: frames of the same size; width and height must be even numbers of pixels.
         path: the file, which is replaced if it exists.
         fps: frames per second.
-        about: title in the file's metadata.
+        about: the title for the file's metadata.
 
     Raises:
         UsageError: as for ``encoder``.

@@ -1,4 +1,4 @@
-"""Writes text into frames; each letter is rasterised once and kept."""
+"""Writes text into frames; the raster image of each letter is computed once."""
 
 from functools import cache
 from typing import Literal, NamedTuple
@@ -14,7 +14,7 @@ Weight = Literal["normal", "bold"]
 
 
 class Glyph(NamedTuple):
-    """One letter at one size."""
+    """The raster image of one letter at one size."""
 
     cover: NDArray[np.uint8]
     """Coverage of each pixel, ``(height, width)``, 0 to 255."""
@@ -28,7 +28,7 @@ class Glyph(NamedTuple):
 
 @cache
 def glyph(letter: str, size: int, weight: Weight) -> Glyph:
-    """Returns a letter of a size in pixels."""
+    """Returns a letter; ``size`` is the font size in pixels."""
     font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
     font.set_size(float(size), POINTS)
     advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
@@ -49,7 +49,7 @@ def write(
     frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
     weight: Weight = "normal",
 ) -> None:  # fmt: skip
-    """Writes one line of text into a frame; its baseline begins at (x, y). The frame cuts it off."""
+    """Writes one line of text into a frame, with its baseline from (x, y); the part outside is cut off."""
     for letter in text:
         shape = glyph(letter, size, weight)
         _blend(frame, round(x) + shape.left, round(y) - shape.top, shape.cover, colour)
@@ -68,7 +68,7 @@ def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple
 
 
 def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
-    """Darkens a rectangle of a frame so that text can be read on it, to ``left`` / 256 of its brightness."""
+    """Reduces the brightness of a rectangle to ``left`` / 256, so that text can be read on it."""
     part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
     part[:] = (part.astype(np.uint16) * left) >> 8
 

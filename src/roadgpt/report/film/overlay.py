@@ -1,4 +1,4 @@
-"""The text over the pictures of a film: description, speed, place, margin and outcome."""
+"""Writes text over the pictures of a film: description, speed, position, margin and outcome."""
 
 from dataclasses import dataclass
 
@@ -34,14 +34,14 @@ class Overlay:
 
     @property
     def scale(self) -> float:
-        """Scale of all sizes against a picture of 640 by 360 pixels."""
+        """Factor for all sizes; it is 1 for a picture of 640 by 360 pixels."""
         return max(LEAST, min(self.height / 360, self.width / 440))
 
     def _size(self, pixels: int) -> int:
         return max(7, round(pixels * self.scale))
 
     def lay(self, frame: Frame, readout: Readout, is_over: bool) -> None:
-        """Writes into a frame; ``is_over`` says that the drive has ended, and adds the outcome."""
+        """Writes the text into a frame; ``is_over`` adds the outcome, for frames after the drive."""
         self._title(frame)
         self._numbers(frame, readout)
         if is_over:

@@ -1,4 +1,4 @@
-"""What a film shows of one Run at any time: poses of car and camera, and the numbers in the picture."""
+"""Computes the poses of car and camera and the displayed numbers of a film at any time."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -22,7 +22,7 @@ LONGEST = 3600.0  # s
 
 
 class Readout(NamedTuple):
-    """The numbers in the picture at one time."""
+    """The numbers that a picture of a film displays."""
 
     speed: float
     """Speed, m/s."""
@@ -36,7 +36,7 @@ class Readout(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Trip:
-    """The motion of car and camera: columns ``(n,)`` over ascending times in seconds."""
+    """The motion of car and camera, as columns of shape ``(n,)`` over ascending times in seconds."""
 
     time: Array
     columns: dict[str, Array]
@@ -50,7 +50,7 @@ class Trip:
 
     @classmethod
     def of(cls, run: Run) -> "Trip":
-        """Returns the drive of a Run, or a calm ride along a road that nobody drove.
+        """Returns the motion of a Run's drive; without a drive, a ride along the road at a calm speed.
 
         Raises:
             UsageError: the Run has no road, or its drive has no finite motion.
@@ -81,20 +81,20 @@ class Trip:
 
     @property
     def duration(self) -> float:
-        """Duration, seconds."""
+        """Duration in seconds."""
         return float(self.time[-1])
 
     def car(self, time: float) -> Pose:
-        """Returns the pose of the car at a time in seconds, interpolated between two steps of its drive."""
+        """Returns the pose of the car at a time in seconds; poses between two steps are interpolated."""
         return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
 
     def follower(self, time: float) -> Pose:
-        """Returns the pose that the camera behind the car follows: it turns and tilts later than the car."""
+        """Returns the pose that the camera behind the car follows; it turns and tilts later than the car."""
         late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
         return self.car(time)._replace(**late, roll=0.0)
 
     def readout(self, time: float) -> Readout:
-        """Returns the numbers at a time in seconds."""
+        """Returns the numbers to display at a time in seconds."""
         at = int(np.clip(np.searchsorted(self.time, time + 1e-6) - 1, 0, len(self.time) - 1))
         margin = None if self.margin is None else float(self.margin[at])
         outside = 0.0 if self.outside is None else float(self.outside[at])

@@ -1,13 +1,13 @@
-"""Reports on many roads: one self-contained HTML file, and Markdown, CSV and LaTeX beside it.
+"""Writes reports on many roads as one self-contained HTML file, and as Markdown, CSV and LaTeX.
 
 A Page is a value: a summary of a few lines, sections of text, tables and figures, and how it was made.
 ``write`` writes it into a folder:
 
-    report.html            the page: no script, no network, printable, for any screen, light and dark
+    report.html            the page, without scripts and network access; printable, light and dark
     report.md              the same text and tables
     tables/NAME.csv .tex   every table, with plain numbers and for LaTeX (booktabs)
 
-Figures are SVG in the colours of the page. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
+Figures are SVG in the page's colours. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
 matrix, or a map of cells), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) and
 ``draw_site`` (the place of a failure) write SVG themselves.
 """

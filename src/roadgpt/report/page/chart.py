@@ -1,4 +1,4 @@
-"""Charts drawn by matplotlib as SVG for a page: its letters in its font, its colours in light and dark."""
+"""Converts charts by matplotlib to SVG with the font and the light and dark colours of a page."""
 
 import io
 import re
@@ -31,13 +31,13 @@ NEEDLESS = (
 
 @cache
 def palette() -> dict[str, str]:
-    """Returns the colours of ``style.css`` on light paper, ``#rrggbb`` by the names of their variables."""
+    """Returns the light colours of ``style.css`` as ``#rrggbb``, by the names of their variables."""
     light, _, _ = CSS.read_text(encoding="utf-8").partition("}")
     return dict(re.findall(r"--([a-z0-9]+): (#[0-9a-f]{6});", light))
 
 
 def series_colour(number: int) -> str:
-    """Returns the colour of the series of this number; colours repeat after ``SERIES``."""
+    """Returns the colour of a series; colours repeat after ``SERIES`` series."""
     return palette()[f"s{number % SERIES}"]
 
 
@@ -63,7 +63,7 @@ in_page_style = rc_context(_style())
 def new_chart(
     width: float, height: float, left: float, right: float, bottom: float, top: float
 ) -> tuple[Figure, Axes]:
-    """Returns a figure of ``width`` by ``height`` px and its axes, so many px from the figure's borders."""
+    """Returns a figure and its axes; all arguments are in px, the last four from the figure's borders."""
     figure = Figure(figsize=(width / POINTS, height / POINTS), dpi=POINTS)
     FigureCanvasSVG(figure)
     box = (left / width, bottom / height, (width - left - right) / width, (height - bottom - top) / height)
@@ -72,18 +72,18 @@ def new_chart(
 
 
 def round_ticks(axis: Axis, most: int, is_count: bool = False) -> None:
-    """Puts at most ``most`` steps of round numbers at an axis; whole numbers where things are counted."""
+    """Divides an axis into at most ``most`` steps of round numbers, or of whole numbers if ``is_count``."""
     axis.set_major_locator(MaxNLocator(most, steps=STEPS, integer=is_count, min_n_ticks=1))
     axis.set_major_formatter(FuncFormatter(lambda value, _: tick_text(value)))
 
 
 def tick_text(value: float) -> str:
-    """Returns a tick's number, short; thousands stand apart."""
+    """Returns a short text for the number of a tick, with separators between thousands."""
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.6g}".replace("-", "\N{MINUS SIGN}")
 
 
 def columns_of(names: list[str], width: float) -> int:
-    """Returns how many names of a legend fit beside each other on ``width`` px, at least one."""
+    """Returns how many columns of names fit into a legend of ``width`` px; at least 1."""
     widest = max(inches(name, LETTERS) for name in names) * POINTS + 44
     return max(1, min(len(names), int(width / widest)))
 

@@ -1,4 +1,4 @@
-"""The place of one failure from above: road, lane, driven path, and the car where it failed."""
+"""Draws the place of one failure from above: road, lane, driven path, and the car at the failure."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ SCALE = 10.0  # m, of the bar
 
 @dataclass(frozen=True, eq=False)
 class FailureSite:
-    """The lines of the picture, points ``(n, 2)`` in metres."""
+    """The lines of the picture, as points of shape ``(n, 2)`` in metres."""
 
     left: Array
     """Left edge of the road."""
@@ -57,7 +57,7 @@ def _step(drive: Drive, station: float) -> int:
 
 
 def draw_site(of: FailureSite, label: str) -> str:
-    """Returns the picture as SVG; the road leads upwards to the failure."""
+    """Returns the picture as SVG, turned so that the road leads upwards to the failure."""
     turned = np.pi / 2 - of.heading
     turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
     size = SIDE / ACROSS

@@ -1,4 +1,4 @@
-"""Forest plots: shares with their intervals, in groups below each other, a row for every series."""
+"""Draws forest plots: groups of shares with their intervals, with one row for each series."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -20,7 +20,7 @@ ROW, HEAD, GAP = 20.0, 22.0, 10.0  # px
 
 
 class Share(NamedTuple):
-    """A share of 0 to 1 with its interval, and what stands beside it."""
+    """A share from 0 to 1 with its interval, and the text beside it."""
 
     series: int
     value: float
@@ -34,7 +34,7 @@ def forest(groups: Sequence[tuple[str, Sequence[Share]]], series: Sequence[str],
     """Returns a chart of shares from 0 to 100 % as SVG: a dot for each and a line for its interval.
 
     Args:
-        groups: name of each group and its shares, in the order in which they stand below each other.
+        groups: the name and the shares of each group, from top to bottom.
         series: names of the series.
         label: what the chart shows, for screen readers.
     """

@@ -1,4 +1,4 @@
-"""Galleries of roads: each a small map in the colour of its outcome, and a link to its run."""
+"""Draws galleries of roads: small maps in the colours of the outcomes, with links to the runs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ STYLES = {"INVALID": "4 2", "ERROR": "1.5 2"}
 
 @dataclass(frozen=True)
 class Thumbnail:
-    """One road: number, outcome, centre line ``(n, 2)`` in metres, place of the failure, link to its run."""
+    """One road of a gallery; ``points`` is its centre line, shape ``(n, 2)``, in metres."""
 
     number: int
     outcome: str
@@ -31,10 +31,10 @@ def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = 
     """Returns maps of roads as SVG, row by row; a dot marks the start, a cross the place of a failure.
 
     Args:
-        roads: what is shown.
+        roads: the roads to show.
         size: side of the map, metres.
         label: what the picture shows, for screen readers.
-        columns: most maps in a row.
+        columns: the largest number of maps in a row.
     """
     columns = min(columns, max(len(roads), 1))
     rows = -(-len(roads) // columns)

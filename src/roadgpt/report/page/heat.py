@@ -1,4 +1,4 @@
-"""Pictures of a matrix or a map of cells: the stronger the colour, the larger the number."""
+"""Draws a matrix or a map of cells; a stronger colour means a larger number."""
 
 from typing import Literal, NamedTuple
 
@@ -23,7 +23,7 @@ FAINTEST = 0.1  # opacity
 
 
 class AxisRange(NamedTuple):
-    """Name and limits of an axis, and whether it counts things."""
+    """The name and the limits of an axis, and whether its values are counts."""
 
     name: str
     lo: float
@@ -32,7 +32,7 @@ class AxisRange(NamedTuple):
 
 
 def is_map(values: NDArray[np.float64]) -> bool:
-    """Returns whether a map of the numbers shows anything: several different ones, or many that are equal."""
+    """Returns whether a map shows anything: at least two different positive numbers, or many equal ones."""
     filled = values[np.isfinite(values) & (values > 0)]
     return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
@@ -52,9 +52,9 @@ def heat(
         values: row 0 is the lowest, or the topmost where ``downwards``.
         across: the horizontal axis.
         upwards: the vertical axis.
-        meaning: what the colour shows.
+        meaning: the meaning of the colours.
         label: what the picture shows, for screen readers.
-        downwards: rows are counted from the top, as in a distance matrix.
+        downwards: whether row 0 is at the top, as in a distance matrix.
     """
     figure, axes = new_chart(LEFT + SIDE + BAR, TOP + SIDE + BOTTOM, LEFT, BAR, BOTTOM, TOP)
     axes.set_facecolor(palette()["wash"])

@@ -1,4 +1,4 @@
-"""Lines over a common axis, such as failures found over tests, and bars of a histogram."""
+"""Draws line charts, such as failures found over tests, and histograms."""
 
 from collections.abc import Sequence
 
@@ -23,7 +23,7 @@ MOST_POINTS = 400  # of a line; more cannot be seen
 
 @in_page_style
 def lines(curves: Sequence[tuple[str, ArrayLike, ArrayLike]], across: str, upwards: str, label: str) -> str:
-    """Returns curves (name, x, y) over axes from 0 as SVG; both axes count things."""
+    """Returns a chart of curves (name, x, y) as SVG; both axes begin at 0 and show counts."""
     names = [name for name, _, _ in curves] if len(curves) > 1 else []
     columns = columns_of(names, WIDTH - LEFT - RIGHT) if names else 1
     figure, axes = _axes(across, upwards, ROW * -(-len(names) // columns), is_count=True)
@@ -47,9 +47,9 @@ def bars(
 
     Args:
         edges: ``(n + 1,)``, ascending.
-        counts: ``(n,)``, how many lie between every two edges.
+        counts: ``(n,)``, the number of values between every two edges.
         across: name of the horizontal axis.
-        upwards: name of the vertical axis, which counts things.
+        upwards: name of the vertical axis, which shows counts.
         label: what the chart shows, for screen readers.
         mark: a value at which a line is drawn; None draws none.
     """

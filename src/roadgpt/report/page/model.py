@@ -1,4 +1,4 @@
-"""The values that make up a Page."""
+"""Defines the Page and its parts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -19,7 +19,7 @@ class TableCell(NamedTuple):
 
 
 def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
-    """Returns a cell; without a text, a number is shown as it is and None as a dash."""
+    """Returns a cell; without ``text``, the value itself is shown, and None as a dash."""
     if text is None:
         text = "–" if value is None else f"{value:,}" if isinstance(value, int) else str(value)
     return TableCell(value, text, href)
@@ -56,7 +56,7 @@ class Figure:
 
 @dataclass(frozen=True)
 class Details:
-    """Blocks that are folded until the reader opens them."""
+    """Blocks that are hidden until the reader opens them."""
 
     title: str
     blocks: Sequence["Block"]
@@ -82,7 +82,7 @@ class FigureCard(NamedTuple):
 
 @dataclass(frozen=True)
 class Cards:
-    """Pictures with text side by side, as many in a row as fit."""
+    """Pictures with text, arranged in rows."""
 
     cards: Sequence[FigureCard]
 
@@ -92,7 +92,7 @@ Block = Line | Table | Figure | Details | Cards
 
 @dataclass(frozen=True)
 class Section:
-    """A heading and the blocks under it."""
+    """A heading and the blocks below it."""
 
     title: str
     blocks: Sequence[Block]
@@ -112,7 +112,7 @@ class Page:
     """One line under the title."""
 
     def tables(self) -> list[Table]:
-        """Returns all tables in their order, those in details included."""
+        """Returns all tables in order, including the tables in Details."""
         return _tables([block for section in self.sections for block in section.blocks])
 
 
@@ -127,5 +127,5 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
 
 
 def pieces_of(line: Line) -> Sequence[str | TableCell]:
-    """Returns the pieces of a line, of which there is one if the line is a string."""
+    """Returns the pieces of a line; a string is a single piece."""
     return (line,) if isinstance(line, str) else line

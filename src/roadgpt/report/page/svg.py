@@ -1,7 +1,7 @@
-"""Elements of SVG for pictures that stand on a page by the hundred; the same values give the same text.
+"""Writes elements of SVG, for pictures that a page has by the hundred.
 
-matplotlib draws all that has axes (``chart``). A hundred linked roads would take it 1.6 s and 1.8 times the
-bytes, and it writes no titles that show when the pointer is on a road.
+Charts with axes are drawn by matplotlib (``page.chart``). For a gallery of a hundred linked roads, matplotlib
+would take 1.6 s and write 1.8 times the bytes, without the titles that appear when the pointer is on a road.
 """
 
 from html import escape
@@ -25,18 +25,18 @@ def number(value: float) -> str:
 
 
 def words(x: float, y: float, text: str, size: float, is_soft: bool = False) -> str:
-    """Returns letters whose left end stands at a place."""
+    """Returns a text element that begins at (x, y)."""
     style = {"class_": "soft"} if is_soft else {}
     return tag("text", escape(text), x=x, y=y, font_size=size, **style)
 
 
 def line(x0: float, y0: float, x1: float, y1: float) -> str:
-    """Returns a line of the class axis."""
+    """Returns a line from (x0, y0) to (x1, y1), with the CSS class ``axis``."""
     return tag("line", x1=x0, y1=y0, x2=x1, y2=y1, class_="axis")
 
 
 def chart(width: float, height: float, content: str, label: str) -> str:
-    """Returns the whole picture, ``width`` by ``height`` px; screen readers read the label."""
+    """Returns an ``svg`` element of ``width`` by ``height`` px; ``label`` is for screen readers."""
     return tag(
         "svg",
         content,

@@ -44,7 +44,7 @@ HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # Markdown passes HTML tags t
 
 
 def markdown_of(page: Page) -> str:
-    """Returns text and tables of a page as Markdown; of figures only the captions."""
+    """Returns the text, the tables and the captions of figures of a page as Markdown."""
     parts = [f"# {_escaped(page.title)}", *([_escaped(page.lead)] if page.lead else [])]
     parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
     for section in page.sections:
@@ -103,7 +103,7 @@ def _table(table: Table) -> str:
 
 
 def csv_of(table: Table) -> str:
-    """Returns a table as CSV with raw values; None is empty, and text is never a formula."""
+    """Returns a table as CSV with raw values; None gives an empty field, and no text can be a formula."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(table.heads)
@@ -113,7 +113,7 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """Returns a value that no spreadsheet takes for a formula: such text gets an apostrophe, numbers stay."""
+    """Returns a value with an apostrophe before text that a spreadsheet would take for a formula."""
     if not isinstance(value, str):
         return value
     words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there
@@ -121,7 +121,7 @@ def unformulated(value: Raw) -> Raw:
 
 
 def latex_of(table: Table) -> str:
-    """Returns a floating LaTeX table in the style of booktabs; columns with numbers are right-aligned."""
+    """Returns a table as a LaTeX float that uses booktabs; columns with numbers are right-aligned."""
     places = "".join(
         "r" if any(isinstance(row[n].value, (int, float)) for row in table.rows) else "l"
         for n in range(len(table.heads))

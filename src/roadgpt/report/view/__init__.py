@@ -1,8 +1,8 @@
-"""One HTML page of one or two Runs: the road in 3-D and the drive as a replay. Main function: ``write``.
+"""Makes an HTML page that shows one or two roads in 3-D and replays their drives. Main function: ``write``.
 
-The page needs no server and no network: scripts, styles and data stand in it, and its content security policy
-forbids it to fetch anything. Parts of the page lie in ``page/`` and are joined in the order of SCRIPTS;
-three.js lies in ``three/``, with its licence.
+The page needs no server and no network: it contains its scripts, styles and data, and its content security
+policy forbids requests. The scripts are in ``page/`` and are joined in the order of SCRIPTS; three.js is in
+``three/``, with its licence.
 """
 
 import html
@@ -52,7 +52,7 @@ def page(runs: Sequence[Run]) -> str:
 
 
 def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
-    """Returns the page of one or two scenes as ``scene`` makes them; empty parts of a scene are not shown.
+    """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown.
 
     Raises:
         UsageError: a number is not finite.
@@ -86,7 +86,7 @@ def write(runs: Sequence[Run], path: Path | str) -> Path:
 
 
 def embedded(data: object) -> str:
-    """Returns JSON that may stand inside a script element: ASCII without ``<``, ``>`` and ``&``.
+    """Returns data as JSON that is safe inside a script element: ASCII without ``<``, ``>`` and ``&``.
 
     Raises:
         UsageError: a number is not finite.

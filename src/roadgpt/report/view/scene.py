@@ -1,4 +1,4 @@
-"""The data of the page: a Run's road, world, drive and places of failures, as plain values."""
+"""Collects the data of the page: a Run's road, world, drive and marked places, as plain values."""
 
 from typing import Any
 
@@ -45,7 +45,7 @@ SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]],
 
 
 def scene(run: Run) -> dict[str, Any]:
-    """Returns all that the page shows of a Run, in metres, seconds and radians.
+    """Returns everything that the page shows of a Run, in metres, seconds and radians.
 
     Raises:
         UsageError: the Run has no road, or a number of it is not finite.
