@@ -85,7 +85,7 @@ class Pane:
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """Returns the picture at ``time`` seconds, shape ``(height, width, 3)``; after the drive, the last."""
+        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; after the drive, the last one."""
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
