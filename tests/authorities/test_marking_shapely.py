@@ -57,7 +57,7 @@ def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: i
     road = bent(16.0, hand)
     drive = SlipperyBicycle().simulate(road, World(), BeamngLike(), 0, keep_driving=True)
     monitor = MarkingMonitor.for_body(road, World(), drive.car)
-    both = monitor._replace(left=np.zeros_like(monitor.left))
+    both = monitor._replace(edges=monitor.edges * [0.0, 1.0])
     is_out = drive["outside"] > 1e-3
     assert is_out.any()
     assert (both.along(drive)[is_out] > -0.02).all()

@@ -18,9 +18,9 @@ from roadgpt.drive.sampled_road import (
     CURVATURE,
     SampledRoad,
     locate_on,
+    room_at,
     sample_road,
     stations_of,
-    value_at,
 )
 
 if TYPE_CHECKING:
@@ -39,13 +39,11 @@ class MarkingMonitor(NamedTuple):
     computed."""
 
     sampled: SampledRoad
-    left: FloatArray
-    """Offsets of the outer edge of the left marking, in metres to the left of the centre line.
+    edges: FloatArray
+    """Offsets of the outer edges of the left and the right marking, in metres to the left of the centre line.
 
-    There is one for each row of the table in ``sampled``.
+    The shape is (n, 2), with one row for each row of the table in ``sampled``.
     """
-    right: FloatArray
-    """Offsets of the outer edge of the right marking, likewise; negative."""
     points: FloatArray
     """Shape (n, 3): metres ahead, to the left and up of the car's centre of gravity."""
 
@@ -67,8 +65,8 @@ class MarkingMonitor(NamedTuple):
     @classmethod
     def _of(cls, road: "Road", world: "World", points: list[tuple[float, float, float]]) -> "MarkingMonitor":
         sampled = sample_road(road)
-        left, right = world.profile_of(road).marking_limits(stations_of(sampled))
-        return cls(sampled, left, right, np.array(points))
+        edges = np.column_stack(world.profile_of(road).marking_limits(stations_of(sampled)))
+        return cls(sampled, edges, np.array(points))
 
     def beyond(self, poses: FloatArray, floor: float = -math.inf) -> FloatArray:
         """Returns how far the car reaches beyond the outer edge of the nearer marking, in metres for each
@@ -81,7 +79,7 @@ class MarkingMonitor(NamedTuple):
         """
         table, first, step, _ = self.sampled
         poses = np.ascontiguousarray(poses, dtype=np.float64)
-        return farthest(table, first, step, poses, self.points, self.left, self.right, float(floor))
+        return farthest(table, first, step, poses, self.points, self.edges, float(floor))
 
     def along(self, drive: "Drive", floor: float = -math.inf) -> FloatArray:
         """Returns ``beyond`` for every step of a drive."""
@@ -95,8 +93,7 @@ def farthest(
     step: float,
     poses: FloatArray,
     points: FloatArray,
-    left: FloatArray,
-    right: FloatArray,
+    edges: FloatArray,
     floor: float,
 ) -> FloatArray:
     """Computes the result of ``MarkingMonitor.beyond`` in compiled code."""
@@ -111,7 +108,7 @@ def farthest(
         reach = abs(math.sin(heading - way)) * long + abs(math.cos(heading - way)) * wide
         reach += abs(math.sin(poses[i, 4])) * tall + SLACK
         reach += 0.5 * (long * long + wide * wide) * bend / max(1.0 - bend * abs(t), LEAST_STRETCH)
-        found[i] = max(t - value_at(left, first, step, s), value_at(right, first, step, s) - t) + reach
+        found[i] = reach - room_at(edges, first, step, s, t)
         if found[i] < floor:
             continue
         ch, sh = math.cos(heading), math.sin(heading)
@@ -126,7 +123,6 @@ def farthest(
             px = x + ch * cp * a + lx * b + ux * c
             py = y + sh * cp * a + ly * b + uy * c
             at, across, _, _, _, _ = locate_on(table, first, step, px, py, s + a)
-            over_left = across - value_at(left, first, step, at)
-            best = max(best, over_left, value_at(right, first, step, at) - across)
+            best = max(best, -room_at(edges, first, step, at, across))
         found[i] = best
     return found

@@ -78,12 +78,19 @@ def stations_of(sampled: SampledRoad) -> FloatArray:
 
 
 @inlined
-def value_at(values: FloatArray, first: float, step: float, s: float) -> float:
-    """Returns the value at station ``s``, interpolated between those of the rows of the table."""
-    at = min(max((s - first) / step, 0.0), values.shape[0] - 1.0)
-    i = min(int(at), values.shape[0] - 2)
-    found: float = values[i] + (values[i + 1] - values[i]) * (at - i)
-    return found
+def room_at(edges: FloatArray, first: float, step: float, s: float, t: float) -> float:
+    """Returns the distance in metres from offset ``t`` to the nearer of two edges at station ``s``; negative
+    outside.
+
+    ``edges`` has the offsets of the left and the right edge for each row of the table, shape (n, 2).
+    """
+    at = min(max((s - first) / step, 0.0), edges.shape[0] - 1.0)
+    i = min(int(at), edges.shape[0] - 2)
+    u = at - i
+    left = edges[i, 0] + (edges[i + 1, 0] - edges[i, 0]) * u
+    right = edges[i, 1] + (edges[i + 1, 1] - edges[i, 1]) * u
+    room: float = min(left - t, t - right)
+    return room
 
 
 @inlined

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from roadgpt.drive.compiled import inlined
 from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
-from roadgpt.drive.sampled_road import SampledRoad, locate_on
+from roadgpt.drive.sampled_road import SampledRoad, locate_on, room_at
 from roadgpt.drive.simulators.mujoco.bridge import call
 from roadgpt.drive.simulators.mujoco.chassis_control import (
     SLOWEST_ABS,
@@ -18,7 +18,7 @@ from roadgpt.drive.simulators.mujoco.chassis_control import (
     expected_yaw_rate,
     slip_valve,
 )
-from roadgpt.drive.simulators.mujoco.hull import hull_forces, normal_of, over_edges
+from roadgpt.drive.simulators.mujoco.hull import hull_forces, normal_of
 from roadgpt.drive.simulators.mujoco.model import (
     BODY,
     CARRIER,
@@ -62,12 +62,9 @@ class Ground(NamedTuple):
     """The surface under the wheels: a road or a plane."""
 
     sampled: SampledRoad
-    left: FloatArray
-    """Offset of the left edge of the ground in m to the left of the centre line.
-
-    There is one for each row of the table in ``sampled``."""
-    right: FloatArray
-    """Offset of its right edge, likewise; negative."""
+    rims: FloatArray
+    """Offsets of the left and the right edge of the ground in m to the left of the centre line, shape (n, 2):
+    one row for each row of the table in ``sampled``."""
     beyond: float
     """Length in m by which the ground continues before the start and after the end of the road."""
     friction: float
@@ -199,7 +196,8 @@ def _wheel(
     wheel[AT] = s
     nx, ny, nz = normal_of(slope, lateral, heading)
     gap = (cz - height) * nz
-    over = min(over_edges(ground, s, t), s + ground.beyond, sampled.length + ground.beyond - s)
+    over = room_at(ground.rims, sampled.first, sampled.step, s, t)
+    over = min(over, s + ground.beyond, sampled.length + ground.beyond - s)
     share = min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
     state[SUPPORT] = min(state[SUPPORT], share)
 

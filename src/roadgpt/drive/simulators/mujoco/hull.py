@@ -11,7 +11,7 @@ import numpy as np
 
 from roadgpt.drive.compiled import inlined
 from roadgpt.drive.drive import FloatArray
-from roadgpt.drive.sampled_road import locate_on, value_at
+from roadgpt.drive.sampled_road import locate_on, room_at
 from roadgpt.drive.simulators.mujoco.car import Car
 from roadgpt.drive.simulators.mujoco.model import BODY
 
@@ -47,15 +47,6 @@ def normal_of(slope: float, lateral: float, heading: float) -> tuple[float, floa
 
 
 @inlined
-def over_edges(ground: Any, s: float, t: float) -> float:
-    """Returns the distance in metres of a point to the nearer edge of the ground; negative outside."""
-    sampled = ground.sampled
-    left = value_at(ground.left, sampled.first, sampled.step, s)
-    right = value_at(ground.right, sampled.first, sampled.step, s)
-    return min(left - t, t - right)
-
-
-@inlined
 def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
     """Adds the contact forces at the hull's points to the forces and moments on the body; moments are in
     world axes."""
@@ -74,7 +65,7 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         )
         nx, ny, nz = normal_of(slope, lateral, heading)
         depth = (height - pz) * nz
-        if depth <= 0.0 or depth > DEEP or over_edges(ground, s, t) < 0.0:
+        if depth <= 0.0 or depth > DEEP or room_at(ground.rims, sampled.first, sampled.step, s, t) < 0.0:
             continue
         if s < -ground.beyond or s > sampled.length + ground.beyond:
             continue

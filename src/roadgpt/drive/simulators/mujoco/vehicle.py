@@ -61,9 +61,9 @@ class Vehicle:
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
         """Returns a car on a road with its lanes and shoulders, and the friction of the world."""
         sampled, profile = sample_road(road), world.profile_of(road)
-        rims = profile.rims(stations_of(sampled))
+        rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
-        return cls(car, Ground(sampled, *rims, profile.reach, world.friction, lane))
+        return cls(car, Ground(sampled, rims, profile.reach, world.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         """Places the car on its springs at station s and offset t, facing along the road, and starts the
@@ -153,9 +153,9 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
     table = np.zeros((3, 8))
     table[:, 0], table[:, 2], table[:, 4], table[:, 6] = s - size / 2, (s - size / 2) * grade, grade, 1.0
     edges = np.column_stack([s - size / 2, np.full(3, size), s - size / 2, np.full(3, -size)])
-    side = np.full(3, size)
+    rims = np.array([[size, -size]] * 3)
     sampled, lane = SampledRoad(table, 0.0, size / 2, size), LanePolygon(edges, size / 2)
-    vehicle = Vehicle(car, Ground(sampled, side, -side, size, friction, lane))
+    vehicle = Vehicle(car, Ground(sampled, rims, size, friction, lane))
     vehicle.put(size / 2, 0.0)
     return vehicle
 
