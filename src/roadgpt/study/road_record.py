@@ -3,6 +3,7 @@ geometry."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -21,11 +22,12 @@ from roadgpt.run.folder import finished, run_folder
 from roadgpt.run.sbft_json import test_name
 from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
 from roadgpt.study.plan import StudyPart
-from roadgpt.study.similarity import Likeness, likeness
+from roadgpt.study.similarity import Likeness, Spread, likeness, spread
 from roadgpt.study.truth import SHORTEST, Truth
 
 Array = NDArray[np.float64]
 
+MOST_COMPARED = 150  # roads of a part, each of which is compared with every other one
 DEPARTURES = ("out of lane", "fell")  # causes of failures by which the car left its lane
 STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
 """A straight of 30 m that is measured if there is no road, to learn which criteria a description mentions."""
@@ -114,6 +116,20 @@ class StudyPartRecord:
         """
         found = [road.kept[criterion] for road in self.roads if criterion in road.kept]
         return found if self.roads or criterion != "general" else [False] * self.wanted
+
+    @cached_property
+    def compared(self) -> tuple[RoadRecord, ...]:
+        """The roads that are compared with each other: the first 150 of those that can be."""
+        return tuple(road for road in self.roads if road.likeness is not None)[:MOST_COMPARED]
+
+    def likenesses(self, most: int = MOST_COMPARED) -> list[Likeness]:
+        """Returns the compared properties of the first roads, ``most`` at most."""
+        return [road.likeness for road in self.compared if road.likeness is not None][:most]
+
+    @cached_property
+    def spread(self) -> Spread:
+        """How different the compared roads are; its indices are those of ``compared``."""
+        return spread(self.likenesses())
 
     def href(self, road: RoadRecord) -> str:
         """Returns the address of the road's bird's-eye view, or of its run if no picture was drawn."""

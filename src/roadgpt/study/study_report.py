@@ -13,10 +13,10 @@ from roadgpt.run.card import read_card
 from roadgpt.study.baseline import NAME
 from roadgpt.study.chapters.alignment import alignment
 from roadgpt.study.chapters.card import card_of
-from roadgpt.study.chapters.diversity import diversity, spread_of
+from roadgpt.study.chapters.diversity import diversity
 from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
-from roadgpt.study.chapters.roads import Compared, coverage, every_road, overview
+from roadgpt.study.chapters.roads import coverage, every_road, overview
 from roadgpt.study.chapters.significance import Source
 from roadgpt.study.chapters.validity import (
     SBFT,
@@ -36,8 +36,6 @@ from roadgpt.study.prompts import Prompt
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_part
 
 PROBLEMS = "problems.json"
-
-Found = Sequence[Compared]
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -59,8 +57,7 @@ def write_study(folder: Path) -> Path:
         read_part(folder / part.name, part, part.name, problems.get(part.name, ""), plan.roads)
         for part in plan.parts()
     ]
-    found = [spread_of(part) for part in parts]
-    return write(page_of(plan, parts, found), folder)
+    return write(page_of(plan, parts), folder)
 
 
 def _problems(folder: Path) -> Mapping[str, str]:
@@ -71,35 +68,34 @@ def _problems(folder: Path) -> Mapping[str, str]:
     return {str(key): str(value) for key, value in found.items()} if isinstance(found, dict) else {}
 
 
-def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> Page:
+def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
     """Returns the page with the report of a study.
 
     Args:
         plan: the study.
         parts: the roads of each part.
-        found: for each part, the compared roads and how different they are.
     """
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
-    kept, first = alignment(parts, plan.designers), overview(parts, found, plan.world.map_size)
+    kept, first = alignment(parts, plan.designers), overview(parts, plan.world.map_size)
     own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
     return Page(
         title,
-        _summary(plan, parts, found),
-        [*([first] if first else []), *own, *_comparisons(parts, found, plan.world)],
+        _summary(plan, parts),
+        [*([first] if first else []), *own, *_comparisons(parts, plan.world)],
         card_of(plan.command, plan.roads, plan.seed, plan.setup, plan.world, parts),
         f"{lead}, seed {plan.seed}" + (f", from {plan.source}" if plan.source else ""),
     )
 
 
-def _comparisons(parts: Sequence[StudyPartRecord], found: Found, world: World) -> list[Section]:
+def _comparisons(parts: Sequence[StudyPartRecord], world: World) -> list[Section]:
     covered = coverage(parts)
-    return [diversity(parts, found), *([covered] if covered else []), every_road(parts, world.map_size)]
+    return [diversity(parts), *([covered] if covered else []), every_road(parts, world.map_size)]
 
 
-def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) -> list[str]:
+def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
     """Returns the sentences of the summary, designer by designer."""
     lines = []
     for designer in plan.designers:
@@ -108,20 +104,18 @@ def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord], found: Found) ->
             problem = next((part.problem for part in own if part.problem), "nothing was made")
             lines.append(f"{designer} was not run: {problem}.")
             continue
-        compared = [each for part, each in zip(parts, found, strict=True) if part.designer == designer]
-        said = _sentences(own, compared, plan.world, plan.kind == "thesis")
+        said = _sentences(own, plan.world, plan.kind == "thesis")
         lines += said if len(plan.designers) == 1 else [f"{designer}: {sentence}" for sentence in said]
     return lines
 
 
 def _sentences(
-    parts: Sequence[StudyPartRecord], found: Found, world: World, is_thesis: bool, near: Sequence[str] = ()
+    parts: Sequence[StudyPartRecord], world: World, is_thesis: bool, near: Sequence[str] = ()
 ) -> list[str]:
     """Returns the sentences on one designer.
 
     Args:
         parts: the designer's roads.
-        found: the compared roads of each part, and how different they are.
         world: the world of the roads.
         is_thesis: whether the thesis' prompts alone are counted, with the thesis' counts beside them.
         near: sentences on the drives that came nearest to failing.
@@ -144,16 +138,16 @@ def _sentences(
     if good:
         right = f"; the number of turns is right on {percent(sum(turns) / len(turns))}" if turns else ""
         lines.append(f"{share_of(sum(good), len(good))} roads keep every word{right}.")
-    return [*lines, _different(found)]
+    return [*lines, _different(parts)]
 
 
 def _share(source: Source) -> str:
     return share_of(source.hits, source.total)
 
 
-def _different(found: Found) -> str:
-    nearest = [float(own.nearest.min()) for roads, own in found if len(roads) > 1]
-    twins = sum(len(own.duplicates) for _, own in found)
+def _different(parts: Sequence[StudyPartRecord]) -> str:
+    nearest = [float(part.spread.nearest.min()) for part in parts if len(part.compared) > 1]
+    twins = sum(len(part.spread.duplicates) for part in parts)
     if not nearest:
         return "There is one road of each description, so there is nothing to compare."
     said = "No near duplicates" if not twins else plural(twins, "pair") + " of near duplicates"
@@ -181,19 +175,19 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     part = read_part(folder, StudyPart(setup.designer, 1, Prompt(id="1", prompt=words)))
     if not part.roads:
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
-    parts, found, failed = [part], [spread_of(part)], faults_in(folder)
+    parts, failed = [part], faults_in(folder)
     summaries = fault_summaries(folder, failed)
-    opening = [overview(parts, found, world.map_size), faults(folder, failed, summaries)]
+    opening = [overview(parts, world.map_size), faults(folder, failed, summaries)]
     sections = [*filter(None, opening), *what_to_try(next_steps)]
     sections += [validity(parts, [setup.designer])]
     sections += [departures(parts, [setup.designer])] if setup.drives else []
     sections += [alignment(parts, [setup.designer])] if request.words else []
     far = _least(part.roads, "FAIL") if setup.keep_driving else None
-    sentences = _sentences(parts, found, world, False, near_and_far(_least(part.roads, "PASS"), far))
+    sentences = _sentences(parts, world, False, near_and_far(_least(part.roads, "PASS"), far))
     page = Page(
         words,
         [*(headline(failed, summaries) if summaries else []), *sentences],
-        [*sections, *_comparisons(parts, found, world)],
+        [*sections, *_comparisons(parts, world)],
         card_of(command, card.roads, request.seed, setup, world, parts),
         f"{plural(len(part.roads), 'road')} of {card.roads:,}, seed {request.seed}",
     )

@@ -11,7 +11,6 @@ from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.study.chapters.wording import decimal, plural, row
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
-from roadgpt.study.similarity import Spread
 
 SHOWN = 3  # pictures of the first section
 SIDE = 3  # roads along each side of one of them
@@ -29,19 +28,15 @@ LABELS = {
 BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0), "MEAN_LP": (0.0, 2.5)}
 """Smallest and largest value of each feature on the maps of studies; values beyond count at the edge."""
 
-Compared = tuple[list[RoadRecord], Spread]
-"""The roads of a part that are compared with each other, and how different they are."""
 
-
-def overview(parts: Sequence[StudyPartRecord], found: Sequence[Compared], size: float) -> Section | None:
+def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
     """Returns pictures of roads of three parts and a table row for every part; None if there are no roads.
 
     Args:
         parts: the parts of the study.
-        found: for each part, the compared roads and how different they are.
         size: side of the map, metres.
     """
-    made = [(part, own) for part, own in zip(parts, found, strict=True) if part.roads]
+    made = [part for part in parts if part.roads]
     if not made:
         return None
     heads = [
@@ -52,8 +47,8 @@ def overview(parts: Sequence[StudyPartRecord], found: Sequence[Compared], size: 
         "Nearest two plans: root mean square distance of the two most similar roads, after the best shift, "
         "turn and mirroring. The sections below contain intervals, tests and every road."
     )
-    table = Table("glance", "Roads by description", heads, [_row(part, *own) for part, own in made], note)
-    return Section("At a glance", [Cards([_card(part, size) for part, _ in made[:SHOWN]]), table])
+    table = Table("glance", "Roads by description", heads, [*map(_row, made)], note)
+    return Section("At a glance", [Cards([_card(part, size) for part in made[:SHOWN]]), table])
 
 
 def _card(part: StudyPartRecord, size: float) -> FigureCard:
@@ -67,8 +62,8 @@ def _card(part: StudyPartRecord, size: float) -> FigureCard:
     return FigureCard(part.words, picture, [f"{plural(len(part.roads), 'road')} by {part.designer}. {said}"])
 
 
-def _row(part: StudyPartRecord, roads: list[RoadRecord], spread: Spread) -> list[TableCell]:
-    good, driven, several = part.kept("general"), part.count("is_driven"), len(roads) > 1
+def _row(part: StudyPartRecord) -> list[TableCell]:
+    good, driven, several = part.kept("general"), part.count("is_driven"), len(part.compared) > 1
     return row(
         cell(part.words, href=part.overview),
         part.designer,
@@ -77,8 +72,8 @@ def _row(part: StudyPartRecord, roads: list[RoadRecord], spread: Spread) -> list
         sum(good) if good else None,
         driven or None,
         part.count("has_left") if driven else None,
-        decimal(float(np.min(spread.nearest)) if several else None, 1),
-        len(spread.duplicates) if several else None,
+        decimal(float(np.min(part.spread.nearest)) if several else None, 1),
+        len(part.spread.duplicates) if several else None,
     )
 
 
