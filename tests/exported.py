@@ -5,6 +5,7 @@ import shutil
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import pytest
 from roadgpt.export import Poses
 from roadgpt.road import Design, Road, Segment, World, build
 
+TO_MAP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # glTF's y is our z
 WORLD = World(friction=0.6, speed_limit=50 / 3.6)
 HILLY = Design(
     starting_point=(50, 40, -3),
@@ -63,3 +65,26 @@ def program(name: str, venv: str = "tools") -> str:
         filter(None, (shutil.which(name, path=place) for place in places)), None
     )
     return found or pytest.skip(f"{name} is not at hand")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """Every file by its path; some formats are folders."""
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
+
+
+def read_gltf(file: Path) -> dict[str, Any]:
+    """Meshes by the name of their node, in coordinates of the map."""
+    import trimesh
+
+    scene = trimesh.load_scene(file)
+    out = {}
+    for node in scene.graph.nodes_geometry:
+        place, name = scene.graph[node]
+        mesh = scene.geometry[name].copy()
+        mesh.apply_transform(place)
+        normals = mesh.vertex_normals @ TO_MAP.T  # of the file; trimesh forgets them when vertices move
+        mesh.vertices = mesh.vertices @ TO_MAP.T
+        mesh.metadata["normals"] = normals
+        out[node] = mesh
+    return out

@@ -37,7 +37,7 @@ def random_road(seed: int, steepest: float = 8.0) -> Road:
     if bank is None:
         return road.with_profile(profile)
     ratio = None if isinstance(bank, World) else bank
-    angle = superelevation(road.plan, 70 / 3.6, ratio)
+    angle = superelevation(road.plan, profile.paved_reach, 70 / 3.6, ratio)
     return road.with_profile(
         Profile(profile.left, profile.right, profile.driven, profile.centre_marking, angle)
     )

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from exported import ROADS, WORLD
 from roadgpt.errors import ExportError
 from roadgpt.export.edges import CHORD, LONGEST, line, stations
-from roadgpt.export.lanelets import lanelet_pairs
+from roadgpt.export.lanelets import lanelet_sections
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.road import Design, Road, build
 from strategies import designs
@@ -68,11 +68,12 @@ def test_numbers_that_are_not_finite_are_refused() -> None:
 @pytest.mark.parametrize("name", ROADS)
 def test_sections_meet_and_cover_the_road(name: str) -> None:
     road = ROADS[name]
-    found = lanelet_pairs(road, WORLD)
+    found = lanelet_sections(road, WORLD)
     assert found[0].start == 0
     assert found[-1].end == pytest.approx(road.length)
     assert len(found) == max(1, round(road.length / 50))
     for one, other in pairwise(found):
         assert one.end == other.start
-        for side in ("right", "middle", "left"):
-            assert (getattr(one, side)[-1] == getattr(other, side)[0]).all()
+        assert one.lanes == other.lanes == (-1, 1)
+        for before, after in zip(one.bounds, other.bounds, strict=True):
+            assert (before.points[-1] == after.points[0]).all()

@@ -5,19 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from exported import ROADS, WORLD, drive
+from exported import ROADS, WORLD, contents, drive
 from roadgpt import plugins
 from roadgpt.errors import ExportError, PartError, UsageError
 from roadgpt.export import Exporter, Poses, exporter_of, save
 from roadgpt.road import World
 
 FORMATS = plugins.names("exporters")
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    """Every file by its path; some formats are folders."""
-    files = (path for path in sorted(folder.rglob("*")) if path.is_file())
-    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in files}
 
 
 @pytest.mark.parametrize("format_", FORMATS)

@@ -9,35 +9,18 @@ import pytest
 import trimesh
 from hypothesis import given, settings
 
-from exported import ROADS, WORLD, drive
+from exported import ROADS, WORLD, drive, read_gltf
 from roadgpt.export import Poses, save
 from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.road import Design, Road, World, build
 from strategies import designs
-
-TO_MAP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # glTF's y is our z
-
-
-def read(file: Path) -> dict[str, trimesh.Trimesh]:
-    """Meshes by the name of their node, in coordinates of the map."""
-    scene = trimesh.load_scene(file)
-    out = {}
-    for node in scene.graph.nodes_geometry:
-        place, name = scene.graph[node]
-        mesh = scene.geometry[name].copy()
-        mesh.apply_transform(place)
-        normals = mesh.vertex_normals @ TO_MAP.T  # of the file; trimesh forgets them when vertices move
-        mesh.vertices = mesh.vertices @ TO_MAP.T
-        mesh.metadata["normals"] = normals
-        out[node] = mesh
-    return out
 
 
 def saved(
     road: Road, folder: Path, world: World = WORLD, poses: Poses | None = None
 ) -> dict[str, trimesh.Trimesh]:
     (file,) = save(road, folder, ["gltf"], world, poses=poses)
-    return read(file)
+    return read_gltf(file)
 
 
 @pytest.mark.parametrize("name", ROADS)

@@ -13,7 +13,7 @@ from roadgpt.export.embankments import embankments
 from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import lanelet_pairs
+from roadgpt.export.lanelets import lanelet_sections
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import Land
@@ -37,10 +37,11 @@ def offsets(points) -> np.ndarray:
 
 
 def test_lanelets_follow_the_edges() -> None:
-    for pair in lanelet_pairs(ROAD, WORLD):
-        s, t = offsets(pair.left)
+    for section in lanelet_sections(ROAD, WORLD):
+        right, _, left = (bound.points for bound in section.bounds)
+        s, t = offsets(left)
         assert t == pytest.approx(3.0 + s / LENGTH, abs=2e-4)
-        s, t = offsets(pair.right)
+        s, t = offsets(right)
         assert t == pytest.approx(-3.0 - s / LENGTH, abs=2e-4)
 
 

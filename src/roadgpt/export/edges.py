@@ -6,13 +6,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.export.finite import finite
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road
+from roadgpt.road import Profile, Road
 
 CHORD = 0.002  # m, most distance between a polyline and the curve it stands for
 LONGEST = 10.0  # m between stations on a straight
 SHORTEST = 0.05  # m between stations; tighter bends are not followed more closely
 STEP = 0.5  # m between the places where the curvature is sampled
+BESIDE = 1e-3  # m before a step of a width, where a polyline has another point
 PINCH = 0.95  # share of the radius; an offset line closer to the centre of its bend would fold
 
 
@@ -33,10 +35,46 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
     finite(road.at(s))
     plan, upright = np.abs(finite(road.curvature(s))), np.abs(finite(road.vertical_curvature(s)))
     bend = _widened(np.maximum(plan * (1 + plan * reach), upright))
+    if road.profile is not None:
+        bend = np.maximum(bend, _sway(road.profile, s))
     spacing = np.clip(np.sqrt(8 * chord / np.maximum(bend, 1e-12)), SHORTEST, LONGEST)
     along = np.r_[0.0, np.cumsum(np.diff(s) * (1 / spacing[1:] + 1 / spacing[:-1]) / 2)]
     count = max(2, int(np.ceil(along[-1])) + 1)
-    return np.interp(np.linspace(0.0, along[-1], count), along, s)
+    found = np.interp(np.linspace(0.0, along[-1], count), along, s)
+    return found if road.profile is None else _with_joints(found, road.profile)
+
+
+def normals(road: Road, s: Array) -> Array:
+    """Returns unit vectors ``(n, 3)`` at right angles to the surface of the road, upwards."""
+    heading, grade = road.heading(s), road.grade(s)
+    if road.profile is None or road.profile.superelevation_angle is None:
+        up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
+    else:
+        ahead = np.stack([np.cos(heading), np.sin(heading), grade], axis=-1)
+        up = np.cross(ahead, road.at(s, 0.5) - road.at(s, -0.5))
+    return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
+
+
+def _sway(profile: Profile, s: Array) -> Array:
+    """Returns the greatest bend in 1/m of any edge that comes from widths and superelevation."""
+    edges = np.stack([t for side in profile.lane_edges(s) for t in side])
+    both = np.concatenate([edges, edges * np.sin(profile.superelevation(s))])
+    return np.asarray(np.abs(np.gradient(np.gradient(both, s, axis=1), s, axis=1)).max(axis=0))
+
+
+def _with_joints(s: Array, profile: Profile) -> Array:
+    """Adds the stations at which the width of a lane may have a kink, and both sides of a step."""
+    widths = [lane.width for lane in (*profile.left, *profile.right)]
+    cubics = [width for width in widths if isinstance(width, CubicProfile)]
+    joints = np.unique([each for width in cubics for each in width.stations])
+    joints = joints[(joints > s[0] + 2 * BESIDE) & (joints < s[-1] - 2 * BESIDE)]
+    if not joints.size:
+        return s
+    rise = [np.abs(width.height(joints) - width.height(joints - BESIDE)) for width in cubics]
+    steps = joints[np.max(rise, axis=0) > BESIDE]
+    away = np.abs(s - joints[np.clip(np.searchsorted(joints, s), 0, len(joints) - 1)])
+    before = np.abs(s - joints[np.clip(np.searchsorted(joints, s) - 1, 0, len(joints) - 1)])
+    return np.sort(np.r_[s[np.minimum(away, before) > 2 * BESIDE], joints, steps - BESIDE])
 
 
 def line(road: Road, s: Array, t: ArrayLike) -> Array:

@@ -5,23 +5,25 @@ CommonRoad's planners, road boundaries and plots fail if points have heights (co
 heights are written.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from roadgpt.export.ego import calm_speed, start_of
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.export.lanelets import LaneletPair, lanelet_pairs
+from roadgpt.export.lanelets import LaneletSection, lanelet_sections
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.export.poses import Poses
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.profile import Marking
 
 STEP = 0.1  # s
 PATIENCE = 2.0  # times the duration of a calm drive to the end
 NOWHERE = -999  # GeoNames' number for no place
+MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking"}
 SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, as in Germany
 
 
@@ -42,14 +44,18 @@ class CommonRoad:
 def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document: lanelets, traffic sign and planning problem.
 
-    Lanelets of the right lane are numbered from 1, and those of the left lane follow.
+    Lanelets are numbered lane by lane: first the lanes along the road from the centre line outwards, then
+    those against it.
 
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    parts = lanelet_pairs(road, world)
-    right, left = range(1, len(parts) + 1), range(len(parts) + 1, 2 * len(parts) + 1)
-    sign = 2 * len(parts) + 1
+    sections = lanelet_sections(road, world)
+    forward, backward = world.profile_of(road).count
+    lanes = [*range(-1, -forward - 1, -1), *range(1, backward + 1)]
+    places = [(n, lane) for lane in lanes for n, each in enumerate(sections) if lane in each.lanes]
+    ids = {place: number for number, place in enumerate(places, 1)}
+    sign = len(ids) + 1
     root = XmlElement(
         "commonRoad",
         {
@@ -67,37 +73,45 @@ def document(road: Road, world: World) -> XmlElement:
     location.add("gpsLatitude", raw=number(LATITUDE))
     location.add("gpsLongitude", raw=number(LONGITUDE))
     root.add("scenarioTags").add("rural")
-    for i, part in enumerate(parts):
-        root.extended(_lanelet(right, i, _forward(part), left[i], sign))
-    for i, part in enumerate(reversed(parts)):
-        # against the road's direction, so in the order in which they are driven
-        root.extended(_lanelet(left[::-1], i, _backward(part), right[len(parts) - 1 - i], sign))
+    for lane in lanes:
+        for n in range(len(sections)) if lane < 0 else reversed(range(len(sections))):  # as they are driven
+            if (n, lane) in ids:
+                root.extended(_lanelet(ids, n, lane, sections[n], sign))
+    driven = -1 - world.profile_of(road).driven
+    goal = max(number for (_, lane), number in ids.items() if lane == driven)
     root.extended(_limit(sign, road.at(0.0, world.profile_of(road).edges(0.0).right), world))
-    root.extended(_problem(sign + 1, road, world, goal=right[-1]))
+    root.extended(_problem(sign + 1, road, world, goal))
     return root
 
 
-def _forward(part: LaneletPair) -> tuple[Array, Array]:
-    return part.middle, part.right
+def _lanelet(
+    ids: Mapping[tuple[int, int], int], n: int, lane: int, section: LaneletSection, sign: int
+) -> XmlElement:
+    """Returns the lanelet of a lane in the n-th section, as seen in its direction of driving.
 
-
-def _backward(part: LaneletPair) -> tuple[Array, Array]:
-    return part.middle[::-1], part.left[::-1]
-
-
-def _lanelet(chain: Sequence[int], i: int, bounds: tuple[Array, Array], beside: int, sign: int) -> XmlElement:
-    """Returns the i-th lanelet of a chain. Traffic beside its left bound drives in the opposite direction."""
-    out = XmlElement("lanelet", {"id": chain[i]})
-    for name, points, mark in zip(("leftBound", "rightBound"), bounds, ("dashed", "solid"), strict=True):
-        bound = out.add(name)
-        for point in points[:, :2].tolist():
-            bound.extended(_point(point))
-        bound.add("lineMarking", raw=mark)
-    if i > 0:
-        out.add("predecessor", {"ref": chain[i - 1]})
-    if i < len(chain) - 1:
-        out.add("successor", {"ref": chain[i + 1]})
-    out.add("adjacentLeft", {"ref": beside, "drivingDir": "opposite"})
+    Args:
+        ids: The ids of all lanelets by section and lane.
+        n: Index of the section.
+        lane: Number of the lane, as in OpenDRIVE.
+        section: The section.
+        sign: Id of the sign with the speed limit.
+    """
+    out = XmlElement("lanelet", {"id": ids[n, lane]})
+    way = 1 if lane < 0 else -1
+    for name, bound in zip(("leftBound", "rightBound"), section.bounds_of(lane), strict=True):
+        element = out.add(name)
+        for point in bound.points[::way, :2].tolist():
+            element.extended(_point(point))
+        element.add("lineMarking", raw=MARKS[bound.marking])
+    for name, place in (("predecessor", (n - way, lane)), ("successor", (n + way, lane))):
+        if place in ids:
+            out.add(name, {"ref": ids[place]})
+    at = section.lanes.index(lane)
+    for name, neighbour in (("adjacentLeft", at + way), ("adjacentRight", at - way)):
+        if 0 <= neighbour < len(section.lanes):
+            beside = section.lanes[neighbour]
+            direction = "same" if beside * lane > 0 else "opposite"
+            out.add(name, {"ref": ids[n, beside], "drivingDir": direction})
     out.add("laneletType", raw="country")
     out.add("userOneWay", raw="vehicle")
     out.add("trafficSignRef", {"ref": sign})

@@ -6,6 +6,7 @@ the heights of the road and no roughness.
 
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,6 +41,8 @@ class Crg:
 def document(road: Road, world: World) -> str:
     """Returns the text of the file: a header, then one line per cross-section with heading and two heights.
 
+    The heights are those at the right and at the left edge of the surface.
+
     Raises:
         ExportError: A bend is so tight that the lanes overlap in it, or a number is not finite.
     """
@@ -47,14 +50,30 @@ def document(road: Road, world: World) -> str:
     step = road.length / count
     points = finite(road.at(np.linspace(0.0, road.length, count + 1)))
     headings = np.array(_headings(points[:, :2].tolist(), step))
-    reach = _reach(headings, step, world.profile_of(road))
+    across = _across(headings, step, world.profile_of(road), road.length)
     phi = [NOTHING, *map(_field, headings.tolist())]
-    heights = list(map(_field, points[:, 2].tolist()))
-    rows = [f"{turned}{height}{height}" for turned, height in zip(phi, heights, strict=True)]
-    return "\n".join([*_header(road.length, step, points, headings, reach), *rows, ""])
+    edges = [map(_field, _heights(road, points, t).tolist()) for t in (across.right, across.left)]
+    rows = [f"{turned}{right}{left}" for turned, right, left in zip(phi, *edges, strict=True)]
+    return "\n".join([*_header(road.length, step, points, headings, across), *rows, ""])
 
 
-def _header(length: float, step: float, points: Array, headings: Array, reach: float) -> list[str]:
+class _Across(NamedTuple):
+    """How far the surface reaches to both sides of the centre line in plan, in metres to the left."""
+
+    right: float
+    left: float
+
+
+def _heights(road: Road, points: Array, t: float) -> Array:
+    """Returns the heights of the surface beside the points of the centre line, ``t`` metres to their left."""
+    if road.profile is None or road.profile.superelevation_angle is None:
+        return points[:, 2]
+    heading = road.heading(np.linspace(0.0, road.length, len(points)))
+    x, y = points[:, 0] - t * np.sin(heading), points[:, 1] + t * np.cos(heading)
+    return finite(road.at(*road.locate(x, y))[:, 2])
+
+
+def _header(length: float, step: float, points: Array, headings: Array, across: _Across) -> list[str]:
     """Returns the lines on the reference line, the surface's width, and the columns of a cross-section."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
     numbers = {
@@ -68,7 +87,7 @@ def _header(length: float, step: float, points: Array, headings: Array, reach: f
         "end_y": end[1],
         "end_phi": headings[-1],
     }
-    across = {"v_right": -reach, "v_left": reach, "v_increment": 2 * reach}
+    sides = {"v_right": across.right, "v_left": across.left, "v_increment": across.left - across.right}
     return [
         "$CT",
         "RoadGPT: smooth road, heights along the centre line",
@@ -77,7 +96,7 @@ def _header(length: float, step: float, points: Array, headings: Array, reach: f
         "$",
         "$ROAD_CRG",
         *(f"{'reference_line_' + name:<26}= {value:.16e}" for name, value in numbers.items()),
-        *(f"{'long_section_' + name:<26}= {value:.16e}" for name, value in across.items()),
+        *(f"{'long_section_' + name:<26}= {value:.16e}" for name, value in sides.items()),
         "$",
         "$KD_DEFINITION",
         "#:LDFI",
@@ -105,8 +124,8 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
     return out
 
 
-def _reach(headings: Array, step: float, profile: Profile) -> float:
-    """Returns half the surface's width in metres: lane and shoulder, or what the tightest bend allows."""
+def _across(headings: Array, step: float, profile: Profile, length: float) -> _Across:
+    """Returns the extent of lanes and shoulders, or what the tightest bend allows."""
     turns = np.abs(wrap_angle(np.diff(headings)))
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
     if room < profile.paved_reach:
@@ -114,7 +133,8 @@ def _reach(headings: Array, step: float, profile: Profile) -> float:
             f"OpenCRG cannot hold a bend whose radius is {room:.1f} m, less than a lane is wide; "
             "use wider bends or a narrower lane"
         )
-    return min(profile.reach, room)
+    rims = profile.rims(np.linspace(0.0, length, len(headings) + 1))
+    return _Across(max(float(rims.right.min()), -room), min(float(rims.left.max()), room))
 
 
 def _field(value: float) -> str:

@@ -7,7 +7,7 @@ import numpy as np
 from roadgpt.export.finite import finite
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
 
 STEP = 1.0  # m
 DECIMALS = 6
@@ -16,7 +16,11 @@ DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
 
 
 class Csv:
-    """Tables of the centre line every metre, with heading, curvature, grade and widths, and of the drive."""
+    """Tables of the centre line every metre, with heading, curvature, grade and widths, and of the drive.
+
+    If the road has other lanes than the usual two, the table also has the superelevation, and the offset of
+    the outer edge of each lane and shoulder, which are numbered as in OpenDRIVE.
+    """
 
     name = "csv"
     suffix = ".csv"
@@ -26,7 +30,13 @@ class Csv:
         of = road.sample(STEP)
         wide, shoulder = world.profile_of(road).width(of.s), world.profile_of(road).shoulder(of.s)
         columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]
-        _write(path, ROAD, columns)
+        profile, names = world.profile_of(road), ROAD
+        if profile != Profile.of(1, 1, world.lane_width, world.verge):
+            left, right = profile.lane_edges(of.s)
+            edges = dict(enumerate(left, 1)) | {-n: t for n, t in enumerate(right, 1)}
+            names = ",".join([ROAD, "superelevation_rad", *(f"lane_{n}_edge_m" for n in sorted(edges)[::-1])])
+            columns += [profile.superelevation(of.s), *(edges[n] for n in sorted(edges)[::-1])]
+        _write(path, names, columns)
         if poses is not None:
             p = poses
             columns = [p.time, p.x, p.y, p.z, p.heading, p.pitch, p.roll, p.speed]

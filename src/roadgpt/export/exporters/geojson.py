@@ -1,6 +1,7 @@
 """Exports roads as GeoJSON (RFC 7946) in geographic coordinates, for maps and geographic tools."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,12 +14,13 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
 
 STEP = 1.0  # m
+SAME = 1e-6  # m, between two widths
 DECIMALS = 9  # of a degree: 0.1 mm
 HEIGHT_DECIMALS = 4  # of a metre
 
 
 class GeoJson:
-    """GeoJSON: centre line, both lanes and the drive in longitude, latitude and height."""
+    """GeoJSON: centre line, all lanes and the drive in longitude, latitude and height."""
 
     name = "geojson"
     suffix = ".geojson"
@@ -28,20 +30,34 @@ class GeoJson:
 
         ``roadgpt.export.georeference`` defines the geographic position of the map.
         """
-        s, wide = road.sample(STEP).s, world.lane_width
-        edges = world.profile_of(road).edges(s)
-        right, middle, left = road.at(s, edges.right), road.at(s), road.at(s, edges.left)
-        features = [
-            _line("centre line", middle, {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}),
-            _area("right lane", right, middle, {"width_m": wide, "friction": world.friction}),
-            _area("left lane", middle, left, {"width_m": wide, "friction": world.friction}),
-        ]
+        s = road.sample(STEP).s
+        about = {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}
+        features = [_line("centre line", road.at(s), about), *_lanes(road, world, s)]
         if poses is not None:
             way = np.stack([poses.x, poses.y, poses.z], axis=-1)
             seconds = (np.round(poses.time, 3) + 0.0).tolist()
             features.append(_line("drive", way, {"time_s": seconds}))
         data = {"type": "FeatureCollection", "features": features}
         path.write_bytes((json.dumps(data, allow_nan=False) + "\n").encode())
+
+
+def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
+    """Yields one polygon for each driving lane, from the centre line outwards, first on the right.
+
+    If there are several lanes on a side, they are numbered from the centre line.
+    """
+    profile = world.profile_of(road)
+    left, right = profile.lane_edges(s)
+    for side, outer, count in zip(("right", "left"), (right, left), profile.count, strict=True):
+        for n in range(count):
+            inner = outer[n - 1] if n else np.zeros(len(s))
+            width = np.abs(outer[n] - inner)
+            one = {"width_m": float(width[0])}
+            several = {"width_min_m": float(width.min()), "width_max_m": float(width.max())}
+            properties = {**(several if np.ptp(width) > SAME else one), "friction": world.friction}
+            low, high = (outer[n], inner) if side == "right" else (inner, outer[n])
+            name = f"{side} lane" if count == 1 else f"{side} lane {n + 1}"
+            yield _area(name, road.at(s, low), road.at(s, high), properties)
 
 
 def _line(name: str, points: Array, properties: dict[str, Any]) -> dict[str, Any]:

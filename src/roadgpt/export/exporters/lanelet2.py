@@ -1,4 +1,4 @@
-"""Exports roads as Lanelet2 maps (.osm) with heights: two chains of lanelets that share the middle line.
+"""Exports roads as Lanelet2 maps (.osm) with heights: a chain of lanelets for each lane.
 
 Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
 Map Framework for the Future of Automated Driving, ITSC 2018. Lanelet2's usual UTM projector converts
@@ -9,19 +9,25 @@ from itertools import count
 from pathlib import Path
 
 from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import lanelet_pairs
+from roadgpt.export.lanelets import lanelet_sections
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road, World
+from roadgpt.road.profile import Marking
 
 UTM_SCALE = 0.9996  # of lengths in the middle of a UTM zone
 DEGREE_DECIMALS = 12  # a tenth of a micrometre
+TAGS = {
+    "solid": {"type": "line_thin", "subtype": "solid"},
+    "broken": {"type": "line_thin", "subtype": "dashed"},
+    "none": {"type": "virtual"},
+}
 KEEP = {"visible": "true", "version": "1"}  # editors of OpenStreetMap refuse files without these
 
 
 class Lanelet2:
-    """Lanelet2 map with heights: right and left lane as chains of lanelets, for planners and Autoware."""
+    """Lanelet2 map with heights: each lane as a chain of lanelets, for planners and Autoware."""
 
     name = "lanelet2"
     suffix = ".osm"
@@ -41,12 +47,11 @@ def document(road: Road, world: World) -> XmlElement:
     """
     map_ = _MapBuilder()
     limit = f"{world.speed_limit * 3.6:.6g} km/h"
-    for pair in lanelet_pairs(road, world):
-        right = map_.way("right", pair.right, "solid")
-        middle = map_.way("middle", pair.middle, "dashed")
-        left = map_.way("left", pair.left, "solid")
-        map_.lanelet(middle, right, limit)
-        map_.lanelet(middle, left, limit)
+    for section in lanelet_sections(road, world):
+        ways = {bound: map_.way(bound.points, bound.marking) for bound in section.bounds}
+        for lane in section.lanes:
+            inner, outer = section.bounds_of(lane)
+            map_.lanelet(ways[inner], ways[outer], limit)
     root = XmlElement("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
     return root.extended(*map_.nodes, *map_.ways, *map_.lanelets)
 
@@ -59,21 +64,23 @@ class _MapBuilder:
         self.ways: list[XmlElement] = []
         self.lanelets: list[XmlElement] = []
         self._numbers = count(1)
-        self._ends: dict[str, int] = {}
+        self._ends: dict[tuple[float, ...], int] = {}
 
-    def way(self, name: str, points: Array, kind: str) -> int:
-        """Adds a way for a painted line and returns its id.
+    def way(self, points: Array, marking: Marking) -> int:
+        """Adds a way for the bound of a lane and returns its id.
 
-        The way starts at the last node of the previous way with the same name, so that both are connected.
+        Ways that begin or end at the same point share a node, so that they are connected.
         """
-        known = [self._ends[name]] if name in self._ends else []
+        first, last = (tuple(points[n].tolist()) for n in (0, -1))
+        known = [self._ends[first]] if first in self._ends else []
         nodes = [*known, *self._add_nodes(points[len(known) :])]
-        self._ends[name] = nodes[-1]
+        self._ends.setdefault(first, nodes[0])
+        self._ends[last] = nodes[-1]
         number = next(self._numbers)
         way = XmlElement("way", {"id": number, **KEEP})
         for node in nodes:
             way.add("nd", {"ref": node})
-        self.ways.append(_tagged(way, {"type": "line_thin", "subtype": kind}))
+        self.ways.append(_tagged(way, TAGS[marking]))
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:

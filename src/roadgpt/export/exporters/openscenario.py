@@ -18,7 +18,6 @@ from roadgpt.road import Road, World
 
 EGO = "Ego"
 DATE = "2026-01-01T00:00:00"  # of every file, so that the same road gives the same bytes
-LANE = "-1"  # the right one
 KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
 PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
 STANDS = 0.01  # m; a car that has moved less is taken as standing
@@ -50,12 +49,13 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
     root, actions, story = _frame(
         world, map_, "A car drives the right lane from the start of the road to its end."
     )
-    actions.add("PrivateAction").add("TeleportAction").extended(_in_lane(start))
+    lane = -1 - world.profile_of(road).driven
+    actions.add("PrivateAction").add("TeleportAction").extended(_in_lane(lane, start))
     actions.add("PrivateAction").extended(_speed(0.0))
     route = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = route.add("Route", {"name": "to the end", "closed": "false"})
     for s in (start, road.length):
-        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(s))
+        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(lane, s))
     _act(story, "drive").extended(_profile(profile))
     reached = XmlElement("EntityCondition")
     reached.add(
@@ -67,7 +67,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
             "coordinateSystem": "road",
             "relativeDistanceType": "longitudinal",
         },
-    ).extended(_in_lane(road.length))
+    ).extended(_in_lane(lane, road.length))
     ego = XmlElement("ByEntityCondition")
     ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     ego.extended(reached)
@@ -206,9 +206,9 @@ def _profile(profile: SpeedProfile) -> XmlElement:
     return out
 
 
-def _in_lane(s: float) -> XmlElement:
+def _in_lane(lane: int, s: float) -> XmlElement:
     out = XmlElement("Position")
-    out.add("LanePosition", {"roadId": str(ROAD), "laneId": LANE, "s": s, "offset": 0})
+    out.add("LanePosition", {"roadId": str(ROAD), "laneId": str(lane), "s": s, "offset": 0})
     return out
 
 

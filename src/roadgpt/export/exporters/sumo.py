@@ -20,8 +20,10 @@ from roadgpt.export.edges import line, stations
 from roadgpt.export.ego import CAR, PULL, calm_speeds
 from roadgpt.export.markup import Value, XmlElement, number
 from roadgpt.export.poses import Poses
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
+from roadgpt.road.profile import Width
 
 PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network
@@ -32,7 +34,11 @@ ROUND = 5 / 3.6  # m/s: limits are multiples of 5 km/h, as on signs
 
 
 class Sumo:
-    """SUMO's plain nodes and edges with heights, a trip, settings; .net.xml where netconvert is installed."""
+    """SUMO's plain nodes and edges with heights, a trip, settings; .net.xml where netconvert is installed.
+
+    A lane in SUMO has one width and a level cross-section: of a lane whose width varies, the mean is written,
+    and superelevation is left out.
+    """
 
     name = "sumo"
     suffix = ".nod.xml"
@@ -44,9 +50,9 @@ class Sumo:
         limits = speed_zones(road, world)
         files = {
             self.suffix: _nodes(shape),
-            ".edg.xml": _edges(shape, world, limits),
+            ".edg.xml": _edges(shape, road, world, limits),
             ".netccfg": _conversion(stem),
-            ".rou.xml": _trip(limits),
+            ".rou.xml": _trip(limits, _from_the_right(world.profile_of(road))),
             ".sumocfg": _settings(stem),
         }
         for suffix, document in files.items():
@@ -103,27 +109,57 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     return out
 
 
-def _edges(shape: Array, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
-    """Returns one edge in each direction along the centre line, split where limits change."""
+def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) -> XmlElement:
+    """Returns one edge for each direction of driving along the centre line, split where limits change."""
     along = float(np.hypot(*np.diff(shape[:, :2], axis=0).T).sum())
     back = [SpeedZone(along - end, speed) for end, speed in _ends(limits, along)]
     out = XmlElement("edges")
-    lanes: dict[str, Value] = {
-        "numLanes": 1,
-        "speed": 0,
-        "width": world.lane_width,
-        "friction": world.friction,
-        "spreadType": "right",
-    }
-    ways = (("road", "start", "end", shape, limits), ("back", "end", "start", shape[::-1], back))
-    for name, start, end, points, pieces in ways:
+    on_right, on_left = _widths(road, world.profile_of(road))
+    ways = [
+        ("road", "start", "end", shape, limits, on_right),
+        ("back", "end", "start", shape[::-1], back, on_left),
+    ]
+    for name, start, end, points, pieces, widths in ways if on_left else ways[:1]:
+        lanes: dict[str, Value] = {
+            "numLanes": len(widths),
+            "speed": 0,
+            "width": widths[0],
+            "friction": world.friction,
+            "spreadType": "right",
+        }
         told = " ".join(",".join(map(number, point)) for point in points.tolist())
         lanes["speed"] = round(pieces[0].speed, 6)
         edge = out.add("edge", {"id": name, "from": start, "to": end, **lanes, "shape": told})
+        if len({*widths}) > 1:
+            for n, width in enumerate(reversed(widths)):  # SUMO counts from the right
+                edge.add("lane", {"index": n, "width": width})
         for n, piece in enumerate(pieces[1:], 1):
             at: dict[str, Value] = {"pos": round(piece.start, DECIMALS), "speed": round(piece.speed, 6)}
             edge.add("split", {**at, "id": f"{name}_at_{n}", "idAfter": f"{name}_{n}"})
     return out
+
+
+def _widths(road: Road, profile: Profile) -> tuple[list[float], list[float]]:
+    """Returns the mean widths in metres of the driving lanes, from the centre line outwards.
+
+    The first list has the lanes along the road, the second one those against it.
+    """
+    forward, backward = profile.count
+    s = road.sample().s
+    sides = profile.right[:forward], profile.left[:backward]
+    along, against = ([_mean(lane.width, s) for lane in side] for side in sides)
+    return along, against
+
+
+def _mean(width: Width, s: Array) -> float:
+    if not isinstance(width, CubicProfile):
+        return width
+    return round(float(width.height(np.maximum(s, width.stations[0])).mean()), DECIMALS)
+
+
+def _from_the_right(profile: Profile) -> int:
+    """Returns the number of the driven lane as SUMO counts: 0 for the rightmost lane."""
+    return profile.count[0] - 1 - profile.driven
 
 
 def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float]]:
@@ -132,12 +168,13 @@ def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float
     return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
 
 
-def _trip(limits: Sequence[SpeedZone]) -> XmlElement:
+def _trip(limits: Sequence[SpeedZone], lane: int) -> XmlElement:
     out = XmlElement("routes")
     car = {"length": CAR.length, "width": CAR.width, "accel": PULL, "decel": PULL}
     out.add("vType", {"id": "saloon", "vClass": "passenger", **car, "sigma": 0, "speedDev": 0})
+    begin: dict[str, Value] = {"depart": 0, "departPos": "base", "departSpeed": 0}
     ego = out.add(
-        "vehicle", {"id": "ego", "type": "saloon", "depart": 0, "departPos": "base", "departSpeed": 0}
+        "vehicle", {"id": "ego", "type": "saloon", **({"departLane": lane} if lane else {}), **begin}
     )
     ego.add("route", {"edges": " ".join(["road", *(f"road_{n}" for n in range(1, len(limits)))])})
     return out

@@ -102,7 +102,7 @@ def _strip(level: str, strip: Strip) -> Item:
             textureLength=5,
             breakAngle=3,
             widthSubdivisions=0,
-            nodes=[[*node, 0, 0, 1] for node in nodes],
+            nodes=[[*node, *across] for node, across in zip(nodes, _across(strip), strict=True)],
         )
     return _object(
         level,
@@ -120,8 +120,16 @@ def _strip(level: str, strip: Strip) -> Item:
         renderPriority=strip.priority,
         textureLength=5,
         zBias=0,
+        **({"oneWay": True} if strip.is_one_way else {}),
         nodes=nodes,
     )
+
+
+def _across(strip: Strip) -> list[list[float]]:
+    """Returns the directions at right angles to a mesh, one for each node."""
+    if strip.normals is None:
+        return [[0, 0, 1]] * len(strip.nodes)
+    return _rows(strip.normals)
 
 
 def _player(level: str, scene: LevelRoad) -> Iterator[Item]:

@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.errors import ExportError
-from roadgpt.export.edges import line
+from roadgpt.export.edges import line, normals
 from roadgpt.export.ego import goal_of, start_of
-from roadgpt.export.exporters.opendrive.lanes import NO_SHOULDER
+from roadgpt.export.painted_lines import named_lines
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Edges, Profile, Road, World
 from roadgpt.road.profile import LINE
@@ -64,6 +64,10 @@ class Strip:
     """Drawing order of a decal, so that painted lines are drawn on top of the asphalt."""
     is_dashed: bool = False
     """Whether a painted line is dashed. Dashes and gaps are as long as in exported OpenDRIVE files."""
+    normals: Array | None = None
+    """Unit vectors ``(n, 3)`` at right angles to a banked mesh, upwards; None for a level cross-section."""
+    is_one_way: bool = False
+    """Whether the decal that BeamNG's AI follows has no lane against the road."""
 
     @property
     def is_mesh(self) -> bool:
@@ -112,9 +116,10 @@ def level_road(
     middle = line(road, s, 0.0) + up
     if not np.isfinite(middle).all():
         raise ExportError("the road has a number that is not finite; check it before it is exported")
-    ground = _ground(middle, world) + lift
-    meshes = _meshes(middle, s, world.profile_of(road), rng, materials, prefix, ground)
-    decals = _decals(road, world.profile_of(road), s, up + above, materials, prefix)
+    profile = world.profile_of(road)
+    ground = _ground(road, profile, s, world) + lift
+    meshes = _meshes(road, s, profile, rng, materials, prefix, ground, up)
+    decals = _decals(road, profile, s, up + above, materials, prefix)
     first, goal = start_of(road), (goal_of(road) + road.length) / 2
     return LevelRoad(
         (*meshes, *decals),
@@ -126,57 +131,73 @@ def level_road(
     )
 
 
-def _ground(middle: Array, world: World) -> float:
+def _ground(road: Road, profile: Profile, s: Array, world: World) -> float:
     """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
-    if world.verge < NO_SHOULDER:
+    if not profile.has_shoulders:
         return world.z_floor - CLEAR
-    return float(middle[:, 2].min()) - UNDER - CLEAR
+    lowest = min(float(line(road, s, t)[:, 2].min()) for t in (0.0, *profile.rims(s)))
+    return lowest - UNDER - CLEAR
 
 
 def _meshes(
-    middle: Array,
+    road: Road,
     s: Array,
     profile: Profile,
     rng: np.random.Generator,
     materials: Materials,
     prefix: str,
     ground: float,
+    up: Array,
 ) -> list[Strip]:
     """Returns the mesh of the shoulder, if there is one, and of the road."""
+    banked = profile.superelevation_angle is not None
+    across = np.pad(normals(road, s), ((1, 1), (0, 0)), mode="edge") if banked else None
     strips = []
     if profile.has_shoulders:
-        below = _lengthened(middle) - np.array([0.0, 0.0, UNDER])
+        rims = profile.rims(s)
+        below = _lengthened(_between(road, s, rims) + up) - np.array([0.0, 0.0, UNDER])
         depths = np.maximum(DEPTH, below[:, 2] - ground)
-        strips.append(_mesh(f"{prefix}verge", materials.verge, below, profile.rims(s), depths))
-    shaken = _lengthened(middle)
+        strips.append(_mesh(f"{prefix}verge", materials.verge, below, rims, across, depths))
+    edges = profile.edges(s)
+    shaken = _lengthened(_between(road, s, edges) + up)
     shaken[:, :2] += rng.uniform(-SHAKE, SHAKE, (len(shaken), 2))
-    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, profile.edges(s))]
+    return [*strips, _mesh(f"{prefix}road", materials.road, shaken, edges, across)]
+
+
+def _between(road: Road, s: Array, edges: Edges) -> Array:
+    """Returns the points halfway between two edges."""
+    return line(road, s, (edges.left + edges.right) / 2)
 
 
 def _decals(
     road: Road, profile: Profile, s: Array, up: Array, materials: Materials, prefix: str
 ) -> list[Strip]:
     """Returns the decal that the AI follows, and the painted lines."""
-    left, right = profile.edges(s)
-    centre, thin = np.zeros(len(s)), np.full(len(s), LINE)
-    wanted = (
-        ("lanes", materials.surface, (left + right) / 2, left - right, DRIVABLE),
-        ("left", materials.edge, left - LINE / 2, thin, NOT_DRIVABLE),
-        ("right", materials.edge, right + LINE / 2, thin, NOT_DRIVABLE),
-        ("middle", materials.middle, centre, thin, NOT_DRIVABLE),
-    )
-    strips = []
-    for priority, (name, material, t, width, drivability) in enumerate(wanted):
-        points = line(road, s, t) + up
-        nodes = np.column_stack([points, width])
-        strips.append(Strip(prefix + name, material, nodes, drivability, priority, name == "middle"))
+    left, right = edges = profile.edges(s)
+    nodes = np.column_stack([_between(road, s, edges) + up, left - right])
+    one_way = profile.count[1] == 0
+    strips = [Strip(f"{prefix}lanes", materials.surface, nodes, DRIVABLE, is_one_way=one_way)]
+    for priority, painted in enumerate(named_lines(profile, s), 1):
+        name = f"line_{priority}" if painted.place == "between" else painted.place
+        material = materials.middle if painted.place == "middle" else materials.edge
+        nodes = np.column_stack([_between(road, s, painted.edges) + up, np.full(len(s), LINE)])
+        strips.append(
+            Strip(prefix + name, material, nodes, NOT_DRIVABLE, priority, is_dashed=painted.is_broken)
+        )
     return strips
 
 
-def _mesh(name: str, material: str, points: Array, edges: Edges, depths: Array | None = None) -> Strip:
+def _mesh(
+    name: str,
+    material: str,
+    points: Array,
+    edges: Edges,
+    across: Array | None,
+    depths: Array | None = None,
+) -> Strip:
     deep = np.full(len(points), DEPTH) if depths is None else depths
     width = np.pad(edges.left - edges.right, 1, mode="edge")  # as many as the lengthened points
-    return Strip(name, material, np.column_stack([points, width, deep]))
+    return Strip(name, material, np.column_stack([points, width, deep]), normals=across)
 
 
 def _lengthened(points: Array) -> Array:

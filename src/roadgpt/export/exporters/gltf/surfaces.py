@@ -7,21 +7,22 @@ shoulder ______|____________:____________|______ shoulder   the slabs of road an
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.export.edges import line, stations
+from roadgpt.export.edges import line, normals, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.embankments import Embankment, embankments
 from roadgpt.export.exporters.gltf.container import TriangleMesh
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
+from roadgpt.export.painted_lines import named_lines
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
+from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import FAR, Land
-from roadgpt.road.profile import LINE
 
 THICKNESS = 0.5  # m, of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
 PATH = 0.02  # m by which the path lies above the road
 PATH_WIDTH = 0.3  # m
+NAMES = {"left": "left edge line", "right": "right edge line", "middle": "middle line"}
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -33,16 +34,20 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
     """
     profile = world.profile_of(road)
     s = stations(road, profile.reach)
-    edges, rims, has_shoulder = profile.edges(s), profile.rims(s), profile.has_shoulders
+    edges, rims = profile.edges(s), profile.rims(s)
     out = [_slab("road", "asphalt", road, s, *edges)]
-    if has_shoulder:
+    if (rims.left > edges.left).any():
         out.append(_slab("left verge", "gravel", road, s, rims.left, edges.left))
+    if (rims.right < edges.right).any():
         out.append(_slab("right verge", "gravel", road, s, edges.right, rims.right))
-    mark = min(LINE, float(profile.width(s).min()) / 4)
-    out.append(_strip("left edge line", "paint", road, s, edges.left, edges.left - mark))
-    out.append(_strip("right edge line", "paint", road, s, edges.right + mark, edges.right))
-    out += [_dashed(road, s, mark), _path(road, s, world, poses)]
-    if has_shoulder:  # without a shoulder, the road floats
+    for number, painted in enumerate(named_lines(profile, s)):
+        name = NAMES.get(painted.place) or f"lane line {number}"
+        if painted.is_broken:
+            out.append(_dashed(name, road, profile, s, painted.number))
+        else:
+            out.append(_strip(name, "paint", road, s, *painted.edges))
+    out.append(_path(road, s, world, poses))
+    if profile.has_shoulders:  # without a shoulder, the road floats
         out.append(_ground(road, world, s))
     return out
 
@@ -76,8 +81,8 @@ def _sloped(bank: Embankment) -> TriangleMesh:
     return TriangleMesh("", "grass", points, both, points[:, :2], triangles)
 
 
-def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
-    """Returns the broken line in the middle. Its last dash may be shorter."""
+def _dashed(name: str, road: Road, profile: Profile, s: Array, index: int) -> TriangleMesh:
+    """Returns a broken line, given by its index in ``Profile.markings``. Its last dash may be shorter."""
     starts = np.arange(0.0, road.length, DASH + GAP).tolist()
     ends = [min(start + DASH, road.length) for start in starts]
     parts = [
@@ -85,17 +90,17 @@ def _dashed(road: Road, s: Array, width: float) -> TriangleMesh:
         for start, end in zip(starts, ends, strict=True)
         if end > start
     ]
-    whole = _strip(
-        "", "paint", road, np.concatenate(parts), width / 2, -width / 2
-    )  # evaluates the road only once
+    along = np.concatenate(parts)  # evaluates the road only once
+    edges = profile.markings(along)[index].edges
+    whole = _strip("", "paint", road, along, *edges)
     n = len(whole.points) // 2
     cuts = np.cumsum([len(part) for part in parts])[:-1]
-    left, right, normals = (
-        np.split(each, cuts) for each in (whole.points[:n], whole.points[n:], whole.normals[:n])
-    )
-    across = (width / 2, -width / 2)
-    dashes = [_band(*each, across) for each in zip(left, right, normals, parts, strict=True)]
-    return _joined("middle line", [TriangleMesh("", "paint", *dash) for dash in dashes])
+    columns = whole.points[:n], whole.points[n:], whole.normals[:n], along, *edges
+    dashes = [
+        _band(left, right, up, at, (t, u))
+        for left, right, up, at, t, u in zip(*(np.split(each, cuts) for each in columns), strict=True)
+    ]
+    return _joined(name, [TriangleMesh("", "paint", *dash) for dash in dashes])
 
 
 def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMesh:
@@ -125,14 +130,14 @@ def _strip(
 ) -> TriangleMesh:
     """Returns the surface between two offsets, seen from above."""
     a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
-    return TriangleMesh(name, material, *_band(a, b, _normals(road, s), s, (left, right)))
+    return TriangleMesh(name, material, *_band(a, b, normals(road, s), s, (left, right)))
 
 
 def _slab(name: str, material: str, road: Road, s: Array, left: Array, right: Array) -> TriangleMesh:
     """Returns the closed slab between two offsets, with its underside, flanks and ends."""
     a, b = line(road, s, left), line(road, s, right)
     low_a, low_b = a - THICKNESS * UP, b - THICKNESS * UP
-    up, aside = _normals(road, s), _left(road.heading(s))
+    up, aside = normals(road, s), _left(road.heading(s))
     deep = (0.0, -THICKNESS)
     sides = [
         _band(a, b, up, s, (left, right)),
@@ -178,13 +183,6 @@ def _joined(name: str, parts: list[TriangleMesh]) -> TriangleMesh:
     columns = [(part.points, part.normals, part.texture) for part in parts]
     points, normals, texture = (np.concatenate(column) for column in zip(*columns, strict=True))
     return TriangleMesh(name, parts[0].material, points, normals, texture, np.concatenate(triangles))
-
-
-def _normals(road: Road, s: Array) -> Array:
-    """Returns the upward normals of the surface, which has no superelevation."""
-    heading, grade = road.heading(s), road.grade(s)
-    up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)
-    return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
 
 
 def _left(heading: Array) -> Array:

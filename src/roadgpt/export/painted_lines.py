@@ -1,0 +1,46 @@
+"""Names the painted lines of a road, for formats that draw each line as an object of its own."""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Edges, Profile
+from roadgpt.road.profile import LINE
+
+SAME = 1e-9  # m
+Place = Literal["left", "right", "middle", "between"]
+ORDER: tuple[Place, ...] = ("left", "right", "middle", "between")
+
+
+class NamedLine(NamedTuple):
+    """One painted line."""
+
+    number: int
+    """Index of the line in the result of ``Profile.markings``."""
+    place: Place
+    """At the left or right edge of the carriageway, on the centre line, or between two lanes."""
+    is_broken: bool
+    edges: Edges
+    """The offsets of its left and its right edge in metres, at the given stations."""
+
+
+def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
+    """Returns the lines of a road: those at its edges first, then the centre line and those between lanes.
+
+    Args:
+        profile: The cross-section of the road.
+        s: Stations in metres along the whole road.
+    """
+    carriageway = profile.edges(s)
+    found = []
+    for number, (marking, edges) in enumerate(profile.markings(s)):
+        place: Place = "between"
+        if np.abs(edges.left - carriageway.left).max() < SAME:
+            place = "left"
+        elif np.abs(edges.right - carriageway.right).max() < SAME:
+            place = "right"
+        elif np.abs(edges.left - LINE / 2).max() < SAME:
+            place = "middle"
+        found.append(NamedLine(number, place, marking == "broken", edges))
+    return sorted(found, key=lambda line: ORDER.index(line.place))
