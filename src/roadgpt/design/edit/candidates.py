@@ -90,17 +90,15 @@ def change_candidates(
 def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
     """Is an element beyond the bound of a change?"""
     assert change.to is not None
-    seen = element.seen
     if change.what == "slope":
-        slopes = [abs(segment.incline) for segment in element.segments]
-        return any((now - change.to) * change.bound < 0 for now in slopes)
-    if seen is None:
-        return False
-    if change.target is not None and change.target.noun == "road" and change.what == "length":
-        now = found.length
+        values = [abs(segment.incline) for segment in element.segments]
+    elif element.seen is None:
+        values = []
+    elif change.what == "length" and change.target is not None and change.target.noun == "road":
+        values = [found.length]
     else:
-        now = {"angle": seen.degrees, "radius": seen.radius, "length": seen.length}[change.what]
-    return (now - change.to) * change.bound < 0
+        values = [getattr(element.seen, "degrees" if change.what == "angle" else change.what)]
+    return any((now - change.to) * change.bound < 0 for now in values)
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
@@ -360,29 +358,36 @@ def _road_slopes(
     limit = 100 * world.max_grade
     sign = {"up": 1, "down": -1}.get(change.way or "", 0)
     _refuse_too_steep(change.to or 0.0, limit)
-    if change.way == "flat" or change.to == 0:
-        return ((SlopeOfAll(names, times=0.0),),)
-    if change.to is not None:
-        sign = sign or (-1 if found.grade < 0 else 1)
-        return ((SlopeOfAll(names, way=sign, low=change.to, high=change.to),),)
-    if change.by is not None:
-        return ((SlopeOfAll(names, more=(change.more or 1) * change.by),),)
-    if change.times is not None:
-        return ((SlopeOfAll(names, times=change.times),),)
     inclines = [segment.incline for element in elements for segment in element.segments]
-    if sign and not change.more:
+    if change.way == "flat" or change.to == 0:
+        slopes = [_between(0, 0)]
+    elif change.to is not None:
+        slopes = [_between(change.to, change.to, sign or (-1 if found.grade < 0 else 1))]
+    elif change.by is not None:
+        more = (change.more or 1) * change.by
+        slopes = [lambda incline: incline + (more if incline >= 0 else -more)]
+    elif change.times is not None:
+        slopes = [_times(change.times)]
+    elif sign and not change.more:
         if inclines and min(incline * sign for incline in inclines) >= 1.5:
             return ()
-        return tuple((SlopeOfAll(names, way=sign, low=low, high=12.0),) for low in (4.0, 3.0))
-    if change.more < 0:
-        return tuple((SlopeOfAll(names, times=times),) for times in (FLATTER, 0.75))
-    if all(abs(incline) < LEVEL for incline in inclines):
-        return ((SlopeOfAll(names, way=sign or 1, low=STEEP_FROM),),)
-    most = limit - 0.3
-    return tuple(
-        (SlopeOfAll(names, times=1 + (times - 1) * change.dose, low=-most, high=most),)
-        for times in (STEEPER, 1.3, 1.15)
-    )
+        slopes = [_between(low, 12.0, sign) for low in (4.0, 3.0)]
+    elif change.more < 0:
+        slopes = [_times(FLATTER), _times(0.75)]
+    elif all(abs(incline) < LEVEL for incline in inclines):
+        slopes = [_between(STEEP_FROM, limit, sign or 1)]
+    else:
+        slopes = [_times(1 + (times - 1) * change.dose) for times in (STEEPER, 1.3, 1.15)]
+    return tuple((SlopeOfAll(names, slope),) for slope in slopes)
+
+
+def _times(times: float) -> Callable[[float], float]:
+    return lambda incline: incline * times
+
+
+def _between(low: float, high: float, sign: int = 0) -> Callable[[float], float]:
+    """Brings inclines between two sizes; uphill or downhill where the sign is 1 or -1."""
+    return lambda incline: (sign or (1 if incline >= 0 else -1)) * min(max(abs(incline), low), high)
 
 
 def _bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> tuple[EditCandidate, ...]:
@@ -390,6 +395,6 @@ def _bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> tuple[Ed
     assert change.to is not None
     names = frozenset(element.name for element in elements)
     if change.bound < 0:
-        return ((SlopeOfAll(names, low=-change.to, high=change.to),),)
+        return ((SlopeOfAll(names, _between(0, change.to)),),)
     up = sum(element.incline * element.length for element in elements) >= 0
-    return ((SlopeOfAll(names, way=1 if up else -1, low=change.to),),)
+    return ((SlopeOfAll(names, _between(change.to, inf, 1 if up else -1)),),)

@@ -9,7 +9,8 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, Field
 
-from roadgpt import check
+from roadgpt.brief.outline import Outline
+from roadgpt.brief.words import Range
 from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
 from roadgpt.chat.json_schema import fixed_description
 from roadgpt.check.measures import Measures
@@ -19,10 +20,10 @@ from roadgpt.design.designers.chat import RULES
 from roadgpt.design.edit.diff_text import between
 from roadgpt.design.edit.pointing import pointed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.repair import repair
+from roadgpt.design.fit import Requirements, look
 from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.errors import EditError, UsageError
-from roadgpt.road import Design, Geometry, Segment, World, build, read_design
+from roadgpt.road import Design, Geometry, Segment, World, read_design
 from roadgpt.road.design import MAX_SEGMENTS
 
 MOST_SHOWN = 6000  # characters of its own answer that a model is shown again
@@ -73,14 +74,16 @@ def edited_by_chat(
             reply = chat.ask(messages, EditedRoad)
             said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
             new = _kept(design, reply.data, allowed)
-            wrong = _objection(design, new, world, geometry)
+            road = look(new, (), Requirements(world, Outline(groups=(), turns=Range()), geometry=geometry))
+            wrong = next((finding.sentence for finding in road.findings), "")
+            if new == design:
+                wrong = "nothing about it has changed"
+            if not wrong:
+                return road.design, between(design, road.design, geometry)
         except UnparsableError as error:
             wrong, said, problem = f"it could not be read: {error}", error.text, error
         except UsageError as error:
             wrong = str(error)
-        if not wrong:
-            placed = repair(new, None, world, "place").design
-            return placed, between(design, placed, geometry)
         messages = [
             *opening,
             Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
@@ -191,11 +194,3 @@ def _new(answer: EditedSegment, before: Segment | None) -> Segment:
     if before is not None and same:  # only its slope is another: radius and transition stay
         return before.model_copy(update={"incline": segment.incline})
     return segment
-
-
-def _objection(before: Design, new: Design, world: World, geometry: Geometry) -> str:
-    if new == before:
-        return "nothing about it has changed"
-    placed = repair(new, None, world, "place").design
-    findings = check.inspect(build(placed, geometry), None, world)
-    return findings[0].sentence if findings else ""

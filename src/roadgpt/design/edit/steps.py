@@ -198,39 +198,23 @@ class RoadLength:
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Changes the slopes of many elements: each incline is multiplied, increased and then clipped."""
+    """Changes each incline of many elements by itself; none exceeds what the rules allow."""
 
     names: frozenset[str]
-    times: float = 1.0
-    more: float = 0.0
-    low: float = -100.0
-    high: float = 100.0
-    way: int = 0
-    """1 or -1 makes every slope one uphill or downhill first."""
+    slope: Callable[[float], float]
+    """Returns the new incline in percent for a present one."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with each segment's incline changed by itself."""
-        return tuple(
-            element.with_segments(self._sloped(segment, world) for segment in element.segments)
-            if element.name in self.names
-            else element
-            for element in elements
-        )
-
-    def _sloped(self, segment: Segment, world: World) -> Segment:
-        incline = round(self._one(segment.incline, world) * TENTH) / TENTH
-        return segment if incline == segment.incline else segment.model_copy(update={"incline": incline})
-
-    def _one(self, incline: float, world: World) -> float:
+        """Returns the elements with the new inclines."""
         limit = 100 * world.max_grade - 0.2
-        if self.way:
-            incline = self.way * abs(incline)
-        incline = incline * self.times + (self.more if incline >= 0 else -self.more)
-        if self.way:
-            incline = self.way * min(max(abs(incline), self.low), self.high)
-        else:
-            incline = min(max(incline, self.low), self.high)
-        return min(max(incline, -limit), limit)
+
+        def sloped(segment: Segment) -> Segment:
+            incline = round(min(max(self.slope(segment.incline), -limit), limit) * TENTH) / TENTH
+            return segment if incline == segment.incline else segment.model_copy(update={"incline": incline})
+
+        return tuple(
+            e.with_segments(map(sloped, e.segments)) if e.name in self.names else e for e in elements
+        )
 
 
 @dataclass(frozen=True, slots=True)
