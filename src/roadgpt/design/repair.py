@@ -50,7 +50,7 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
     if how == "none":
         return Repaired(design, ())
     elements = elements_as_proposed(design.segments)
-    valid = Requirements(world, promises_of(Brief(), world))
+    valid = Requirements(world)
     try:
         after = _fitted(design, elements, brief, valid) if how == "full" else look(design, elements, valid)
     except (UsageError, ValueError, np.linalg.LinAlgError):  # no road can be built of such geometry
@@ -71,7 +71,11 @@ def _fitted(design: Design, elements: RoadElements, brief: Brief | None, valid: 
 
 
 def changes_between(before: Design, after: Design) -> tuple[str, ...]:
-    """Returns a sentence for the start, one for the heading, and one for each segment that changed."""
+    """Returns one sentence each for a changed start, a changed heading and each changed segment.
+
+    Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
+    their number.
+    """
     out = list(_placing(before, after))
     pairs = zip(before.segments, after.segments, strict=True)
     told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
@@ -111,9 +115,9 @@ def _metres(value: float | None) -> str:
 
 
 def with_wishes(elements: Sequence[RoadElement], outline: Outline) -> RoadElements | None:
-    """Returns the elements of a proposal, each with what was asked of it.
+    """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
-    Returns None where the proposal has not the turns that were asked for.
+    Returns None if the proposal does not have the number of turns, or their sides, that the Outline requires.
     """
     turns = [i for i, element in enumerate(elements) if element.is_turn]
     left = sum(elements[i].side == "left" for i in turns)

@@ -1,12 +1,12 @@
-"""The turns and straights of a road that stands: which of its segments make the second turn.
+"""Groups the segments of a road into its turns and the straights ("gaps") between them.
 
     gap 0 | turn 1 | gap 1 | turn 2 | ... | turn n | gap n
 
-They are found in two ways. ``elements_on_road`` takes the turns that a person sees on the finished geometry
-(``check.measures``): segments of one hand that run into each other are one turn, and what bends too little
-belongs to a gap. ``elements_as_proposed`` takes what a segment list says: segments of one hand in a row are
-one turn, as RoadGPT's prompt asks of turns beyond 70 degrees, and straight ones are one element as long as
-they all go up, down or level.
+There are two ways. ``elements_on_road`` uses the turns that are measured on the finished geometry
+(``check.measures``): segments to one side that run into each other are one turn, and a bend that is too
+slight to be measured as a turn belongs to a gap. ``elements_as_proposed`` uses the list of segments alone:
+successive segments to one side are one turn, as RoadGPT's prompt demands for turns of more than 70 degrees,
+and successive straight segments are one element as long as all of them go up, down or level.
 """
 
 from collections.abc import Iterable, Sequence
@@ -27,48 +27,49 @@ LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a par
 
 @dataclass(frozen=True, slots=True)
 class RoadElement:
-    """Segments that are one turn, or lie between two."""
+    """The segments of one turn, or those between two turns."""
 
     name: str
-    """Of the element, whatever is added or removed around it."""
+    """The name of the element; it stays the same when other elements are added or removed."""
     kind: Literal["turn", "gap"]
     segments: tuple[Segment, ...]
     side: Side | None = None
-    """Of a turn."""
+    """The side to which a turn goes; None for a gap."""
     first: int = 0
-    """Index of its first segment on the road on which it was found."""
+    """Index of its first segment among all segments of the road."""
     seen: MeasuredFeature | None = None
-    """As it was measured before a change; None of what is new, not measured, or too short to be seen."""
+    """The feature that was measured for this element before a change. None if the element is new, was not
+    measured, or is too short to be measured as a straight."""
     asked: Feature | None = None
-    """What was asked of it; None where nothing was."""
+    """The requirement that the element has to meet; None if there is none."""
 
     @property
     def length(self) -> float:
-        """Metres, as written."""
+        """Sum of the distances of its segments, in metres."""
         return sum(segment.distance for segment in self.segments)
 
     @property
     def incline(self) -> float:
-        """Percent, as written, on average."""
+        """Mean incline of its segments in percent, weighted by their distances."""
         return sum(s.distance * s.incline for s in self.segments) / max(self.length, 1e-9)
 
     @property
     def degrees(self) -> float:
-        """Change of heading as written, left positive; 0 of a straight."""
+        """Sum of the angles of its segments in degrees, positive to the left; 0 for a straight."""
         return sum(segment.turn_degrees for segment in self.segments)
 
     @property
     def members(self) -> range:
-        """Indices of its segments on the road on which it was found."""
+        """Indices of its segments among all segments of the road."""
         return range(self.first, self.first + len(self.segments))
 
     @property
     def is_turn(self) -> bool:
-        """Whether it turns far enough to be seen as a turn."""
+        """Whether the element is a turn."""
         return self.kind == "turn"
 
     def with_segments(self, segments: Iterable[Segment]) -> "RoadElement":
-        """Returns the same element, made of other segments."""
+        """Returns a copy of the element that has these segments."""
         return replace(self, segments=tuple(segments))
 
 
@@ -76,12 +77,12 @@ RoadElements = tuple[RoadElement, ...]
 
 
 def measured(design: Design, geometry: Geometry) -> Measures:
-    """Returns what a person sees on the road that grows from a design."""
+    """Returns the measured turns, straights and grades of the road of a design."""
     return measure(build(design, geometry).centreline())
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the turns and gaps that are seen on the road of a design, and what was measured."""
+    """Returns the elements of a design by the turns that are measured on its road, and the measurement."""
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (
@@ -122,7 +123,7 @@ def _members(
 
 
 def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
-    """Returns the turns and straights that a segment list says, in driving order."""
+    """Returns the turns and straights of a list of segments in driving order, without a measurement."""
     rows: list[list[int]] = []
     for index, segment in enumerate(segments):
         last = segments[rows[-1][-1]] if rows else None
@@ -147,7 +148,7 @@ def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
 
 
 def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether a measured road has the turns of the elements, each to its side."""
+    """Returns whether a measured road has the turns of the elements, in order and to the same sides."""
     return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
 
 
@@ -197,7 +198,7 @@ def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadEl
 
 
 def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
-    """Returns all segments in driving order."""
+    """Returns the segments of all elements in driving order."""
     return tuple(segment for element in elements for segment in element.segments)
 
 

@@ -1,10 +1,10 @@
 """Changes a Design as a request asks, and leaves the rest alone: ``read_request``, ``edit``.
 
-    words --read_request--> EditRequest --pointed--> elements --ways--> trials --measured, inspected--> Edited
+    words --read_request--> EditRequest --pointed--> elements --steps--> requirements --fit--> Edited
 
-Places are those that a person sees on the finished road (``check.measures``), numbered as they are before the
-edit. Segments that nobody spoke of keep every number; the road as a whole may be moved or turned, so that it
-stays inside the map.
+Turns and straights are those that are measured on the finished road (``check.measures``), numbered as they
+are before the edit. Elements that the request does not name keep every number; the road as a whole may be
+moved or turned, so that it stays inside the map.
 """
 
 from collections.abc import Sequence
@@ -32,7 +32,7 @@ MOST_CHANGES = 12
 
 
 class Edited(NamedTuple):
-    """A changed Design, and sentences that say what is different about it."""
+    """A changed Design, and sentences that say what is different from the old one."""
 
     design: Design
     changes: tuple[str, ...]

@@ -9,8 +9,6 @@ from collections.abc import Sequence
 
 from pydantic import BaseModel, Field
 
-from roadgpt.brief.outline import Outline
-from roadgpt.brief.words import Range
 from roadgpt.chat import Chat, ChatSettings, Message, ReplyError, UnparsableError
 from roadgpt.chat.json_schema import fixed_description
 from roadgpt.check.measures import Measures
@@ -74,7 +72,7 @@ def edited_by_chat(
             reply = chat.ask(messages, EditedRoad)
             said = json.dumps(reply.data.model_dump(), separators=(",", ":"))
             new = _kept(design, reply.data, allowed)
-            road = look(new, (), Requirements(world, Outline(groups=(), turns=Range()), geometry=geometry))
+            road = look(new, (), Requirements(world, geometry=geometry))
             wrong = next((finding.sentence for finding in road.findings), "")
             if new == design:
                 wrong = "nothing about it has changed"

@@ -1,4 +1,4 @@
-"""What an edit changed, in sentences: measured before and after, as a person sees it."""
+"""Says in sentences what an edit changed, by the measures of the road before and after it."""
 
 from collections.abc import Iterator, Sequence
 

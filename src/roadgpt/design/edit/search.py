@@ -11,7 +11,7 @@ from itertools import islice, pairwise, product
 from math import atan2, cos, degrees, hypot, radians, sin
 
 from roadgpt.brief.model import Side
-from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.edit.steps import SEPARATE, EditCandidate, EditStep, Mirror, RoadLength, gap
 from roadgpt.design.fit import Look, Requirements, fit
@@ -92,8 +92,8 @@ def _requirements(
     steps: Sequence[EditStep], before: Design, world: World, geometry: Geometry
 ) -> Requirements:
     length = next((step.room for step in reversed(steps) if isinstance(step, RoadLength)), None)
-    outline = Outline(groups=(), turns=Range(), length=length)
-    return Requirements(world, outline, before=before, geometry=geometry)
+    needs = Requirements(world, before=before, geometry=geometry)
+    return needs._replace(outline=replace(needs.outline, length=length))
 
 
 def _may_change(element: RoadElement) -> bool:

@@ -58,8 +58,8 @@ class Requirements(NamedTuple):
 
     world: World
     """The map and the limits of the rules."""
-    outline: Outline
-    """Requirements of the whole road."""
+    outline: Outline = Outline(groups=(), turns=Range())
+    """Requirements of the whole road; none by default."""
     brief: Brief | None = None
     """The Brief that the rule ``promises`` compares with the road. If it is None, the measured elements are
     compared with what is asked of each."""

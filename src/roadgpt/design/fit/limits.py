@@ -1,7 +1,7 @@
-"""The limits on lengths and turns, as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
+"""Writes the limits of lengths and turns as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
 
-A radius becomes such a limit: a turn of ``turn`` radians over ``length`` metres, whose curvature is ``peak``
-times as large at its tightest place as on average, has a least radius of   length / (peak * turn).
+A least radius becomes such a limit: a segment that turns by ``turn`` radians over ``length`` metres, with a
+largest curvature ``peak`` times its mean one, has a least radius of length / (peak * turn).
 """
 
 from collections.abc import Sequence
@@ -96,7 +96,16 @@ def limits_of(
     world: World,
     margins: Margins,
 ) -> tuple[Array, Array]:
-    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right side ``(m,)``."""
+    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right side ``(m,)``.
+
+    Args:
+        segments: The ``n`` segments as proposed.
+        elements: The turns and straights that they make, some with requirements of their own.
+        peak: Ratio of the largest to the mean curvature of each segment, ``(n,)``.
+        outline: The requirements of the whole road.
+        world: The limits of the rules.
+        margins: The distances that are kept from all limits.
+    """
     rows = Rows(len(segments))
     radius = world.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_TRANSITION)
