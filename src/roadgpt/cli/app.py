@@ -16,7 +16,7 @@ from roadgpt import __version__, stopping
 from roadgpt.cli.command_table import COMMANDS, EARLIER, HEADINGS, renamed
 from roadgpt.cli.crash import report_crash
 from roadgpt.cli.option_groups import dash_advice
-from roadgpt.cli.streams import OutputError, drop_output, is_coloured
+from roadgpt.cli.streams import OutputError, drop_output, is_coloured, warn
 from roadgpt.errors import RoadGPTError
 from roadgpt.provenance import USER
 
@@ -69,7 +69,7 @@ class Commands(click.Group):
         """
         args, told = renamed(args)
         if told and not ctx.resilient_parsing:
-            click.echo(f"roadgpt: {told}", err=True)
+            warn(told)
         name = args[0]
         if name in COMMANDS or (name.startswith("-") and " " not in name.strip()):
             return super().resolve_command(ctx, args)
@@ -118,12 +118,12 @@ class Commands(click.Group):
             drop_output()
             status = NO_READER if error.is_reader_gone else REFUSED
             if not error.is_reader_gone:
-                click.echo(f"roadgpt: {error}", err=True)
+                warn(error)
         except click.ClickException as error:
             _with_advice(error).show()
             status = error.exit_code
         except RoadGPTError as error:
-            click.echo(f"roadgpt: {error}", err=True)
+            warn(error)
             status = stopping.status() or error.exit_status
         except OSError as error:
             status = stopping.status() or _refused(error)
@@ -132,7 +132,7 @@ class Commands(click.Group):
         except Exception as error:  # the last door: nothing may leave as a traceback
             status = stopping.status()
             if not status:  # what breaks while it is being stopped is no news
-                click.echo(f"roadgpt: {report_crash(error)}", err=True)
+                warn(report_crash(error))
                 status = INTERNAL
         stopping.finish()
         sys.exit(status if isinstance(status, int) else 0)
@@ -141,11 +141,11 @@ class Commands(click.Group):
 def _refused(error: OSError) -> int:
     """Says that a file cannot be used, and returns the exit status; reports any other error as a crash."""
     if error.errno not in OF_FILES or not error.filename:
-        click.echo(f"roadgpt: {report_crash(error)}", err=True)
+        warn(report_crash(error))
         return INTERNAL
     name = str(error.filename)
     shown = name if len(name) <= 200 else f"{name[:80]}...{name[-40:]}"
-    click.echo(f"roadgpt: cannot use {shown}: {error.strerror}; name another file or folder", err=True)
+    warn(f"cannot use {shown}: {error.strerror}; name another file or folder")
     return REFUSED
 
 

@@ -9,6 +9,7 @@ import click
 from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, metres
+from roadgpt.cli.streams import warn
 
 if TYPE_CHECKING:
     from roadgpt.campaign.cell_status import CellStatus
@@ -30,15 +31,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
             for step in steps:
                 tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
     except KeyboardInterrupt:
-        click.echo(
-            f"roadgpt: stopped; finished tests are kept; continue with: roadgpt resume {folder}", err=True
-        )
+        warn(f"stopped; finished tests are kept; continue with: roadgpt resume {folder}")
         raise
-    sum_up(folder, as_json, quiet)
-
-
-def sum_up(folder: Path, as_json: bool, quiet: bool) -> None:
-    """Prints the results of a campaign."""
     from roadgpt.campaign.status import status_of
 
     status = status_of(folder)

@@ -10,6 +10,7 @@ from roadgpt.cli.commands.edit import edit_road
 from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.run_job import carry_out
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
 
 USUAL_ROADS = 3
@@ -63,7 +64,7 @@ def converse() -> None:
             if not _changed(screen):
                 break
         except RoadGPTError as error:
-            click.echo(f"roadgpt: {error}", err=True)
+            warn(error)
         except KeyboardInterrupt:
             stopping.forget()  # what was finished has been said; ask for the next description
         click.echo()
@@ -87,7 +88,7 @@ def _changed(screen: Screen) -> bool:
         try:
             roads[number] = str(edit_road(Screen(1), roads[number], words, World()))
         except RoadGPTError as error:
-            click.echo(f"roadgpt: {error}", err=True)
+            warn(error)
     return True
 
 
@@ -129,7 +130,7 @@ def _how_many() -> int | None:
         try:
             return ROADS(answer)
         except click.BadParameter as error:
-            click.echo(f"roadgpt: {error.message}", err=True)
+            warn(error.message)
 
 
 def _enable_editing() -> None:

@@ -9,6 +9,7 @@ import click
 
 from roadgpt.cli.command_table import renamed_options
 from roadgpt.cli.option import FROM_FILES, Heading, Option
+from roadgpt.cli.streams import warn
 
 
 @contextmanager
@@ -76,7 +77,7 @@ class GroupedCommand(click.Command):
         known = [name for parameter in self.params for name in parameter.opts]
         words, told = renamed_options(args, known)
         for sentence in () if ctx.resilient_parsing else told:
-            click.echo(f"roadgpt: {sentence}", err=True)
+            warn(sentence)
         if "words" not in known:
             return super().parse_args(ctx, words)
         with dash_advice(ctx, args):
@@ -101,7 +102,7 @@ class GroupedCommand(click.Command):
             told.setdefault(setting.origin.partition(" ")[0], []).append(f"{option.setting_name} = {shown}")
         if told and not ctx.params.get("quiet"):
             parts = "; ".join(f"{place} sets {', '.join(values)}" for place, values in told.items())
-            click.echo(f"roadgpt: {parts}", err=True)
+            warn(parts)
         return super().invoke(ctx)
 
     def _shown(self, ctx: click.Context) -> Iterator[tuple[str, tuple[str, str]]]:

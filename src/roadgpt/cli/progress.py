@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TypeVar
 
-import click
+from roadgpt.cli.streams import warn
 
 T = TypeVar("T")
 EVERY = 10.0  # s between two lines where there is no terminal
@@ -63,7 +63,7 @@ class _Lines:
         elif now - self._told >= EVERY and self._first[1] < done < self._total:
             left = (now - self._first[0]) / (done - self._first[1]) * (self._total - done)
             steps = f"{done:,} of {self._total:,} {self._what}"
-            click.echo(f"roadgpt: {steps}, about {duration(left)} to go", err=True)
+            warn(f"{steps}, about {duration(left)} to go")
             self._told = now
 
 

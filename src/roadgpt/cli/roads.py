@@ -7,11 +7,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from roadgpt.cli.options import WORLD
 from roadgpt.cli.result_row import Row, unreadable
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import warn
 from roadgpt.errors import PartError, UsageError, explained
 
 if TYPE_CHECKING:
@@ -225,7 +224,7 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
         return named.run()
     blueprint, remarks = blueprint_of(named.said, world)
     for remark in remarks:
-        click.echo(f"roadgpt: {named.said}: {remark}", err=True)
+        warn(f"{named.said}: {remark}")
     run = prove(blueprint, world=world, setup=Setup(geometry=geometry, drives=False))
     return replace(run, source=Path(named.said).name)
 
@@ -271,7 +270,7 @@ def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) 
 def open_page(page: Path) -> None:
     """Opens a page in the browser, or says that no browser could be started."""
     if not webbrowser.open(page.resolve().as_uri()):
-        click.echo(f"roadgpt: no browser could be started; open {page} in one", err=True)
+        warn(f"no browser could be started; open {page} in one")
 
 
 def made(folder: Path) -> Path:

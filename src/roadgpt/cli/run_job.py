@@ -9,14 +9,13 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
+from roadgpt.cli import options
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.junit import junit_writer
 from roadgpt.cli.next_steps import lines, of_rows
-from roadgpt.cli.result_row import row_of, spending
+from roadgpt.cli.result_row import spending
 from roadgpt.cli.screen import Screen
-from roadgpt.cli.streams import apart
+from roadgpt.cli.streams import warn
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
@@ -113,17 +112,11 @@ def reading(brief: "Brief") -> str:
 
 def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
     """Shows the roads of a folder, starting with those that were there before, and then their table."""
-    from roadgpt.run.sbft_json import test_name
-
     try:
-        with screen:
-            for run in apart(work.all_runs()):
-                name = test_name(run.index)
-                screen.row(row_of(run, str(work.folder / name), name))
-                screen.detail(f"  {run.description}")
+        screen.runs(work.all_runs(), work.folder)
     except KeyboardInterrupt:
         command = ["roadgpt", "run", work.request.words, "-n", str(work.roads), "--out", str(work.folder)]
-        click.echo(f"roadgpt: continue with: {shlex.join(command)} and the same options", err=True)
+        warn(f"continue with: {shlex.join(command)} and the same options")
         raise
     finally:
         screen.close()
@@ -131,7 +124,8 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
             screen.say(f"language model: {spending(work.meter.spent)}")
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
-            for line in _next(work, screen):
+            is_whole = len(screen.rows) == work.roads
+            for line in lines(of_rows(work.request, work.roads, screen.rows) if is_whole else None):
                 screen.say(line)
             if job.pictures:
                 kind = job.pictures[0]
@@ -140,15 +134,9 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
                 )
 
 
-def _next(work: "Campaign", screen: Screen) -> list[str]:
-    """Returns suggestions if all roads were driven and none failed."""
-    quiet = of_rows(work.request, work.roads, screen.rows) if len(screen.rows) == work.roads else None
-    return [*lines(quiet)] if quiet is not None else []
-
-
 def _beside(job: RunJob) -> "Draw | None":
     """Returns the function that puts pictures and road files into the folder of each run."""
-    draw = _pictures(job)
+    draw = options.drawing_of(job.pictures, job.axes)
     if not job.formats:
         return draw
     from roadgpt.export import exporter_of
@@ -156,16 +144,4 @@ def _beside(job: RunJob) -> "Draw | None":
 
     for name in job.formats:
         exporter_of(name)
-    return Exporting(job.formats, _complain, draw)
-
-
-def _complain(sentence: str) -> None:
-    click.echo(f"roadgpt: {sentence}", err=True)
-
-
-def _pictures(job: RunJob) -> "Draw | None":
-    if not job.pictures:
-        return None
-    from roadgpt.report import drawing
-
-    return drawing(job.axes, job.pictures)
+    return Exporting(job.formats, warn, draw)

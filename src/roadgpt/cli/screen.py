@@ -5,17 +5,20 @@ nothing.
 import logging
 import sys
 import time
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 import click
 
 from roadgpt.cli.progress import progress
-from roadgpt.cli.result_row import WIDEST, Row, colour_of, summary
-from roadgpt.cli.streams import is_coloured
+from roadgpt.cli.result_row import WIDEST, Row, colour_of, row_of, summary
+from roadgpt.cli.streams import apart, is_coloured
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
+
+    from roadgpt.run import Run
 
 
 class Screen:
@@ -79,6 +82,19 @@ class Screen:
             done = f"{count:>{len(str(self.total))}}/{self.total}" if self.total else f"{count:>4}"
             _show(f"{done}  {_coloured(row)}")
         self._tell(len(self.rows), rate=f"{self._rate():.1f} roads/s")
+
+    def runs(self, runs: "Iterable[Run]", folder: Path) -> None:
+        """Prints each run of a folder as soon as it is finished.
+
+        What is printed while a run is made, such as by a user's driver, goes to standard error.
+        """
+        from roadgpt.run.sbft_json import test_name
+
+        with self:
+            for run in apart(runs):
+                name = test_name(run.index)
+                self.row(row_of(run, str(folder / name), name))
+                self.detail(f"  {run.description}")
 
     def close(self) -> None:
         """Prints the table of outcomes, and writes the JUnit file if one was requested."""

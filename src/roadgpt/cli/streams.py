@@ -7,6 +7,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import redirect_stdout
 from typing import TypeVar
 
+import click
+
 Step = TypeVar("Step")
 LETTERS = "backslashreplace"  # letters that the other end has not are written as escapes
 
@@ -73,6 +75,11 @@ def drop_output() -> None:
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())
     os.close(nothing)
+
+
+def warn(sentence: object) -> None:
+    """Prints a sentence on standard error, after the name of the program."""
+    click.echo(f"roadgpt: {sentence}", err=True)
 
 
 def is_coloured() -> bool:

@@ -12,9 +12,7 @@ from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.option_types import measure, whole
-from roadgpt.cli.result_row import row_of
 from roadgpt.cli.screen import Screen
-from roadgpt.cli.streams import apart
 from roadgpt.errors import UsageError, explained
 
 if TYPE_CHECKING:
@@ -110,14 +108,8 @@ def sbft_command(
 
 def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
     """Shows every test as it ends, then how the generator ended, and draws the page of all tests."""
-    from roadgpt.run.sbft_json import test_name
-
     try:
-        with screen:
-            for run in apart(work):
-                name = test_name(run.index)
-                screen.row(row_of(run, str(work.folder / name), name))
-                screen.detail(f"  {run.description}")
+        screen.runs(work, work.folder)
     finally:
         screen.close()
         if work.ending is None or work.ending.is_of_a_generator:  # of that the error speaks

@@ -12,6 +12,7 @@ from roadgpt.cli.configuration import TABLES, layers_of, settable_options
 from roadgpt.cli.installed_plugins import plugins_command
 from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
+from roadgpt.cli.streams import warn
 
 DEFAULT = "default"
 
@@ -66,7 +67,7 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
             if each.table == table:
                 click.echo(f"{each.name:<{wide}}  {_text(each.value):<{far}}  {each.origin}")
     for name in unknown_variables({option.variable for option in settable_options()}):
-        click.echo(f"roadgpt: {name} is not a setting; the settings are listed above", err=True)
+        warn(f"{name} is not a setting; the settings are listed above")
 
 
 def _text(value: Any) -> str:

@@ -18,6 +18,7 @@ from roadgpt.cli.option_types import driver_again, folder
 from roadgpt.cli.result_row import Row, row_of
 from roadgpt.cli.roads import blueprint_of, each_road, made
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -173,10 +174,9 @@ def drive_again(
         click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
             said = f"{result.outcome} in the campaign ({one_line(result.description)})"
-            click.echo(
-                f"roadgpt: test {number} of {cell} was {said}; it was driven with another version of roadgpt "
-                "or on another machine",
-                err=True,
+            warn(
+                f"test {number} of {cell} was {said}; it was driven with another version of roadgpt "
+                "or on another machine"
             )
 
 

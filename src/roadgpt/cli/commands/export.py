@@ -12,6 +12,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.roads import NamedRoad, blueprint_of, roads_named
+from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def command(
 
     def complain(error: RoadGPTError) -> None:
         nonlocal status
-        click.echo(f"roadgpt: {error}", err=True)
+        warn(error)
         status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
 
     for each in roads_named(files, choice, takes_all=True, complain=complain):
@@ -119,13 +120,13 @@ class _Source:
 
     def _tell(self, file: str, remarks: tuple[str, ...]) -> None:
         for remark in () if self.is_quiet else remarks:
-            click.echo(f"roadgpt: {file}: {remark}", err=True)
+            warn(f"{file}: {remark}")
 
     def _warn(self) -> None:
         """Says once that options do not change the lanes and limits of runs."""
         if self.said and not (self.has_warned or self.is_quiet):
             flags = ", ".join(flag.flag for flag in options.WORLD if flag.field in self.said)
-            click.echo(f"roadgpt: runs keep their own lanes and limits; {flags} is for road files", err=True)
+            warn(f"runs keep their own lanes and limits; {flags} is for road files")
         self.has_warned = True
 
 

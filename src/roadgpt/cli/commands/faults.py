@@ -13,6 +13,7 @@ from roadgpt.cli.option import Argument, Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import folder, whole
 from roadgpt.cli.progress import watched
+from roadgpt.cli.streams import warn
 
 if TYPE_CHECKING:
     from roadgpt.campaign.faults import FailureAnalysis, Faults
@@ -101,7 +102,7 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
     except KeyboardInterrupt:
         go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
-        click.echo(f"roadgpt: stopped; finished work is kept; continue with: {go_on}", err=True)
+        warn(f"stopped; finished work is kept; continue with: {go_on}")
         raise
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))

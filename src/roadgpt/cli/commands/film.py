@@ -12,6 +12,7 @@ from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.progress import watched
 from roadgpt.cli.roads import NamedRoad, check_file, made, roads_named, run_of, shown_runs
+from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
 def _view(value: str) -> str:
     """Checks the value of --view; its earlier name ``bonnet`` is kept, since it names files."""
     if value == "bonnet":
-        click.echo("roadgpt: '--view bonnet' is now '--view hood'", err=True)
+        warn("'--view bonnet' is now '--view hood'")
     elif value not in VIEWS:
         raise click.BadParameter(f"'{value}' is not a view; give {', '.join(VIEWS[:-1])} or {VIEWS[-1]}")
     return value
@@ -110,7 +111,7 @@ def command(
         for each, film in _films(files, choice, view, out):
             run = run_of(each, world, geometry)
             if run.road is None:
-                click.echo(f"roadgpt: {each.said} has no road to film", err=True)
+                warn(f"{each.said} has no road to film")
             else:
                 _make([run], film, view, settings, quiet)
         return

@@ -11,6 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
+from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError, explained
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
     found = read_opendrive(file, wanted)
     road, world, told = (found.road, found.world(World()), []) if keep_place else _on_a_map(found)
     for remark in () if quiet else (*found.remarks, *told):
-        click.echo(f"roadgpt: {file}: {remark}", err=True)
+        warn(f"{file}: {remark}")
     out = out or _new(Path.cwd(), f"{file.stem}-{found.id}")
     with explained(RoadGPTError, f"cannot write {out}", "name another file with --out"):
         out.parent.mkdir(parents=True, exist_ok=True)

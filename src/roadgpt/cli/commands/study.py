@@ -16,6 +16,7 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import CommandGroup, GroupedCommand
 from roadgpt.cli.option_types import PATH, ROADS, whole
 from roadgpt.cli.progress import progress
+from roadgpt.cli.streams import warn
 from roadgpt.errors import ChatError
 
 if TYPE_CHECKING:
@@ -113,7 +114,7 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
         with progress("roads", total, quiet) as tell:
             problems = work(plan, place, workers, draw, tell)
     except KeyboardInterrupt:
-        click.echo("roadgpt: stopped; finished roads are complete, and the same command continues", err=True)
+        warn("stopped; finished roads are complete, and the same command continues")
         raise
     keep_problems(place, problems)
     if not quiet:
@@ -159,7 +160,7 @@ def _complain(problems: "Sequence[Problem]") -> None:
     for problem in problems:
         told.setdefault(problem.sentence, []).append(problem.part)
     for sentence, parts in told.items():
-        click.echo(f"roadgpt: {', '.join(parts)}: {sentence}", err=True)
+        warn(f"{', '.join(parts)}: {sentence}")
 
 
 @click.group(cls=CommandGroup)

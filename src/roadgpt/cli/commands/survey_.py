@@ -8,6 +8,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
 from roadgpt.cli.option_types import PATH, folder, measure, whole
+from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
 PORT = 8765
@@ -88,7 +89,7 @@ def new(
         (out / FILE).write_text(plan_text(plan), encoding="utf-8")
         click.echo(f"{out / FILE} lists the roads that were drawn; edit it and make the survey again from it")
     if survey.lacks:
-        click.echo(f"roadgpt: {survey.lacks}", err=True)
+        warn(survey.lacks)
     click.echo(
         f"{len(survey.items)} pages of roads in {out}; next: roadgpt study survey serve {out} --raters 10"
     )

@@ -13,6 +13,7 @@ from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
 from roadgpt.cli.roads import check_file, open_page, roads_named, run_of, shown_runs
+from roadgpt.cli.streams import warn
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def _draw_pictures(
 
     def complain(error: UsageError) -> None:
         nonlocal status
-        click.echo(f"roadgpt: {error}", err=True)
+        warn(error)
         status = UNREADABLE
 
     for each in roads_named(files, choice, complain=complain):
