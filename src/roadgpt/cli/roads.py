@@ -4,6 +4,7 @@ import os
 import webbrowser
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -171,13 +172,10 @@ def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str,
     if isinstance(blueprint, Design) or blueprint.profile is None:
         return blueprint, remarks
     usual = World()
-    given = [each.flag for each in WORLD if each.field in LANES and _differs(world, usual, each.field)]
+    of_lanes = [each for each in WORLD if each.field in LANES]
+    given = [each.flag for each in of_lanes if getattr(world, each.field) != getattr(usual, each.field)]
     own = f"the road has lanes of its own; {', '.join(given)} has no effect on it"
     return blueprint, (*remarks, own) if given else remarks
-
-
-def _differs(world: "World", usual: "World", field: str) -> bool:
-    return bool(getattr(world, field) != getattr(usual, field))
 
 
 def shown_runs(
@@ -271,6 +269,12 @@ def open_page(page: Path) -> None:
     """Opens a page in the browser, or says that no browser could be started."""
     if not webbrowser.open(page.resolve().as_uri()):
         warn(f"no browser could be started; open {page} in one")
+
+
+def numbered(name: str, ending: str = "") -> Iterator[str]:
+    """Yields a name of a file or folder, then the same name with -2, -3 and so on, before its ending."""
+    yield name + ending
+    yield from (f"{name}-{number}{ending}" for number in count(2))
 
 
 def made(folder: Path) -> Path:

@@ -1,7 +1,6 @@
 """``roadgpt export``: writes roads in the formats of other tools."""
 
 from dataclasses import dataclass, replace
-from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +10,7 @@ from click.core import ParameterSource
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.roads import NamedRoad, blueprint_of, roads_named
+from roadgpt.cli.roads import NamedRoad, blueprint_of, numbered, roads_named
 from roadgpt.cli.streams import warn
 from roadgpt.errors import ExportError, PartError, RoadGPTError, UsageError
 
@@ -69,8 +68,7 @@ def command(
         status = max(status, FAILED if isinstance(error, ExportError) else UNREADABLE)
 
     for each in roads_named(files, choice, takes_all=True, complain=complain):
-        names = chain([each.stem], (f"{each.stem}-{number}" for number in count(2)))
-        taken.add(name := next(name for name in names if name not in taken))
+        taken.add(name := next(name for name in numbered(each.stem) if name not in taken))
         try:
             written = export(source.run_of(each), out, formats, name)
         except PartError:

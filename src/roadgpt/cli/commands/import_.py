@@ -11,6 +11,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option, words_of
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
+from roadgpt.cli.roads import numbered
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError, explained
 
@@ -98,8 +99,4 @@ def _drive(file: Path, world: "World") -> str:
 def _new(folder: Path, stem: str) -> Path:
     """Returns a file name that is not taken."""
     plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in stem)[:100]
-    number, path = 1, Path(f"{plain}.json")
-    while (folder / path).exists():
-        number += 1
-        path = Path(f"{plain}-{number}.json")
-    return path
+    return next(path for path in map(Path, numbered(plain, ".json")) if not (folder / path).exists())

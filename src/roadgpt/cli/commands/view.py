@@ -12,9 +12,9 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH, picture_formats
 from roadgpt.cli.option_types import folder as folder_of
-from roadgpt.cli.roads import check_file, open_page, roads_named, run_of, shown_runs
+from roadgpt.cli.roads import check_file, numbered, open_page, roads_named, run_of, shown_runs
 from roadgpt.cli.streams import warn
-from roadgpt.errors import UsageError
+from roadgpt.errors import UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice
@@ -125,16 +125,11 @@ def _draw_pictures(
 
 def _place(out: Path, name: str) -> Path:
     """Makes and returns a new folder for one road's pictures."""
-    number = 1
-    while True:
-        place = out / (name if number == 1 else f"{name}-{number}")
-        try:
-            place.mkdir(parents=True)
-        except FileExistsError:
-            number += 1
-        except OSError as error:
-            raise UsageError(
-                f"cannot make a folder in {out}: {error.strerror}; give another one with --out"
-            ) from error
-        else:
+    with explained(UsageError, f"cannot make a folder in {out}", "give another one with --out"):
+        for place in (out / own for own in numbered(name)):
+            try:
+                place.mkdir(parents=True)
+            except FileExistsError:
+                continue
             return place
+    raise AssertionError("some number is always free")
