@@ -108,10 +108,10 @@ class Look:
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
     """Returns the design as it is built, inside the map and above the ground where that is possible."""
     world, geometry = requirements.world, requirements.geometry
-    road = build(design, geometry)
+    road = world.lay(build(design, geometry))
     moved = _moved(design, road, world)
     if moved != design:
-        road = build(moved, geometry)
+        road = world.lay(build(moved, geometry))
     return Look(moved, elements, road, check.inspect(road, requirements.brief, world), requirements)
 
 

@@ -1,0 +1,41 @@
+"""Drafts, repairs and changes in a World with more lanes and banked bends."""
+
+import numpy as np
+import pytest
+
+from roadgpt.brief import read
+from roadgpt.check import inspect
+from roadgpt.design import draft
+from roadgpt.design.edit import edit
+from roadgpt.design.repair import repair
+from roadgpt.road import Design, Segment, World, build
+
+WORLD = World(lanes="3+2", lane_width=3.5, bank="auto")
+BRIEF = read("a road with 3 turns", "grammar")
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_drafts_leave_room_for_all_lanes(seed: int) -> None:
+    design = draft(BRIEF, WORLD, seed=seed)
+    road = WORLD.lay(build(design))
+    assert inspect(road, BRIEF, WORLD) == ()
+    edge = road.at(np.linspace(0.0, road.length, 500), -10.5)[:, :2]
+    assert edge.min() > 0.0
+    assert edge.max() < 250.0
+
+
+def test_a_change_of_a_banked_road_is_valid_and_changes_what_was_named() -> None:
+    design = draft(BRIEF, WORLD, seed=4)
+    edited = edit(design, "make the first turn sharper", WORLD)
+    assert inspect(WORLD.lay(build(edited.design)), None, WORLD) == ()
+    changed = [a != b for a, b in zip(design.segments, edited.design.segments, strict=True)]
+    assert sum(changed) >= 1
+
+
+def test_a_road_whose_outer_lane_leaves_the_map_is_moved_in() -> None:
+    segments = (Segment(distance=100, direction="straight"),)
+    near = Design(starting_point=(20.0, 9.0, 0.0), theta=0.0, segments=segments)
+    assert inspect(WORLD.lay(build(near)), None, WORLD)[0].rule == "inside_map"
+    mended = repair(near, None, WORLD, "place").design
+    assert inspect(WORLD.lay(build(mended)), None, WORLD) == ()
+    assert mended.starting_point[1] >= 10.5
