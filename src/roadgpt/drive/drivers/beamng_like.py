@@ -33,12 +33,13 @@ class BeamngLike:
     It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
     uses it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tested on 2,129
     others: on average it is a fair substitute, but it cannot predict the outcome of a single road
-    (docs/explanation/fair-judge.md has the figures). Like BeamNG's AI it fails by cutting corners: the left
+    (docs/explanation/fair-judge.md has the figures). Like BeamNG's AI it fails by cutting corners: any other
     lane counts as outside, and so does the shoulder.
 
-    Two of its properties are assumed, because all recordings have one speed limit and a dry road: the higher
-    the speed limit, the more it cuts (``eagerness``), and it plans for a dry road, whatever the friction
-    (``assumed_friction``).
+    Three of its properties are assumed, because all recordings have one speed limit and a dry road with two
+    lanes that is level across: the higher the speed limit, the more it cuts (``eagerness``), it plans for a
+    dry road, whatever the friction (``assumed_friction``), and its planned speed takes superelevation into
+    account.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
