@@ -151,6 +151,10 @@ class Record:
         """Returns the value that the table ``meta`` has for ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
+    def names(self) -> list[str]:
+        """Returns the names of all cells, in the order of the plan."""
+        return [name for (name,) in self.query("SELECT name FROM cells ORDER BY name")]
+
     def cells(self) -> list[Cell]:
         """Returns all cells, in the order of the plan."""
         rows = self.query("SELECT name, cell FROM cells ORDER BY name")
@@ -171,8 +175,8 @@ class Record:
         """
         found = self.query("SELECT cell FROM cells WHERE name = ?", (name,))
         if not found:
-            names = [name for (name,) in self.query("SELECT name FROM cells ORDER BY name LIMIT 10")]
-            raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {', '.join(names)}")
+            names = ", ".join(self.names()[:10])
+            raise UsageError(f"there is no cell '{name}' in {self.path.parent}; cells are {names}")
         return self._cell(name, found[0][0])
 
     def results(

@@ -90,7 +90,7 @@ class Scheduler:
         """
         self._store = store
         self._staff = staff
-        self._names = [name for (name,) in store.query("SELECT name FROM cells ORDER BY name")]
+        self._names = store.names()
         self._allocator = BudgetAllocator(chat, *store.spent())
         self._chat = chat
         self._run_test = run_test or execute

@@ -102,7 +102,7 @@ def _number(text: str) -> int | None:
 
 
 def _only_cell(record: Record, number: int) -> str:
-    names = _cells(record)
+    names = record.names()
     if len(names) > 1:
         raise UsageError(
             f"{record.folder} has several cells; say of which one test {number} is, "
@@ -111,12 +111,8 @@ def _only_cell(record: Record, number: int) -> str:
     return names[0]
 
 
-def _cells(record: Record) -> list[str]:
-    return [name for (name,) in record.query("SELECT name FROM cells ORDER BY name")]
-
-
 def _cell(record: Record, name: str) -> str:
-    names = _cells(record)
+    names = record.names()
     if name in names:
         return name
     near = get_close_matches(name, names, MOST_NEAR, 0.3) or names[:MOST_NEAR]

@@ -1,5 +1,7 @@
 """Writes files and folders so that they are either complete or absent, even if the process is killed."""
 
+import csv
+import io
 import json
 import math
 import os
@@ -120,6 +122,13 @@ def sweep(folder: Path) -> None:
 def to_bytes(text: str) -> bytes:
     """Returns text as UTF-8; characters that UTF-8 cannot encode become backslash escapes."""
     return text.encode("utf-8", "backslashreplace")
+
+
+def csv_text(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:
+    """Returns a table as CSV with a line of column names; None gives an empty field."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows([head, *rows])
+    return text.getvalue()
 
 
 def json_text(value: Any, indent: int | None = 1) -> str:

@@ -5,14 +5,12 @@ oob_stats.csv                failures by side, and their sparseness
 experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
 """
 
-import csv
-import io
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.run.atomic import write_whole
+from roadgpt.run.atomic import csv_text, write_whole
 from roadgpt.run.execution import records_of
 from roadgpt.run.model import Outcome, Request, Run, Seconds
 from roadgpt.run.sparseness import Departure, Sparseness, departure
@@ -85,7 +83,7 @@ class Tally:
     def write(self, folder: Path) -> None:
         """Writes the two tables that change with each road: generation_stats.csv and oob_stats.csv."""
         for name, row in zip(TABLES, (self._generation(), self._departures()), strict=True):
-            write_whole(folder / name, _table([row]))
+            write_whole(folder / name, csv_text(row, [row.values()]))
 
     def _generation(self) -> dict[str, object]:
         generated = self.outcomes.total()
@@ -140,12 +138,5 @@ def write_settings(
     }
     row: dict[str, object] = dict.fromkeys(SETTINGS, "") | known | dict(theirs)
     rest = {name: value for name, value in world.model_dump().items() if name not in row}
-    write_whole(folder / DESCRIPTION, _table([row | dict(ours) | rest]))
-
-
-def _table(rows: list[dict[str, object]]) -> str:
-    text = io.StringIO()
-    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
+    row |= dict(ours) | rest
+    write_whole(folder / DESCRIPTION, csv_text(row, [row.values()]))

@@ -12,10 +12,8 @@ DIR/faults/
 In a folder of runs there is no c01/.
 """
 
-import csv
-import io
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -29,7 +27,7 @@ from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.reading import read_json, strictly
 from roadgpt.run import Run, write_run
-from roadgpt.run.atomic import json_text, refuse_links, write_whole
+from roadgpt.run.atomic import csv_text, json_text, refuse_links, write_whole
 from roadgpt.run.folder import is_run, run_folder
 
 FOLDER = "faults"
@@ -184,8 +182,8 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis],
         ]
         for each, number in sorted(members, key=lambda pair: pair[0].name)
     ]  # fmt: skip
-    write_whole(place / FAILURES, _csv(HEAD_OF_FAILURES, of_failures))
-    write_whole(place / TABLE, _csv(HEAD, [_line(fault, looked[fault.number]) for fault in faults]))
+    write_whole(place / FAILURES, csv_text(HEAD_OF_FAILURES, of_failures))
+    write_whole(place / TABLE, csv_text(HEAD, [_line(fault, looked[fault.number]) for fault in faults]))
     return place / TABLE
 
 
@@ -201,14 +199,6 @@ def _line(fault: Fault, looked: FailureAnalysis) -> list[Any]:
 
 def _decimal(value: float | None, digits: int) -> str:
     return "" if value is None else f"{value:.{digits}f}"
-
-
-def _csv(head: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(head)
-    writer.writerows(rows)
-    return text.getvalue()
 
 
 def _written(run: Run, found: FailureAnalysis) -> dict[str, Any]:

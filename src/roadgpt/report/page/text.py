@@ -1,7 +1,5 @@
 """Writes a Page as Markdown, and its tables as CSV and LaTeX."""
 
-import csv
-import io
 from collections.abc import Sequence
 
 from roadgpt.report.page.model import (
@@ -17,6 +15,7 @@ from roadgpt.report.page.model import (
     TableCell,
     pieces_of,
 )
+from roadgpt.run.atomic import csv_text
 
 LATEX = {
     "\\": r"\textbackslash{}",
@@ -104,12 +103,10 @@ def _table(table: Table) -> str:
 
 def csv_of(table: Table) -> str:
     """Returns a table as CSV with raw values; None gives an empty field, and no text can be a formula."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(table.heads)
-    for row in table.rows:
-        writer.writerow(["" if each.value is None else unformulated(each.value) for each in row])
-    return text.getvalue()
+    values = (
+        [None if each.value is None else unformulated(each.value) for each in row] for row in table.rows
+    )
+    return csv_text(table.heads, values)
 
 
 def unformulated(value: Raw) -> Raw:

@@ -1,12 +1,11 @@
 """Turns the answers to a survey into rows, one for each answer, which are exported and analysed."""
 
-import csv
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 from roadgpt.report.page.text import unformulated
+from roadgpt.run.atomic import csv_text
 from roadgpt.study.survey.questions import CHECK, MATCHES, Part
 from roadgpt.study.survey.store import AnswerStore, code_of
 from roadgpt.study.survey.survey import Survey
@@ -128,8 +127,4 @@ def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
 
 def csv_of(rows: Sequence[AnswerRow]) -> str:
     """Returns the rows as CSV; text that a spreadsheet would run as a formula gets an apostrophe in front."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(AnswerRow._fields)
-    writer.writerows([unformulated(value) for value in row] for row in rows)
-    return text.getvalue()
+    return csv_text(AnswerRow._fields, ([unformulated(value) for value in row] for row in rows))
