@@ -20,7 +20,7 @@ from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.heights import Windows
-from roadgpt.design.layout import COARSENESS, SPARE, Complex, MapPose, PlacedPlan, PlanLine, meets, walk
+from roadgpt.design.layout import COARSENESS, SPARE, Complex, MapPose, PlacedPlan, PlanLine, meeting, walk
 from roadgpt.design.sequence import TurnSequence
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
@@ -221,7 +221,7 @@ class _Growth:
         low, high = border, self.world.map_size - border
         if min(z.real.min(), z.imag.min()) < low or max(z.real.max(), z.imag.max()) > high:
             return False
-        return not meets(z, s, way.z, way.s, self.apart)
+        return not len(meeting(z, s, way.z, way.s, self.apart)[0])
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:

@@ -34,6 +34,7 @@ TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, th
 PORTIONS = 60  # of these turns, tried one after another
 
 Complex = NDArray[np.complex128]
+Indices = NDArray[np.intp]
 
 
 class PlanLine(NamedTuple):
@@ -105,27 +106,33 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
     """
     apart = world.road_width + (world.verge if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
-    return not meets(z, s, z, s, apart)
+    return not len(meeting(z, s, z, s, apart)[0])
 
 
-def meets(z: Complex, s: Array, other: Complex, other_s: Array, apart: float) -> bool:
-    """Returns whether points of a road come closer than ``apart`` to points of its earlier part.
+def meeting(
+    z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float
+) -> tuple[Indices, Indices]:
+    """Returns the pairs of points, on a road and on its earlier part, that are closer than ``apart``.
 
-    Places at most 26 m apart along the road are not compared.
+    Points at most 26 m apart along the road do not count.
 
     Args:
         z: points as x + iy in metres, ``(n,)``.
         s: their stations in metres.
-        other: points of the earlier part, ``(m,)``.
-        other_s: their stations in metres.
-        apart: least distance in metres.
+        earlier: points of the earlier part, ``(m,)``; the same points to compare a road with itself.
+        earlier_s: their stations in metres.
+        apart: distance in metres.
+
+    Returns:
+        Indices of the points of ``z``, and of the points of ``earlier``.
     """
-    x, y = other.real, other.imag
+    x, y = earlier.real, earlier.imag
     near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
-    here = near_x & (y > z.imag.min() - apart) & (y < z.imag.max() + apart)
+    here = np.flatnonzero(near_x & (y > z.imag.min() - apart) & (y < z.imag.max() + apart))
     dx, dy = z.real[:, None] - x[here], z.imag[:, None] - y[here]
     near = dx * dx + dy * dy < apart * apart
-    return bool((near & (s[:, None] - other_s[here] > NEIGHBOURS)).any())
+    of_z, of_earlier = np.nonzero(near & (s[:, None] - earlier_s[here] > NEIGHBOURS))
+    return of_z, here[of_earlier]
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:

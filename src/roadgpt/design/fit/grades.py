@@ -81,8 +81,8 @@ def _missing(elements: RoadElements, found: Measures) -> Iterator[tuple[str, flo
         asked = element.asked.grade if element.asked else None
         seen = seen_as(element.name, elements, found) if asked else None
         if asked and seen and seen.grade not in asked:
-            off = min(INSIDE, (asked.hi - asked.lo) / 3)
-            yield element.name, float(np.clip(seen.grade, asked.lo + off, asked.hi - off)) - seen.grade
+            inner = asked.drawn_in(INSIDE, 1 / 3)
+            yield element.name, float(np.clip(seen.grade, inner.lo, inner.hi)) - seen.grade
 
 
 def _raised(element: RoadElement, by: float, world: World) -> RoadElement:

@@ -154,8 +154,7 @@ def _wish(rows: Rows, element: RoadElement, wish: Feature, peak: Array, margins:
     if not element.degrees:
         return
     if wish.degrees:
-        margin = min(ANGLE_MARGIN, 0.2 * (wish.degrees.hi - wish.degrees.lo))
-        rows.turned(members, Range(wish.degrees.lo + margin, wish.degrees.hi - margin))
+        rows.turned(members, wish.degrees.drawn_in(ANGLE_MARGIN, 0.2))
     if wish.radius:
         radius = _drawn_in(wish.radius, margins.promise)
         for index in members:

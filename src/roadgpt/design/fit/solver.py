@@ -19,14 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.design.fit.limits import Margins
+from roadgpt.design.layout import Complex, Indices, meeting
 from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import joined
 from roadgpt.road import Segment, World
 from roadgpt.road.alignment import pieces_of
-
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.intp]
 
 SPACING = 2.0  # m between points of the polyline, about
 MOST_POINTS = 500  # of a polyline, about
@@ -34,7 +32,6 @@ LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
 LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
 SPARSE = 2  # steps between the points that are held apart
 HEADINGS = np.radians([0, 5, -5, 10, -10, 15, -15, 20, -20, 30, -30, 40, -40, 45])  # of the start, in order
-NEIGHBOURS = 27.0  # m along the road: places nearer than this cannot meet
 PENALTIES = (0.05, 1.0, 20.0)  # per square metre by which a limit is broken
 STEPS = 25  # at every penalty, at most
 SETTLED = 1e-5  # relative gain
@@ -292,10 +289,7 @@ def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
     count = np.bincount(owner, minlength=len(lengths))
     s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
     moved = np.concatenate([[0], np.cumsum(aim.free[owner])])[::SPARSE]
-    x, y = z.real[::SPARSE], z.imag[::SPARSE]
-    dx, dy = x[:, None] - x, y[:, None] - y
-    near = dx * dx + dy * dy < (aim.world.road_width + aim.margins.clear) ** 2
-    near &= s - s[:, None] > NEIGHBOURS
-    near &= moved > moved[:, None]
-    one, other = np.nonzero(near)
-    return SPARSE * one, SPARSE * other
+    points, apart = z[::SPARSE], aim.world.road_width + aim.margins.clear
+    other, one = meeting(points, s, points, s, apart)
+    free = moved[other] > moved[one]
+    return SPARSE * one[free], SPARSE * other[free]
