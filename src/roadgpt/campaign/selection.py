@@ -201,9 +201,10 @@ def near(text: str) -> Sequence[str]:
     while path.parent != path and not path.parent.exists():
         path = path.parent
     try:
-        beside = {each.stem: each.name for each in sorted(path.parent.iterdir())}
+        rest = Path(text).parts[len(path.parts) :]
+        there = [each for each in sorted(path.parent.iterdir()) if not rest or each.is_dir()]
     except OSError:
         return []
-    rest = Path(text).parts[len(path.parts) :]
+    beside = {each.stem: each.name for each in there}
     alike = get_close_matches(path.stem, beside, MOST_NEAR)
     return [str(path.parent.joinpath(beside[stem], *rest)) for stem in alike]

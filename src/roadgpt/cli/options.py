@@ -63,8 +63,8 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "What reads words: model, grammar or chat.", str, "model", guard=reader_guard),
-    _run("--designer", "What designs: planner, chat or thesis.", str, "planner",
+    _run("--reader", "Reader: model, grammar or chat.", str, "model", guard=reader_guard),
+    _run("--designer", "Designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
