@@ -32,9 +32,10 @@ Kind = Literal["turn", "straight", "any"]
 
 
 class Mutation(NamedTuple):
-    """A kind of mutation, and how often it is drawn."""
+    """A kind of mutation of the elements of a road."""
 
     make: Make
+    """Returns the mutated elements."""
     weight: float
     """How often the mutation is drawn, relative to the others."""
     is_numeric: bool

@@ -24,7 +24,7 @@ TENTH = 10.0  # per percent
 def with_vertical_radii(
     elements: Sequence[Element], pace: Pace, ease: float, bumps: bool = False
 ) -> list[Element]:
-    """Returns the elements with vertical radii between straights of which one has a fixed length.
+    """Returns the elements with vertical radii in rows of straights of which at least one has a fixed length.
 
     Args:
         elements: of a draft, in driving order.
@@ -41,9 +41,9 @@ def with_vertical_radii(
 
 
 def corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
-    """Returns the elements with joints and grades of straights moved by what was measured wrong.
+    """Returns the elements with joints and grades of straights moved by the errors that were measured.
 
-    Nothing is moved between turns where the measured straights do not correspond to those of the draft.
+    Between two turns, nothing is moved if the measured straights do not correspond to those of the draft.
 
     Args:
         elements: of the draft that was measured, in driving order.

@@ -155,7 +155,7 @@ def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | N
 
 
 def boxes(z: Complex, thetas: Array) -> tuple[Array, Array, Array, Array]:
-    """Returns left and lower edge, width and height of the box around points turned by each heading.
+    """Returns left edges, lower edges, widths and heights of the boxes around turned points, ``(m,)`` each.
 
     Args:
         z: points as x + iy in metres.
