@@ -30,7 +30,7 @@ from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
 from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limits
 from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.profile import FileProfile, read_profile
+from roadgpt.road.opendrive.profile import FileProfile, checked, read_profile
 from roadgpt.road.opendrive.reversal import reversed_cubics, reversed_road
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
 from roadgpt.road.profile import Profile
@@ -151,7 +151,7 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
     def width(cubics: CubicProfile) -> CubicProfile:
         moved = carry(cubics)
-        return closed(rows_of(reversed_cubics(moved, length) if is_reversed else moved), length)
+        return checked(closed(rows_of(reversed_cubics(moved, length) if is_reversed else moved), length))
 
     def angle(cubics: CubicProfile) -> CubicProfile:
         if not is_reversed:

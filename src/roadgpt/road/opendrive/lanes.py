@@ -153,24 +153,30 @@ def read_lanes(road: Node, length: float) -> Lanes:
     nodes.sort(key=lambda node: number(node, "s"))
     offset = cubics(road.all("lanes", "laneOffset"), "s")
     angle = cubics(road.all("lateralProfile", "superelevation"), "s")
-    right, left = (
-        Lanes(side, tuple(_section(node, *names) for node in nodes), offset, angle, length)
-        for side, names in ((-1, ("right", "left")), (1, ("left", "right")))
+    starts = [number(node, "s") for node in nodes]
+    centres = [tuple(node.all("center", "lane")) for node in nodes]
+    on_right, on_left = (
+        [_elements(node, side, s) for node, s in zip(nodes, starts, strict=True)]
+        for side in ("right", "left")
     )
-    on_right, on_left = (sum(end - start for start, end in lanes.stretches()) for lanes in (right, left))
-    if on_right or on_left:
-        return right if on_right >= on_left / 2 else left
+    right, left = (
+        Lanes(side, tuple(map(_section, starts, lanes, others, centres)), offset, angle, length)
+        for side, lanes, others in ((-1, on_right, on_left), (1, on_left, on_right))
+    )
+    along, against = (sum(end - start for start, end in lanes.stretches()) for lanes in (right, left))
+    if along or against:
+        return right if along >= against / 2 else left
     kinds = {lane.attributes.get("type", "?") for node in nodes for lane in node.all("left", "lane")}
     kinds |= {lane.attributes.get("type", "?") for node in nodes for lane in node.all("right", "lane")}
     told = ", ".join(sorted(kinds)[:6]) or "none"
     raise UsageError(f"it has no lane of type driving (its lanes are: {told}); take another road")
 
 
-def _section(node: Node, side: str, other: str) -> LaneSection:
-    s = number(node, "s")
-    lanes = _elements(node, side, s)
+def _section(
+    s: float, lanes: tuple[LaneElement, ...], others: tuple[LaneElement, ...], centre: tuple[Node, ...]
+) -> LaneSection:
     first = next((i for i, lane in enumerate(lanes) if lane.kind in DRIVING), len(lanes))
-    return LaneSection(s, lanes, _elements(node, other, s), tuple(node.all("center", "lane")), first)
+    return LaneSection(s, lanes, others, centre, first)
 
 
 def _elements(section: Node, side: str, s: float) -> tuple[LaneElement, ...]:

@@ -250,10 +250,15 @@ def _joined_lane(
     if end < length:
         rows.append(constant(end, value_at(rows[-1], end)))
     parts = [MarkedLane(spans[n], lane.element.node) for n, lane in sorted(lanes.items())]
-    return JoinedLane(kind, _checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
+    return JoinedLane(kind, checked(closed(limited(rows, length, 0.0, WIDEST), length)), parts)
 
 
-def _checked(cubics: CubicProfile) -> CubicProfile:
+def checked(cubics: CubicProfile) -> CubicProfile:
+    """Returns the cubics unchanged if a road file can hold them.
+
+    Raises:
+        UsageError: There are too many.
+    """
     if len(cubics.stations) > MOST_ROWS:
         raise UsageError(
             f"one of its lanes has more than {MOST_ROWS:,} widths; cut out the part that you need"
@@ -288,7 +293,7 @@ def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
     if lanes.angle is None:
         return None, []
     rows = rows_of(lanes.angle)
-    angle = _checked(closed(limited(rows, lanes.length, -STEEPEST, STEEPEST), lanes.length))
+    angle = checked(closed(limited(rows, lanes.length, -STEEPEST, STEEPEST), lanes.length))
     if not any(any(cubic) for cubic in angle.coefficients):
         return None, []
     steepest = max(abs(each) for each in closed(rows, lanes.length).extremes())
