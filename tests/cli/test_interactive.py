@@ -8,7 +8,7 @@ from click.testing import CliRunner, Result
 
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
-from roadgpt.cli.run_job import RunJob
+from roadgpt.cli.commands.run import RunJob
 from roadgpt.road import World
 from roadgpt.run import Setup
 

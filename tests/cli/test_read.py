@@ -9,7 +9,7 @@ from click.testing import CliRunner, Result
 from roadgpt.brief import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.cli.app import app
-from roadgpt.cli.run_job import understood
+from roadgpt.cli.commands.run import understood
 
 WORDS = "two left turns uphill, then a straight of 60 metres"
 PLAN = "turn x2 left up; straight len=60"

@@ -6,9 +6,9 @@ import sys
 import click
 
 from roadgpt import stopping
+from roadgpt.cli.commands import run
 from roadgpt.cli.commands.edit import edit_road
 from roadgpt.cli.option_types import ROADS
-from roadgpt.cli.run_job import carry_out
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
@@ -47,7 +47,6 @@ Here all options have their defaults, or what your settings say. 'roadgpt run' t
 def converse() -> None:
     """Asks the user for descriptions, makes their roads and changes them, until the user leaves."""
     from roadgpt.brief import read
-    from roadgpt.cli.commands.run import usual_job
 
     _enable_editing()
     click.echo(f"{HELLO}\n")
@@ -60,7 +59,7 @@ def converse() -> None:
             if roads is None:
                 break
             screen = Screen(roads)
-            carry_out(usual_job(words, roads), screen)
+            run.carry_out(run.usual_job(words, roads), screen)
             if not _changed(screen):
                 break
         except RoadGPTError as error:

@@ -161,7 +161,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
 def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
     """Prints how the description is read, how many cells there are, and the folder."""
     from roadgpt.campaign.record import Record
-    from roadgpt.cli.run_job import understood
+    from roadgpt.cli.commands.run import understood
 
     with Record.opened(out) as record:
         cells = record.cells()

@@ -42,7 +42,7 @@ def command(
     roadgpt read "drei Kurven, dann 80 m geradeaus bergab" --table
     roadgpt read "a road" --alternatives 3
     """
-    from roadgpt.cli.run_job import understood
+    from roadgpt.cli.commands.run import understood
 
     world = options.world_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
@@ -81,7 +81,7 @@ def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:
 
 def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
     """Yields the likely readings with their chances, and a warning if none is sure."""
-    from roadgpt.cli.run_job import SURE, reading
+    from roadgpt.cli.commands.run import SURE, reading
 
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
     whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant

@@ -1,15 +1,57 @@
 """``roadgpt run``: designs, checks, drives, judges and draws roads from a description."""
 
-from typing import Any
+import secrets
+import shlex
+import sys
+from contextlib import redirect_stdout
+from dataclasses import dataclass
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli import options
+from roadgpt.cli.crash import crashes_go_to
+from roadgpt.cli.junit import junit_writer
+from roadgpt.cli.next_steps import lines, of_rows
 from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import ROADS
-from roadgpt.cli.run_job import RunJob, carry_out
+from roadgpt.cli.result_row import spending
 from roadgpt.cli.screen import Screen
+from roadgpt.cli.streams import warn
+
+if TYPE_CHECKING:
+    from roadgpt.brief.model import Brief
+    from roadgpt.campaign import Campaign
+    from roadgpt.report import Format, Scale
+    from roadgpt.road import World
+    from roadgpt.run import Setup
+    from roadgpt.run.folder import Draw
+
+SURE = 0.6  # confidence under which a reading is right less often than two times in three
+SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be typed again
+
+
+@dataclass(frozen=True)
+class RunJob:
+    """A description from which to make roads, with all options."""
+
+    words: str
+    roads: int
+    world: "World"
+    setup: "Setup"
+    seed: int | None = None
+    out: Path | None = None
+    axes: "Scale" = "equal"
+    pictures: "tuple[Format, ...]" = ("png",)
+    """Formats of the pictures of each run; empty: no pictures are drawn."""
+    formats: tuple[str, ...] = ()
+    """Formats of the road files that are written into each run."""
+    junit: Path | None = None
+    """The JUnit file to write; None: none is written."""
+
 
 OPTIONS = (
     Option("-n --roads", "Number of roads.", ROADS, 1),
@@ -70,3 +112,102 @@ def usual_job(words: str, roads: int) -> RunJob:
     for name in ("words", "as_json", "quiet", "verbose"):
         values.pop(name)
     return _job_of(words, values)
+
+
+def carry_out(job: RunJob, screen: Screen) -> None:
+    """Interprets the description, makes its roads, and prints each road when it is finished.
+
+    Raises:
+        RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
+        KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
+    """
+    from roadgpt.campaign import campaign
+    from roadgpt.chat import Meter
+    from roadgpt.run import brief_of
+
+    beside = _beside(job)
+    meter = Meter.of(job.setup.chat)
+    brief = brief_of(job.words, job.world, job.setup, meter)
+    seed = _seed(job)
+    with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
+        work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, beside, meter)
+    screen.junit = junit_writer(job.junit, work.request)
+    screen.say(understood(brief, job.world.map_size))
+    screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
+    crashes_go_to(work.folder)
+    screen.say(f"seed {seed}, into {work.folder}")
+    if work.is_complete:
+        screen.say(f"all {work.roads} roads are there")
+    elif work.kept:
+        screen.say(f"{len(work.kept)} roads were finished before; continuing")
+    _watch(work, job, screen)
+
+
+def _seed(job: RunJob) -> int:
+    """Returns the seed that was given, or that of the folder, or a new one."""
+    from roadgpt.run import seed_in
+
+    if job.seed is not None:
+        return job.seed
+    there = seed_in(job.out) if job.out is not None else None
+    return secrets.randbelow(SEEDS) if there is None else there
+
+
+def understood(brief: "Brief", map_size: float = inf) -> str:
+    """Returns the interpretation of a description as text, with a warning if it is uncertain, and remarks
+    on what does not fit on the map.
+    """
+    from roadgpt.brief import remarks
+
+    told = f"I read this as: {reading(brief)}"
+    if brief.confidence < SURE:
+        told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
+    return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size))])
+
+
+def reading(brief: "Brief") -> str:
+    """Returns the interpretation of a description as text, and which of its words were not understood."""
+    from roadgpt.brief import sentence
+
+    said = sentence(brief).removesuffix(".")
+    told = f"{said[:1].lower()}{said[1:]}"
+    if brief.unused:
+        told += "; not understood: " + ", ".join(f"'{word}'" for word in brief.unused)
+    return told
+
+
+def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
+    """Shows the roads of a folder, starting with those that were there before, and then their table."""
+    try:
+        screen.runs(work.all_runs(), work.folder)
+    except KeyboardInterrupt:
+        command = ["roadgpt", "run", work.request.words, "-n", str(work.roads), "--out", str(work.folder)]
+        warn(f"continue with: {shlex.join(command)} and the same options")
+        raise
+    finally:
+        screen.close()
+        if work.meter.spent.calls:
+            screen.say(f"language model: {spending(work.meter.spent)}")
+        if screen.rows:
+            screen.say(f"tests and tables: {work.folder}")
+            is_whole = len(screen.rows) == work.roads
+            for line in lines(of_rows(work.request, work.roads, screen.rows) if is_whole else None):
+                screen.say(line)
+            if job.pictures:
+                kind = job.pictures[0]
+                screen.say(
+                    f"pictures: {work.folder / f'overview.{kind}'} and {work.folder / 'runs'}/*/*.{kind}"
+                )
+
+
+def _beside(job: RunJob) -> "Draw | None":
+    """Returns the function that puts pictures and road files into the folder of each run."""
+    draw = options.drawing_of(job.pictures, job.axes)
+    if not job.formats:
+        return draw
+    from roadgpt.export import exporter_of
+    from roadgpt.run.exporting import Exporting
+
+    for name in job.formats:
+        exporter_of(name)
+    return Exporting(job.formats, warn, draw)
