@@ -245,6 +245,19 @@ def test_turns_that_are_to_lie_apart_have_a_straight_between_them() -> None:
     assert new.features[2].length == pytest.approx(40, abs=3)
 
 
+def test_what_is_removed_cannot_be_changed_as_well() -> None:
+    with pytest.raises(EditError, match="turn 1 is to go and to be changed at once"):
+        changed("h14", "remove the first turn and make the first turn sharper")
+
+
+def test_all_straights_get_shorter_where_one_of_them_can_hardly_be() -> None:
+    old, new = seen(ROADS["r12"]), seen(changed("r12", "make all straights shorter"))
+    assert len(new.straights) == len(old.straights)
+    for one, other in zip(old.straights, new.straights, strict=True):
+        assert other.length <= one.length + 0.6
+    assert sum(each.length for each in new.straights) < 0.8 * sum(each.length for each in old.straights)
+
+
 def test_the_two_tightest_are_two() -> None:
     old, new = seen(ROADS["r12"]).turns, seen(changed("r12", "widen the two tightest turns a bit")).turns
     wider = {i for i, (a, b) in enumerate(zip(old, new, strict=True)) if b.radius > 1.05 * a.radius}

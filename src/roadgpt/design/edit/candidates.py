@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from math import inf
 
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import KINDS, PERCENT_SLACK, Range
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, PERCENT_SLACK, Range
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import (
@@ -65,7 +65,10 @@ def change_candidates(
     if change.bound:
         elements = [element for element in elements if _is_beyond(change, element, found)]
         if change.what == "slope" and elements:
-            return _bounded_slopes(change, elements)
+            up = sum(element.incline * element.length for element in elements) >= 0
+            most = change.to or 0.0
+            slope = _between(0, most) if change.bound < 0 else _between(most, inf, 1 if up else -1)
+            return ((SlopeOfAll(frozenset(element.name for element in elements), slope),),)
     is_road = change.target is not None and change.target.noun == "road"
     match change.what:
         case "angle" | "radius" | "shape":
@@ -151,12 +154,14 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]
     aim = _aim(change, d if change.what == "angle" else r)
     if aim is not None:
         return [_bent_to(change, element, aim, world)]
-    if change.what == "radius" and not (change.more < 0 and 0.93 * r < least):
-        aim = r * (1 + ((TIGHTER if change.more < 0 else WIDER) - 1) * min(change.dose, 1.4))
-        radius = _towards(r, min(max(aim, min(least, r)), max(WIDEST, r)))
-        return [Adjust(element, near(d, 3.0), radius)]
-    if change.what == "radius":  # as tight as may be: then it turns further
+    if change.what == "radius" and change.more < 0 and 0.93 * r < least:  # then it turns further
         return [Adjust(element, _towards(d, 1.25 * d), near(r, 0.12 * r))]
+    if change.what == "radius":
+        aim = r * (1 + ((TIGHTER if change.more < 0 else WIDER) - 1) * min(change.dose, 1.4))
+        aim = min(max(aim, min(least, r)), max(WIDEST, r))
+        if abs(aim / r - 1) > 0.045:
+            return [Adjust(element, near(d, 3.0), _towards(r, aim))]
+        raise _cannot(d, r)
     further, wider = SHARPER if change.more > 0 else GENTLER
     degrees = d * (1 + (further - 1) * change.dose)
     if change.more > 0:
@@ -166,11 +171,15 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]
     aim = r * max(1 + (wider - 1) * change.dose, 0.4)
     aim = min(max(aim, min(least, r)), max(WIDEST, r))
     if degrees > MOST_ANGLE or (abs(degrees - d) <= 2.5 and abs(aim / r - 1) <= 0.045):
-        where = f"the turn of {d:.0f} degrees with a radius of {r:.0f} m"
-        raise EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
+        raise _cannot(d, r)
     if abs(degrees - d) >= SEEN_STEP:
         return [Adjust(element, _towards(d, degrees), _not_away(r, aim))]
     return [Adjust(element, _not_away(d, degrees), _towards(r, aim))]
+
+
+def _cannot(degrees: float, radius: float) -> EditError:
+    where = f"the turn of {degrees:.0f} degrees with a radius of {radius:.0f} m"
+    return EditError(f"{where} cannot be made so; a turn has {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees")
 
 
 def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> EditStep:
@@ -246,7 +255,8 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
     if aim is None:
         wished = max(wished, before + 15 if change.more > 0 else 0.0, min(SEEN + 1, before))
         room = _towards(before, wished).room
-        return [Adjust(element, length=Wanted(wished, Range(max(room.lo, SEEN), max(room.hi, SEEN))))]
+        room = Range(max(min(room.lo, wished - 0.5), LEAST_STRAIGHT), max(room.hi, wished + 0.5))
+        return [Adjust(element, length=Wanted(wished, room))]
     if wished < SEEN - 0.6:
         raise EditError(
             f"a straight of {max(wished, 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
@@ -388,13 +398,3 @@ def _times(times: float) -> Callable[[float], float]:
 def _between(low: float, high: float, sign: int = 0) -> Callable[[float], float]:
     """Brings inclines between two sizes; uphill or downhill where the sign is 1 or -1."""
     return lambda incline: (sign or (1 if incline >= 0 else -1)) * min(max(abs(incline), low), high)
-
-
-def _bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> tuple[EditCandidate, ...]:
-    """Slopes within the bound of a change."""
-    assert change.to is not None
-    names = frozenset(element.name for element in elements)
-    if change.bound < 0:
-        return ((SlopeOfAll(names, _between(0, change.to)),),)
-    up = sum(element.incline * element.length for element in elements) >= 0
-    return ((SlopeOfAll(names, _between(change.to, inf, 1 if up else -1)),),)

@@ -16,6 +16,7 @@ from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.fit.grades import with_grade
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.design.sequence import both
+from roadgpt.errors import UsageError
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
@@ -72,8 +73,8 @@ class Adjust:
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
-        if now.kind != self.element.kind:  # another step has made it a straight
-            return now
+        if now.kind != self.element.kind:
+            raise UsageError(f"{self.element.name} is to go and to be changed at once")
         if self.grade:
             now = with_grade(now, self.grade.aim, world)
         if self.element.is_turn:
