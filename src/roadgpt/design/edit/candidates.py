@@ -22,6 +22,7 @@ from roadgpt.design.edit.steps import (
     Wanted,
     near,
     straight,
+    with_milder,
 )
 from roadgpt.design.elements import least_radius
 from roadgpt.design.road_elements import RoadElement
@@ -33,9 +34,9 @@ TIGHTER, WIDER = 0.7, 1.4  # shares of the radius
 LONGER, SHORTER = 1.4, 0.65  # shares of a length
 ROAD_LONGER, ROAD_SHORTER = 1.3, 0.75  # shares of the length of a road
 FLIPPED = Range(0.65, 1.25)  # shares of angle and radius that a turn may have when it goes the other way
-CLEARLY, FURTHER = 0.6, 1.6  # shares of a change that was only named ('sharper') that will do
+CLEARLY, FURTHER = 0.45, 1.6  # shares of a change that was only named ('sharper') that will do
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
-SEEN_STEP = 8.0  # degrees: a smaller change of angle is hardly seen
+SEEN_STEP = 9.0  # degrees: a smaller change of angle is hardly seen
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
 MOST_ANGLE = 210.0
@@ -117,7 +118,7 @@ def _each(
     elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[EditStep]]
 ) -> tuple[EditCandidate, ...]:
     """All elements alike: the first way of each, the second way of each, ..."""
-    rows = [row for row in (list(ways(element)) for element in elements) if row]
+    rows = [row for row in (with_milder(ways(element)) for element in elements) if row]
     if not rows:
         return ()
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
@@ -307,9 +308,8 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
 
 def _straightened(element: RoadElement) -> list[EditStep]:
     """A straight in the place of a turn, as long as the turn was if there is room for it."""
-    if element.kind != "turn" or element.seen is None:
-        return []
-    return [Become(element, (straight(element.length, element.incline),))]
+    bends = element.kind == "turn" and element.seen is not None
+    return [Become(element, (straight(element.length, element.incline),))] if bends else []
 
 
 def _slopes(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:

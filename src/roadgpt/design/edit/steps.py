@@ -51,6 +51,10 @@ class Wanted(NamedTuple):
     aim: float
     room: Range
 
+    def nearer_to(self, now: float) -> "Wanted":
+        """Returns the range with an aim halfway to its end that is nearest to ``now``."""
+        return Wanted((self.aim + min(max(now, self.room.lo), self.room.hi)) / 2, self.room)
+
 
 def near(aim: float, slack: float) -> Wanted:
     """Returns a value that may be missed by ``slack``."""
@@ -67,6 +71,18 @@ class Adjust:
     length: Wanted | None = None
     grade: Wanted | None = None
     """Percent."""
+
+    def milder(self) -> "Adjust":
+        """Returns the step with aims that are nearer to what the element has now, in the same ranges."""
+        seen = self.element.seen
+        if seen is None:
+            return self
+        return replace(
+            self,
+            degrees=self.degrees and self.degrees.nearer_to(seen.degrees),
+            radius=self.radius and self.radius.nearer_to(seen.radius),
+            length=self.length and self.length.nearer_to(seen.length),
+        )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements, of which this one is bent, stretched or sloped, and is asked to be so."""
@@ -110,6 +126,11 @@ class Adjust:
         if most * more > MAX_TURN >= most:
             return rewritten(now, turn * more, seen.radius * wider)
         return now.with_segments(scaled(s, more, wider) for s in now.segments)
+
+
+def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
+    """Returns the steps; a single adjustment is followed by a milder one in the same ranges."""
+    return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
