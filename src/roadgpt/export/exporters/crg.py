@@ -21,6 +21,8 @@ STEP = 0.1  # m between cross sections
 MOST = 200_000  # cross sections; longer roads have a wider step
 RULER = "$" * 72  # ends the header
 NOTHING = "*" * 20  # a field without a value
+ROUNDS = 3  # of the iteration that finds the station of a point beside the centre line
+CLOSEST = 0.05  # share of the radius; closer to the centre of a bend, the iteration takes this
 ROOM = 0.99  # share of the radius, so that the surface does not reach the centre of a bend
 
 
@@ -68,9 +70,13 @@ def _heights(road: Road, points: Array, t: float) -> Array:
     """Returns the heights of the surface beside the points of the centre line, ``t`` metres to their left."""
     if road.profile is None or road.profile.superelevation_angle is None:
         return points[:, 2]
-    heading = road.heading(np.linspace(0.0, road.length, len(points)))
-    x, y = points[:, 0] - t * np.sin(heading), points[:, 1] + t * np.cos(heading)
-    return finite(road.at(*road.locate(x, y))[:, 2])
+    s = np.linspace(0.0, road.length, len(points))
+    room = np.maximum(1 - road.curvature(s) * t, CLOSEST)
+    at = s
+    for _ in range(ROUNDS):  # on a grade, points of an inclined surface are shifted along the road
+        angle, pitch = road.profile.superelevation(at), np.arctan(road.grade(at))
+        at = s + t * np.tan(angle) * np.sin(pitch) / room
+    return finite(road.at(at, t / np.cos(road.profile.superelevation(at)))[:, 2])
 
 
 def _header(length: float, step: float, points: Array, headings: Array, across: _Across) -> list[str]:
