@@ -14,7 +14,6 @@ left_out    lists the contents of the file that a Road cannot represent
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -30,7 +29,7 @@ from roadgpt.road.opendrive.joins import KINK, SampledLine, misses, turns_back
 from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, speed_limits
 from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
-from roadgpt.road.opendrive.profile import FileProfile, checked, read_profile
+from roadgpt.road.opendrive.profile import Carry, FileProfile, checked, read_profile
 from roadgpt.road.opendrive.reversal import reversed_cubics, reversed_road
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
 from roadgpt.road.profile import Profile
@@ -47,9 +46,6 @@ SAME_SPEED = 0.1  # m/s
 MOST_SPANS = 3  # that are listed in a remark
 MOST_STATIONS = 10_000  # between which stations of file and Road are interpolated
 PLACES = 1_000  # at which the spline is compared with the line, and at which widths are sampled
-
-Carry = Callable[[CubicProfile], CubicProfile]
-"""A function that converts cubics over the stations of the file to stations of the Road."""
 
 
 @dataclass(frozen=True)
