@@ -44,9 +44,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Road, Segment, World, build
 from roadgpt.road.design import MAX_TURN
 
-MOST_SEGMENTS = (
-    60  # that are free, in a list that is fitted; on more, a road of a map's size is no longer a list
-)
+MOST_SEGMENTS = 60  # that are free; on a road with more, none is fitted
 ROUNDS = 2  # of solving: the second with the transitions that came of the first
 TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
 SHORTEST_TRANSITION = 0.1  # m
