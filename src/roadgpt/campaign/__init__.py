@@ -4,8 +4,8 @@
                                                             |
                                                         Store (one file)
 
-It has two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers that run
-them. ``begin`` makes a campaign's folder; ``work`` runs the tests that have not ended, also after an
+Campaigns have two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers
+that run them. ``begin`` makes a campaign's folder. ``work`` runs the tests that have not ended, also after an
 interruption. ``status_of`` returns the progress; ``read_trace``, ``kept_run`` and ``run_again`` return one
 test.
 """

@@ -23,12 +23,12 @@ ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many co
 
 
 class Predictions(NamedTuple):
-    """The surrogate's predictions for candidates, one row per tree; both arrays are ``(trees, n)``."""
+    """The surrogate's predictions for n candidates, as arrays ``(trees, n)`` with one row per tree."""
 
     margins: Array
     """Predicted margins, in metres; negative for a predicted failure."""
     cells: NDArray[np.intp]
-    """Predicted cells of the feature map."""
+    """Predicted cell numbers of the candidates on the feature map."""
 
 
 def select(
@@ -87,7 +87,7 @@ def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], leas
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
-    """Stacks shapes into one PlanShape whose arrays have the shapes along a new first axis."""
+    """Stacks several shapes into one PlanShape; the new first axis of its arrays counts the shapes."""
     return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 

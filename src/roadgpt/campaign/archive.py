@@ -55,7 +55,7 @@ class Archive:
         Args:
             number: number of the test.
             features: the features of the road and its drive, by name.
-            quality: how good the test is, the larger the better; of equally good tests the first is kept.
+            quality: how good the test is; larger is better. Of equally good tests the first is kept.
             failed: whether the car left its lane.
         """
         place = np.array([features.get(axis, math.nan) for axis in self.axes])
@@ -77,7 +77,8 @@ class Archive:
 
 
 class Grid:
-    """A map with equally wide cells along each axis; values beyond an end belong to the outermost cell."""
+    """A map with equally wide cells along each axis; values outside its range belong to the outermost cell.
+    """
 
     def __init__(self, bounds: Array, cells: int) -> None:
         """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""

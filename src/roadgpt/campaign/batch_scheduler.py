@@ -1,5 +1,5 @@
-"""Schedules the batches of one cell: when the next batch is requested from the cell's generator, and which
-results the generator has received before.
+"""Decides when the next batch of tests of a cell is requested from the cell's generator, and passes it the
+results.
 """
 
 from bisect import bisect
@@ -21,9 +21,9 @@ GIVE_UP = 3  # roads that cannot be designed, before any that could
 class BatchScheduler:
     """Requests batches of tests from the generator of one cell.
 
-    Batch k is requested once all tests of batch k - 2 have ended. The generator has then received the results
-    of batches 0 to k - 2, and no later ones. In a cell whose tests run one after another, a batch is one
-    test, which is requested once all earlier tests have ended.
+    Batch k is requested once all tests of batch k - 2 have ended. By then the generator has received the
+    results of batches 0 to k - 2, and no others. In a cell whose tests run one after another, every batch is
+    one test, requested once all earlier tests have ended.
     """
 
     def __init__(self, cell: Cell, store: Store) -> None:
@@ -69,13 +69,13 @@ class BatchScheduler:
         return limit is not None and self.seconds >= limit
 
     def ended(self, batch: int) -> None:
-        """Counts one more test of a batch as ended."""
+        """Counts one more test of the given batch as ended."""
         self.batches[batch].left -= 1
         if not self.batches[batch].left:
             self._unfinished.remove(batch)
 
     def close(self, why: str) -> None:
-        """Closes the cell for a reason, which is stored: no further batch is requested."""
+        """Closes the cell, so that no further batch is requested, and stores the reason."""
         self._store.close_cell(self.cell.name, why)
         self.closed = why
 
@@ -134,7 +134,8 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of the batches whose designs a draft of this batch has to differ from."""
+        """Returns the numbers of the earlier batches; a draft in this batch has to differ from their designs.
+        """
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)

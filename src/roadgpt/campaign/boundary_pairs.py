@@ -1,7 +1,7 @@
-"""Pairs of similar roads at the boundary: on one the car kept its lane, on the other it failed.
+"""Pairs of similar roads at the boundary of failure: the car passed on one of them and failed on the other.
 
-Two roads correspond if they have the same sequence of left turns, right turns and straights. Then each number
-of one road can be moved towards that of the other, and a road half-way between them can be driven next.
+Two roads correspond if they have the same sequence of left turns, right turns and straights. Then a road
+half-way between the two can be made, by averaging each length, angle, radius and slope.
 """
 
 from collections.abc import Sequence
@@ -16,13 +16,15 @@ from roadgpt.design.elements import elements_of
 
 
 class Measure(NamedTuple):
-    """A numeric property of a turn or a straight, such as a radius, used to compare two of them."""
+    """A numeric property of a turn or a straight, such as its radius, by which two turns or straights are
+    compared.
+    """
 
     field: str
     called: str
     unit: str
     scale: float
-    """The difference in this property that counts as a distance of 1."""
+    """The difference in this property that counts as a distance of 1 between two roads."""
 
 
 GRADE = Measure("incline", "grade", " %", 1.0)
@@ -64,7 +66,7 @@ def distance(one: Elements, other: Elements) -> float:
 
 def weightiest(kept: Elements, lost: Elements) -> str:
     """Returns the largest difference between corresponding roads as text, such as 'turn 2: radius 15.4 m,
-    then 14.9 m'; empty if there is none.
+    then 14.9 m'; returns '' if they do not differ.
     """
     most, found = 0.0, ""
     turns = straights = 0
@@ -106,7 +108,7 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns the pairs as ``pairs_of`` does, from roads by the number of their test."""
+    """Returns the same pairs as ``pairs_of``, from a dictionary of roads by the number of their test."""
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(roads[number]), []).append(number)

@@ -32,12 +32,12 @@ class BudgetAllocator:
         )
 
     def all(self) -> Allowance:
-        """Returns an allowance of all tokens and money that are left."""
+        """Returns an allowance with all remaining tokens and money."""
         tokens, cost = self._left()
         return Allowance(None if tokens is None else int(tokens), cost)
 
     def give(self, key: int, allowance: Allowance) -> None:
-        """Reserves the allowance of a test that begins; ``key`` identifies the test."""
+        """Reserves an allowance for a test that is about to start; ``key`` identifies the test."""
         if self.is_bounded:
             self._given[key] = allowance
 

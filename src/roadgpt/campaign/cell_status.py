@@ -32,12 +32,13 @@ class CellStatus:
     max_oob: float | None
     """Largest share, 0 to 1, of the car that was outside its lane in any passed test."""
     beyond: float | None
-    """Largest distance beyond the lane marking in any passed test, metres; None in stores of earlier
-    versions.
+    """Largest distance beyond the lane marking in any passed test, metres;
+
+    None if an earlier version of RoadGPT wrote the store.
     """
     goal: Goal | None
     closed: str | None
-    """Why the cell ended before its number of tests was reached; None otherwise."""
+    """Why the cell ended before its number of tests was reached; None if it did not."""
 
     @property
     def done(self) -> int:

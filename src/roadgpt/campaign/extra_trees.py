@@ -18,7 +18,7 @@ CONSTANT = 1e-7  # a feature that varies by less within a node splits nothing
 
 
 class Forest(NamedTuple):
-    """Regression trees, stored as arrays with one row per node; the rows of the roots come first."""
+    """Regression trees, stored as arrays with one row per node; the root nodes come first."""
 
     feature: NDArray[np.intp]
     """The feature ``(nodes,)`` at which each node splits; -1 for a leaf."""

@@ -1,4 +1,4 @@
-"""Campaigns whose tests are written into folders of runs, as ``roadgpt run`` and studies have them."""
+"""Campaigns that write their tests into folders of runs, such as those of ``roadgpt run`` and of studies."""
 
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import ExitStack, closing
@@ -32,16 +32,17 @@ def work_in(
     workers: int = 0,
     with_earlier: bool = False,
 ) -> Generator[tuple[str, FinishedRun], None, None]:
-    """Runs the tests that folders of runs lack; the work happens while the caller iterates.
+    """Runs the missing tests of folders of runs; the work happens while the caller iterates.
 
     If no road can be designed for a folder, its ``failure`` gives the reason, and nothing is left in it.
 
     Args:
-        home: the folder that messages name, and where workers write their log.
+        home: the folder that messages refer to, and in which workers write their log.
         folders: the folders, by name.
         draw: draws pictures into the folders; None: no pictures.
         meter: counts the use of language models, if the tests run in this process; None: a new one.
-        workers: number of worker processes, which do not change the files; 0: the tests run in this process.
+        workers: number of worker processes, on which the content of the files does not depend; 0: the tests
+            run in this process.
         with_earlier: whether to yield first the tests that earlier sessions ran.
 
     Yields:
@@ -183,7 +184,7 @@ def campaign(
 
     Raises:
         BriefError: the words cannot be read.
-        UsageError: the folder holds something other than this campaign, or a plug-in is not installed.
+        UsageError: the folder contains something other than this campaign, or a plug-in is not installed.
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)

@@ -1,7 +1,8 @@
 """The store of campaigns whose tests are written into folders of runs: one folder for each cell.
 
-The folders are the truth, and any of them can be copied alone. The tables of ``campaign.store`` are made of
-them in memory, so that one engine schedules, resumes and counts both kinds of campaigns.
+The folders are the only record of the tests, and each can be copied on its own. The tables of
+``campaign.store`` are built from the folders in memory, so that the same code schedules, resumes and counts
+both kinds of campaigns.
 """
 
 import sqlite3
@@ -47,7 +48,7 @@ class FolderStore(Store):
 
     @property
     def how_to_continue(self) -> str:
-        """How to continue the campaign, as the end of a sentence."""
+        """Text at the end of an error message that explains how to continue the campaign."""
         return f"continue with the same command and --out {self.folder}"
 
     def cell(self, name: str) -> Cell:
@@ -55,7 +56,9 @@ class FolderStore(Store):
         return self._cells[name]
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Writes the files of tests that have ended, each as soon as a road of its cell could be designed."""
+        """Writes the files of tests that have ended; a test without a road is written once another test of
+        its cell has one.
+        """
         super().keep(ended, *rest)
         for name, one in ended:
             if not isinstance(one, FinishedRun):  # its workers died, perhaps over its pictures

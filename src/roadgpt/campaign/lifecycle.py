@@ -49,9 +49,9 @@ def begin(plan: Plan, folder: Path) -> bool:
 
     Raises:
         UsageError: the plan cannot be carried out, or the folder holds something else.
-        DriverError: a driver hung while it was made.
+        DriverError: a driver did not finish its constructor in time.
         BriefError: a description cannot be read.
-        ChatError: a language model that reads them could not be asked.
+        ChatError: the language model that reads the descriptions did not answer.
     """
     plan.check()
     _admit(plan)
@@ -161,7 +161,7 @@ def work(
     Raises:
         UsageError: there is no campaign, or another process is working on it, or a plug-in is not installed.
         ChatError: a language model could not be asked, or a limit is reached; finished tests are stored.
-        RoadGPTError: the system refuses to write, or there are no workers.
+        RoadGPTError: a file cannot be written, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)
     if not (folder / STORE).is_file():

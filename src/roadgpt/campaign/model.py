@@ -27,11 +27,14 @@ U = TypeVar("U")
 
 
 class Budget(Frozen):
-    """The limits of a cell; the cell is done when it reaches either of them."""
+    """The limits of a cell; the cell ends as soon as it reaches one of them."""
 
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """Wall-clock seconds over all sessions, after which no further batch is begun; None: no limit."""
+    """Wall-clock seconds, summed over all sessions, after which no further batch is started;
+
+    None: no limit.
+    """
 
     @property
     def most(self) -> int:
@@ -66,13 +69,13 @@ class Result:
     number: int
     """Number of the test in its cell, from 1."""
     batch: int
-    """Number of its batch, from 0."""
+    """Number of the test's batch, from 0."""
     proposal: Proposal
     outcome: Outcome
     description: str
     """One sentence that describes the outcome."""
     design: Design | None = None
-    """The road that was driven; None where no road could be designed."""
+    """The design of the road; None if no road could be designed."""
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""
     margin: float | None = None
@@ -88,7 +91,7 @@ class Result:
     side: Side | None = None
     cause: Cause | None = None
     features: Mapping[str, float] = field(default_factory=dict)
-    """Features of road and drive by name, see ``run.features.features_of`` and
+    """Features of the road and of the drive, by name; see ``run.features.features_of`` and
     ``campaign.behaviour.behaviour_of``.
     """
 

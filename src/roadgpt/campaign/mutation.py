@@ -61,7 +61,9 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the start of one road followed by the end of another, each cut at a random element."""
+    """Returns the first elements of one road followed by the last elements of another; each road is cut at a
+    random element.
+    """
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
     return (one[:first] + other[last:])[:MOST_ELEMENTS]
 
@@ -72,7 +74,7 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
     Args:
         one: the road that is returned for share 0.
         other: the road that is returned for share 1.
-        share: position between the two roads, 0 to 1.
+        share: position between the two roads: 0 gives ``one``, 1 gives ``other``.
     """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None

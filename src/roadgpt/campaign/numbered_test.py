@@ -8,7 +8,7 @@ from typing import NamedTuple
 class NumberedTest(NamedTuple):
     """Cell and number of a test.
 
-    As text it is the part after the folder's name in a command: ``c01/17`` in ``roadgpt view hard/c01/17``.
+    Its text is the part after the folder's name in a command: ``c01/17`` in ``roadgpt view hard/c01/17``.
     """
 
     cell: str

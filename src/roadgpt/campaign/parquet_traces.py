@@ -20,7 +20,7 @@ def read_parquet(path: Path, cell: str, number: int) -> tuple[dict[str, Any], di
 
     Raises:
         UsageError: pyarrow is not installed.
-        Exception: whatever pyarrow, json and numpy raise where the file is broken or lacks the drive.
+        Exception: the file is broken or lacks the drive; the type of error is that of pyarrow, json or numpy.
     """
     try:
         import pyarrow.parquet as pq

@@ -30,10 +30,10 @@ class Plan(Frozen):
     """The settings of a campaign."""
 
     prompts: Names = ("",)
-    """Descriptions; an empty one where the generator needs none."""
+    """Descriptions of roads; an empty text if the generator needs no description."""
     designers: Names = ("planner",)
     drivers: Names = ("beamng_like",)
-    """Names, or FILE.py:CLASS."""
+    """Names of installed drivers, or ``FILE.py:CLASS``."""
     simulators: Names = ("mujoco",)
     generators: Names = (WITHOUT_GOAL,)
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
@@ -50,7 +50,7 @@ class Plan(Frozen):
     world: World = World()
     chat: ChatSettings | None = None
     patience: Annotated[float, Field(gt=0, allow_inf_nan=False)] = PATIENCE
-    """Seconds for one test; a test that takes longer is taken to hang."""
+    """Longest time for one test, seconds; a test that takes longer is treated as hanging."""
 
     def essence(self) -> "Plan":
         """Returns the Plan without the settings that may change when the campaign is resumed."""
@@ -58,7 +58,9 @@ class Plan(Frozen):
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
     def came_with(self, file: object) -> "Plan":
-        """Returns the Plan as read from a file that may be somebody else's; see ``Setup.came_with``."""
+        """Returns the Plan, marked as read from a file that somebody else may have written; see
+        ``Setup.came_with``.
+        """
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)
         return self.model_copy(update={"chat": chat, "drivers": drivers})
@@ -99,12 +101,11 @@ class Plan(Frozen):
             yield Request(words=words, seed=seed, world=self.world, setup=setup), generator
 
     def check(self) -> None:
-        """Checks what can be checked without running anything.
+        """Checks the plan without running a test.
 
         Raises:
-            UsageError: a plug-in is not installed, there are too many cells or two alike, there is no
-                limit, a
-                search may not drive, or no generator searches for the goal.
+            UsageError: a plug-in is not installed, there are too many cells or two equal ones, there is no
+                limit, a search has no driver, or no generator supports the goal.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -139,7 +140,7 @@ class Plan(Frozen):
         plugins.find("readers", self.reader.partition(":")[0])
 
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
-        """Returns all cells; ``briefs`` holds what was read from each prompt."""
+        """Returns all cells; ``briefs`` holds the Brief that was read from each prompt."""
         made = [*self.requests()]
         wide = max(2, len(str(len(made))))
         return [

@@ -1,4 +1,6 @@
-"""Reads plans of campaigns from TOML files; an error names the key and says how to correct it."""
+"""Reads plans of campaigns from TOML files; an error message names the wrong key and explains how to correct
+it.
+"""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -60,7 +62,7 @@ class WorldTable(_Strict):
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
     lane_width_end: Annotated[float, Field(ge=2, le=10)] | None = None
     bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=12)] = "none"
-    """In percent, if it is a number."""
+    """Superelevation of bends: ``"none"``, ``"auto"`` for the values of CD 109, or a number in percent."""
     verge: NotNegative = 3.0
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     speed_limit_kmh: Annotated[float, Field(ge=5, le=300)] = 70.0
@@ -100,7 +102,7 @@ class PlanTable(_Strict):
 
 
 class PlanFile(BaseModel):
-    """The content of a plan file: the plan, and the settings of language models that it names."""
+    """The content of a plan file: the plan, and the settings of the language models."""
 
     plan: Plan
     chat: dict[str, Any]

@@ -61,7 +61,7 @@ def no_campaign(folder: Path) -> UsageError:
 
 @dataclass
 class Batch:
-    """One batch of a cell, and the number of its tests that have not ended."""
+    """One batch of a cell, with the number of its tests that have not ended yet."""
 
     number: int
     first: int
@@ -122,7 +122,7 @@ class Record:
         return self.path.parent
 
     def close(self) -> None:
-        """Closes the file; all committed transactions are in it."""
+        """Closes the file."""
         self._db.close()
 
     def __enter__(self) -> Self:
@@ -148,7 +148,7 @@ class Record:
             yield row
 
     def meta(self, name: str) -> str:
-        """Returns the value that the table ``meta`` has for ``plan``, ``versions`` or ``finished``."""
+        """Returns one value from the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
     def names(self) -> list[str]:
@@ -224,7 +224,7 @@ class Record:
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns number, batch and proposal of each test of a cell that has not ended."""
+        """Returns the number, the batch and the proposal of each test of a cell that has not ended."""
         rows = self.query(
             "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",

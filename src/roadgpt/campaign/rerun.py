@@ -43,9 +43,9 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
     Args:
         folder: the campaign's folder.
-        cell: name of the test's cell; empty for a run in a folder of runs, or for the run that the folder is.
+        cell: name of the test's cell; empty for a run in a folder of runs, or if the folder itself is a run.
         number: number of the test.
-        has_drive: whether to include drive and verdict; a run in a folder of runs has them in any case.
+        has_drive: whether to include drive and verdict; a run from a folder of runs always includes them.
 
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
@@ -57,7 +57,7 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
 
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
-    """Returns the Run of a result that was read from an open Record, as ``kept_run`` does."""
+    """Returns the Run that belongs to a result read from an open Record; see ``kept_run``."""
     request, brief = cell.request, cell.brief
     design = _design_of(record.folder, cell.name, result)
     road = request.world.lay(build(design, request.setup.geometry))

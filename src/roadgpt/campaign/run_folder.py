@@ -1,7 +1,7 @@
 """A folder of runs as the store of one cell: the files in it are the only record of its tests.
 
-``roadgpt run`` and each part of a study have such a folder, in the shape of the SBFT competition. A test has
-ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
+``roadgpt run`` and each part of a study write such a folder, with the files of the SBFT competition. A test
+has ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
 """
 
 from collections.abc import Mapping
@@ -27,12 +27,12 @@ from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_des
 
 @dataclass(frozen=True)
 class FinishedRun(FinishedTest):
-    """A test that has ended, whose Run is in a folder of runs."""
+    """A test that has ended and whose Run is stored in a folder of runs."""
 
     test_file: str = ""
     """Content of ``test.NNNN.json``; empty if the file exists."""
     entry: TallyEntry | None = None
-    """The values that the folder's tables count."""
+    """The values of this test that the folder's tables count."""
     run: Run | None = None
     """The Run; None if a worker process made it."""
 
@@ -46,8 +46,7 @@ class RunWriter:
     draw: Draw | None = None
     """Draws pictures into the folders of Runs; None: no pictures."""
     meter: Meter | None = None
-    """Counts the use of language models in this process; None on workers, which ask none and return no
-    Run."""
+    """Counts the use of language models in this process; None on workers."""
 
     def __call__(self, task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedRun:
         """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``.
@@ -59,7 +58,7 @@ class RunWriter:
         return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
 
     def written(self, run: Run, task: Task, cell: str) -> FinishedRun:
-        """Writes the folder of a Run; returns the end of its test."""
+        """Writes the folder of a Run, and returns its test as a FinishedRun."""
         with writing(self.folders[cell]):
             write_run_folder(run, self.folders[cell], self.draw)
         result, entry = result_of(run, task, {}), TallyEntry.of(run)
@@ -76,7 +75,7 @@ def writing(folder: Path) -> AbstractContextManager[None]:
 
 @dataclass
 class RunFolder:
-    """A folder of Runs of one request, new or from an earlier session."""
+    """A folder with the Runs of one request; it may be new or from an earlier session."""
 
     folder: Path
     request: Request
@@ -85,13 +84,15 @@ class RunFolder:
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
-    """Folders that were created for this one, the innermost first; removed if no road can be designed."""
+    """This folder and its parents, as far as they were created now, innermost first; they are removed if no
+    road can be designed.
+    """
     tests: dict[int, FinishedRun] = field(default_factory=dict)
     """The tests that have ended, by number."""
     spent: Spent = field(default_factory=Spent)
     """What language models cost for the tests of earlier sessions."""
     failure: str = ""
-    """Why no road could be designed; empty if one could, or if none was tried."""
+    """Why no road could be designed; empty if a road was designed or none has been tried yet."""
     _tally: Tally = field(default_factory=Tally)
     _held_back: list[FinishedRun] = field(default_factory=list)
 
@@ -124,7 +125,8 @@ class RunFolder:
         return len(self.tests) >= self.roads
 
     def take_up(self) -> Card:
-        """Reads the tests that are in the folder and not known yet; a Run that cannot be read does not count.
+        """Reads tests in the folder that this object does not know yet; a Run that cannot be read does not
+        count.
 
         Raises:
             UsageError: the folder holds Runs of another request, or more than were requested.

@@ -40,7 +40,7 @@ class Progress:
     """The progress of a campaign."""
 
     total: int | None
-    """Number of tests; None if only time limits it."""
+    """Number of tests; None if only the time is limited."""
     outcomes: Counter[str] = field(default_factory=Counter)
     under_way: int = 0
 
@@ -65,7 +65,9 @@ def _lost(out: _Out, why: str) -> FinishedTest:
 
 
 class Scheduler:
-    """Runs one session of a campaign in the process that writes the store, with its workers."""
+    """Runs one session of a campaign: distributes tests to the workers, and is the only one to write the
+    store.
+    """
 
     def __init__(
         self,
@@ -114,7 +116,7 @@ class Scheduler:
     def run(self) -> Generator[Progress, None, None]:
         """Runs tests until none is left; yields the progress after every group of results.
 
-        However it ends, the results so far are stored and the workers are ended.
+        However the session ends, the results so far are stored and the workers are stopped.
         """
         try:
             yield from self._run()

@@ -2,7 +2,7 @@
 
 hard            all tests of the campaign in the folder ``hard``, or all runs of a folder of runs
 hard/c01        the tests of a cell
-hard/c01/17     one test; also hard/17 where there is only one cell, or where ``hard`` is a folder of runs
+hard/c01/17     one test; hard/17 if there is only one cell, or if ``hard`` is a folder of runs
 """
 
 from collections.abc import Sequence
@@ -66,8 +66,8 @@ class Selection:
 
 
 def selection_of(text: str) -> Selection | None:
-    """Returns the selection that a text means; None if the text names a single run, a road file, or anything
-    else.
+    """Returns the Selection for the text of a command's argument; None if the text is the path of a single
+    run, a road file, or anything else.
 
     Raises:
         UsageError: the text names a test or a cell that does not exist.
@@ -152,7 +152,7 @@ def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
 
     Args:
         place: the selection.
-        choice: which of its tests to return; None: all tests that have a road.
+        choice: which tests of the selection to return; None: all tests that have a road.
 
     Raises:
         UsageError: a file cannot be read.
@@ -196,7 +196,7 @@ def _of_runs(place: Selection, choice: Choice | None) -> list[NumberedTest]:
 
 
 def near(text: str) -> Sequence[str]:
-    """Returns existing paths that resemble a path that does not exist, in a form that can be typed."""
+    """Returns existing paths that resemble a path that does not exist, quoted for the command line."""
     path = Path(text)
     while path.parent != path and not path.parent.exists():
         path = path.parent

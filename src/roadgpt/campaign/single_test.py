@@ -41,7 +41,7 @@ class Task:
 
 @dataclass(frozen=True)
 class FinishedTest:
-    """A test that has ended: its result, and data that may differ if it is run again, such as times."""
+    """A test that has ended: its result, and data such as times, which differ when the test is repeated."""
 
     result: Result
     trace: "Trace | None" = None
@@ -87,10 +87,10 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     Args:
         task: the test to run.
         cell: the test's cell.
-        earlier: designs that a drafted road has to differ from, one tuple per block.
+        earlier: designs from which a drafted road has to differ, as one tuple per block of earlier tests.
 
     Raises:
-        PartError, UsageError, ChatError: an error that every other test would meet as well.
+        PartError, UsageError, ChatError: an error that would occur in every other test as well.
     """
     from roadgpt.campaign.traces import trace_of
 
@@ -110,9 +110,9 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 
 
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
-    """Returns the Run of a test; one with the outcome ERROR if no road can be designed.
+    """Returns the Run of a test; if no road can be designed, the Run has the outcome ERROR.
 
-    It raises all other errors that ``run.perform`` and ``run.prove`` raise.
+    All other errors of ``run.perform`` and ``run.prove`` are raised.
     """
     before = meter.spent
     try:
@@ -146,8 +146,8 @@ def run_of(
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the seed with which test ``number`` is driven; if the test is a draft, the road is drafted
-    with it as well.
+    """Returns the seed of the driver in test ``number``; the road is drafted with the same seed if the test
+    is a draft.
     """
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 

@@ -17,7 +17,7 @@ LATELY = 60.0  # s over which the speed of the moment is taken
 
 @dataclass(frozen=True)
 class Lease:
-    """A running test, and the worker that runs it."""
+    """A test that is running, and the worker that runs it."""
 
     cell: str
     number: int
@@ -32,7 +32,7 @@ class Status:
     is_finished: bool
     is_running: bool
     total: int | None
-    """Number of tests; None if only time limits it."""
+    """Number of tests; None if only the time is limited."""
     outcomes: Mapping[str, int]
     seconds: float
     """Seconds for which the campaign has been worked on, over all sessions."""

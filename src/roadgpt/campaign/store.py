@@ -140,7 +140,7 @@ class Store(Record):
 
     @property
     def how_to_continue(self) -> str:
-        """How to continue the campaign, as the end of a sentence."""
+        """Text at the end of an error message that explains how to continue the campaign."""
         return f"continue with: roadgpt resume {self.folder}"
 
     @contextmanager
@@ -226,7 +226,9 @@ class Store(Record):
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
 
     def spend(self, spent: Spent) -> None:
-        """Adds tokens and money that a language model cost outside of tests."""
+        """Adds tokens and money that a language model used outside of tests, such as for reading
+        descriptions.
+        """
         with self._whole() as db:
             db.execute(
                 "UPDATE sittings SET tokens = tokens + ?, cost = cost + ? WHERE rowid = ?",

@@ -1,7 +1,7 @@
-"""Checks that a store holds what RoadGPT writes: tables, columns and values, before they are used.
+"""Checks the tables, columns and values of a store before they are used.
 
-A store that came from elsewhere, or from a bad disk, may hold anything: text in place of a number, a number
-that is not finite, a cell whose name is a path. All narrow tables are checked when a store is opened, which
+A store from another person or from a bad disk may contain anything: text in place of a number, a number that
+is not finite, or a cell whose name is a path. All narrow tables are checked when a store is opened, which
 takes a second for a million tests. The wide table ``details``, with designs and sentences, is checked as it
 is read.
 """

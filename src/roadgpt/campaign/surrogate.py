@@ -1,8 +1,8 @@
 """A surrogate model of the simulator: predicts how a drive on a road will end, and how uncertain that is.
 
 It is a forest of extremely randomised trees (``extra_trees``) that learns from the tests so far. The spread
-of the trees' predictions shows the uncertainty. On our drives it separated failures from passes after 50
-tests (AUC 0.99); ridge regression on the same features and their squares needed several hundred; see
+of the trees' predictions shows the uncertainty. On RoadGPT's own drives it separated failures from passes
+after 50 tests (AUC 0.99); ridge regression on the same features and their squares needed several hundred; see
 docs/explanation/search.md.
 """
 
@@ -40,14 +40,14 @@ class Surrogate:
         self._forest = grow(np.asarray(features[-MOST:], float), targets, TREES, LEAF, seed=0)
 
     def opinions(self, features: Sequence[Array]) -> Array:
-        """Returns the predictions of every tree for roads, ``(TREES, n, k)``, in the units of the
-        outcomes.
+        """Returns the predictions of each tree for n roads and k outcomes, ``(TREES, n, k)``, in the units of
+        the outcomes.
         """
         return np.asarray(self._forest.predict(np.asarray(features, float)) * self._scale + self._mean)
 
 
 def target_of(margin: float, failed: bool) -> float:
-    """Returns the margin, in metres, that the surrogate is trained on for a drive; all failures get the
-    same one.
+    """Returns the margin, in metres, on which the surrogate is trained for a drive; it is the same for all
+    failures.
     """
     return FAILED if failed else margin

@@ -3,8 +3,8 @@
 The best predictor of recorded outcomes is the curvature of the middle of the driven lane, k / (1 + 2k) on a
 road with lanes of 4 m, averaged over some metres, outside the first 25 m and the last 8 m: the car starts
 from rest, and the test ends 8 m before the road does. The features are the largest such curvature to either
-side over windows of several lengths, how fast it changes, the length of the straight before the tightest
-place, and slopes and crests.
+side over windows of several lengths, how fast that curvature changes, the length of the straight before the
+tightest place, slopes, and crests.
 """
 
 from collections.abc import Sequence
@@ -73,8 +73,8 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Returns how hard roads look before any test: their largest curvature of the lane, averaged over 13
-    m.
+    """Returns for each road how hard it looks before any test: the largest curvature of its lane, averaged
+    over 13 m.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]

@@ -2,8 +2,8 @@
 
 results.csv    one row per test: its proposal, its outcome, and its features
 cells.csv      one row per cell: the values that its tests share, the number of tests with each outcome, the
-               number of cells of the feature map with failures (on the axes of its search, else the default
-               axes), and how far the car was outside its lane in passed tests
+number of bins of the feature map that contain failures, and how far the car was outside its lane in passed
+tests
 """
 
 import csv

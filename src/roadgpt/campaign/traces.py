@@ -50,7 +50,7 @@ class Trace(NamedTuple):
 
 
 def trace_of(drive: Drive) -> Trace:
-    """Returns a Drive as a Trace: every value rounded to an integer multiple of its step."""
+    """Returns a Drive as a Trace, in which every value is rounded to a multiple of its column's step."""
     header = {
         "driver": drive.driver,
         "simulator": drive.simulator,
@@ -134,8 +134,8 @@ def read_traces(path: Path, cell: str, number: int) -> Drive:
     """Reads one drive out of a file of traces.
 
     Raises:
-        UsageError: the file is damaged or missing, or does not hold the drive; or it is a Parquet file, and
-            pyarrow, which reads it, is not installed.
+        UsageError: the file is damaged or missing, or does not hold the drive; or the file is a Parquet file
+            and pyarrow is not installed.
     """
     try:
         if path.suffix == OLD_SUFFIX:

@@ -65,7 +65,7 @@ class VariationTask(NamedTuple):
     """Seed of the random generator; a road between two parents needs none."""
     setting: VariationContext
     share: float = 0.5
-    """Position of a road between its two parents: 0 is the first parent, 1 the second."""
+    """Position of a road between its two parents: 0 gives the first parent, 1 the second."""
 
 
 class Candidate(NamedTuple):
@@ -162,7 +162,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
 
 
 def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """Returns a road that satisfies all rules as a Candidate, with its features."""
+    """Returns a Candidate, including its features, for a road that satisfies all rules."""
     samples = road.sample()
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
@@ -170,7 +170,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Returns a design that has been driven as a Candidate, with its features.
+    """Returns a Candidate, including its features, for a design that has already been driven.
 
     Args:
         known: the design, and the requirements, world and rules of its cell.

@@ -1,8 +1,8 @@
-"""Executors: plug-ins that run the jobs of a campaign on workers, one kind of workers per file.
+"""Executors: plug-ins that run the jobs of a campaign on workers. Each file defines one kind of worker.
 
-An executor is a class that is made with a WorkerConfig. It runs jobs and decides nothing else: the one
-process that made it chooses the tests, receives their results, and alone writes the store. An executor has
-these methods:
+An executor is a class whose constructor takes a WorkerConfig. An executor only runs jobs: the process that
+created it chooses the tests, receives their results, and is the only one that writes the store. An executor
+has these methods:
 
     share(name, value)      keeps a value that jobs may need; it is sent to each worker at most once
     forget(name)            drops a shared value that no later job needs
@@ -34,7 +34,7 @@ MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
 
 @dataclass(frozen=True)
 class WorkerConfig:
-    """Describes the workers that a campaign requests from an executor."""
+    """The settings of the workers that a campaign requests from an executor."""
 
     workers: int
     prepare: Callable[[], object]
@@ -51,7 +51,7 @@ class Job:
     """A call that any free worker may run."""
 
     key: int
-    """Identifies the job in its FinishedJob."""
+    """A value that identifies the job; its FinishedJob has the same key."""
     function: Callable[..., Any]
     item: Any
     needs: tuple[str, ...] = ()
@@ -60,15 +60,15 @@ class Job:
 
 @dataclass(frozen=True)
 class FinishedJob:
-    """The end of a job: the value that its function returned, the error that it raised, or why it was
-    given up.
+    """The result of a job: the value that its function returned, the error that the function raised, or the
+    reason why the job was given up.
     """
 
     key: int
     value: Any = None
     error: Exception | None = None
     lost: str = ""
-    """Why the job was given up; empty if it ended by itself."""
+    """Why the job was given up; empty if its function returned or raised an error."""
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ class Executor(Protocol):
         ...
 
     def done(self, seconds: float) -> list[FinishedJob]:
-        """Returns the jobs that have ended since the last call, after at most ``seconds``.
+        """Returns the jobs that have ended since the last call; waits at most ``seconds`` for the first one.
 
         Raises:
-            RoadGPTError: there are no workers, and there will be none.
+            RoadGPTError: no workers are left, and none can be started.
         """
         ...
 

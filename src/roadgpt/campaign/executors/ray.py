@@ -1,9 +1,9 @@
 """The executor ``ray``: workers that are actors on a Ray cluster, each on one core of any of its machines.
 
 Several short jobs are sent to a worker in one message, since messages cross a network. If a worker dies, all
-jobs of its message are run again one by one, to find the job that caused it and give up only that job. If a
-whole machine dies, this does not count as an attempt of its jobs. Results return to this process, the only
-one that writes the store.
+jobs of its message are run again one by one, so that only the job that killed the worker is given up. If a
+whole machine fails, its jobs are run again, and the failure does not count against them. Results return to
+this process, the only one that writes the store.
 
 Ray's own retries are off: Ray cannot tell a job that kills its workers from a machine that was switched off.
 """
@@ -76,7 +76,9 @@ class Ray(JobQueue):
         self._thread.start()
 
     def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that were sent to workers; the time of each is that of its whole message."""
+        """Returns the jobs that were sent to workers; the time of each job counts from when its message was
+        sent.
+        """
         now = time.monotonic()
         with self._changed:
             return [

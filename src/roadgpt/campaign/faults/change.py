@@ -1,4 +1,4 @@
-"""Finds the smallest change that turns a road that passed into one that fails.
+"""Finds the smallest change that turns a road on which the car passed into one on which it fails.
 
 Delta debugging first finds the fewest fields of the fewest segments that have to change (see ``minimise``).
 Halving then finds the smallest fraction of that change that still makes the car fail.
@@ -29,7 +29,7 @@ NAMES = {
 
 @dataclass(frozen=True)
 class Difference:
-    """The change of one field of one segment, from the road that passed to the one that failed."""
+    """The change of one field of one segment between the road that passed and the road that failed."""
 
     segment: int
     """Index of the segment, from 0."""
@@ -68,7 +68,7 @@ def smallest_change(
     Args:
         kept: a Run that passed.
         failure: a Run that failed.
-        brief: requirements that the roads between them must keep; None: none.
+        brief: requirements that every road driven in between must satisfy; None: no requirements.
         most: maximum number of drives.
 
     Raises:

@@ -41,7 +41,7 @@ class Surroundings:
     grades: Array
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
-    """Side and cause of the failure; failures of different kinds are never the same fault."""
+    """Side and cause of the failure; failures with different kinds never belong to the same fault."""
 
 
 def surroundings(road: Road, world: World, station: float, kind: str) -> Surroundings:
@@ -65,11 +65,11 @@ def _smoothed(values: Array) -> Array:
 
 
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
-    """Returns the distances ``(n,)`` of one failure to others; 1 is a difference of ``BEND`` or ``GRADE`` all
-    along.
+    """Returns the distances ``(n,)`` from one failure to n others.
 
-    Beyond the end of one of two roads, that road counts as straight and level. The distance between failures
-    of different kinds is infinite. Distances are symmetric.
+    A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade. Beyond its end, a
+    road counts as straight and level. The distance between failures of different kinds is infinite. Distances
+    are symmetric.
     """
     return np.asarray(between([one], others)[0])
 

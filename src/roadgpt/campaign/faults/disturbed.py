@@ -50,9 +50,9 @@ class LateDriver:
     """A driver whose perception is delayed.
 
     Args:
-        driver: the driver that is given delayed views.
+        driver: the driver that receives delayed views.
         delay: delay in seconds, rounded to whole control steps.
-        world: the undisturbed world, which the driver is given whatever the real friction is.
+        world: the undisturbed world, which the driver receives even if the friction is disturbed.
     """
 
     def __init__(self, driver: Any, delay: float, world: "World") -> None:
@@ -70,8 +70,8 @@ class LateDriver:
             self._driver.start(road, self._world, seed)
 
     def steer(self, view: View) -> Command:
-        """Returns the driver's answer to the view of ``delay`` seconds ago; at the start, to the first
-        view.
+        """Returns the driver's command for the view of ``delay`` seconds ago, or for the first view if none
+        is so old.
         """
         self._seen.append(view._replace(world=self._world))
         if len(self._seen) > round(self._delay / view.dt) + 1:

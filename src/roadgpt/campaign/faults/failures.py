@@ -42,7 +42,8 @@ class Failures:
 
     known: tuple[LocatedFailure, ...]
     every: int
-    """Number of all failures, including those outside the sample and those whose road is unknown."""
+    """Number of all failures in the folder, including failures outside the sample or without a stored road.
+    """
 
 
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
@@ -134,8 +135,8 @@ def _of_result(cell: Cell, its: Result, system: str) -> LocatedFailure | None:
 
 
 def system_of(world: World, setup: Setup) -> str:
-    """Returns a text that is equal for cells with the same driver, simulator and world, which share their
-    faults.
+    """Returns a text that identifies the driver, simulator and world of a cell; cells with the same text
+    share their faults.
     """
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
 

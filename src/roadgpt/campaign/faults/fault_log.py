@@ -2,12 +2,10 @@
 simplified.
 
 DIR/faults/
-  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if it
-                   exists, the fault is not analysed again
-  c01/0017.png     what happened, from above
-  simplest/c01/    a folder of runs: the simplest roads that fail in the same way, named after the failures
-  faults.csv       one line per fault, the fault with most failures first
-  failures.csv     one line per failure, and the fault that it belongs to
+  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if this file exists, the
+  fault is not analysed again c01/0017.png     what happened, from above simplest/c01/    a folder of runs:
+  the simplest roads that fail in the same way, named after the failures faults.csv       one line per fault,
+  the fault with most failures first failures.csv     one line per failure, and the fault that it belongs to
 
 In a folder of runs there is no c01/.
 """
@@ -57,7 +55,7 @@ class AnalysisTask(NamedTuple):
     names: tuple[NumberedTest, ...]
     """Names of the fault's typical failures, the most typical first."""
     times: int
-    """Number of disturbed drives for each failure."""
+    """Number of disturbed drives of each failure's road."""
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)
@@ -131,7 +129,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
 def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
     """Returns the stored analysis of a fault; None if there is none.
 
-    If several of its failures have one, the choice is that of ``analyse``.
+    If several failures of the fault have a stored analysis, returns the one that ``analyse`` would choose.
 
     Raises:
         UsageError: a stored analysis cannot be read.
@@ -164,7 +162,7 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis],
 
     Args:
         faults: the faults of the folder.
-        looked: the analyses, by number of the fault.
+        looked: the analyses of the faults, by the number of the fault.
         folder: the folder of the campaign or of the runs.
 
     Returns:

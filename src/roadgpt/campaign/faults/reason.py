@@ -1,9 +1,9 @@
 """Explains in one sentence why a car left its lane: the bend, the speed and the slope where it happened.
 
-The friction that a bend requires is v^2 k over the share of gravity that presses the car onto the road there,
-g cos(grade) + v^2 c, with c the vertical curvature (negative on a crest). R. Rajamani, Vehicle Dynamics and
-Control, 2nd ed., 2.6. Superelevation changes both as ``road.speed_profile`` says. k is the curvature of the
-middle of the driven lane, not of the centre line.
+The friction coefficient that a bend requires is v^2 k / (g cos(grade) + v^2 c), with the speed v, the
+curvature k, and the vertical curvature c (negative on a crest). R. Rajamani, Vehicle Dynamics and Control,
+2nd ed., 2.6. Superelevation changes numerator and denominator, see ``road.speed_profile``. k is the curvature
+of the middle of the driven lane, not of the centre line.
 """
 
 import math
@@ -34,7 +34,7 @@ SLOPE = 0.03  # of grade, likewise
 
 
 class Manner(NamedTuple):
-    """In which way a car failed, and at which bend."""
+    """The way in which a car failed, and the bend at which it failed."""
 
     way: Way
     side: Literal["left", "right"] | None
@@ -85,8 +85,8 @@ def reason_of(run: Run) -> FailureReason:
 
 
 def lane_curvature(road: Road, world: World, stations: Array) -> Array:
-    """Returns the curvature, 1/m, of the middle of the driven lane at stations of the centre line, in their
-    shape.
+    """Returns the curvature, 1/m, of the middle of the driven lane, one value for each station of the centre
+    line.
     """
     bend = road.curvature(stations)
     middle = world.profile_of(road).middle(stations)

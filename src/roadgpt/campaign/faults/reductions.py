@@ -1,6 +1,6 @@
 """Simplifications of a Design: fewer segments, level ground, straighter segments, rounder numbers.
 
-Each kind of simplification is a list of single ones; ``minimise`` finds how many of them can be combined.
+Each kind is a list of simplifications of single segments; ``minimise`` finds which of them can be combined.
 """
 
 from collections.abc import Callable, Sequence

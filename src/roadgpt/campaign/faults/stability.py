@@ -45,7 +45,7 @@ class Stability:
 
     @property
     def share(self) -> float:
-        """Share of the disturbed drives that failed, 0 to 1."""
+        """Fraction of the disturbed drives that failed, 0 to 1."""
         return self.failed / len(self.drives)
 
     @property
@@ -55,7 +55,7 @@ class Stability:
 
     @property
     def interval(self) -> tuple[float, float]:
-        """95 % confidence interval of the share, after Clopper and Pearson (Biometrika 26, 1934)."""
+        """95 % confidence interval of ``share``, after Clopper and Pearson (Biometrika 26, 1934)."""
         n, k = len(self.drives), self.failed
         low = float(beta.ppf((1 - SURE) / 2, k, n - k + 1)) if k else 0.0
         high = float(beta.ppf((1 + SURE) / 2, k + 1, n - k)) if k < n else 1.0
@@ -77,7 +77,7 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
     Args:
         run: the Run of a valid road, with any outcome.
         times: number of drives, 1 or more.
-        spread: applies a function to all of its items, as ``map`` does, or a pool's ``map``.
+        spread: the function that runs the drives: the built-in ``map``, or the ``map`` of a process pool.
 
     Raises:
         UsageError: a plug-in is not installed, or the driver's file makes no driver.
@@ -87,9 +87,9 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once with a disturbance; a driver that raises an error has failed.
+    """Drives a Run's road once with a disturbance; if the driver raises an error, the drive counts as failed.
 
-    If the simulator fails, the drive is repeated, since that says nothing about the road.
+    If the simulator itself fails, the drive is repeated.
 
     Raises:
         GivenUpError: the simulator failed three times in a row.

@@ -3,10 +3,10 @@ car fail.
 
     elites of the map --mutate--> 8 candidates for each test --surrogate--> the most valuable are driven
 
-MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a candidate costs
-milliseconds and a drive many times as much, so most candidates are only predicted. The goal decides which
-candidates are valuable. Batches 0 and 1 are requested before any result is known; they are spread over
-diverse roads that look hard.
+MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a drive takes far longer than
+making a candidate, so most candidates are only predicted and not driven. The goal decides which candidates
+are valuable. Batches 0 and 1 are requested before any result is known; they consist of diverse roads that
+look hard.
 """
 
 from collections import Counter

@@ -1,6 +1,7 @@
 """The test generator ``random``: independent drafts of the planner.
 
-It is the baseline for searches: its roads satisfy the Brief as theirs do, but it does not learn from results.
+It is the baseline for searches: its roads satisfy the Brief too, but the generator does not learn from
+results.
 """
 
 from collections.abc import Sequence

@@ -30,7 +30,7 @@ class InProcess:
         self._jobs.extend(jobs)
 
     def done(self, seconds: float) -> list[FinishedJob]:
-        """Runs the next job and returns its end; returns an empty list if no job is queued."""
+        """Runs the next job, and returns it as a FinishedJob; returns an empty list if no job is queued."""
         if not self._jobs:
             return []
         job = self._jobs.popleft()

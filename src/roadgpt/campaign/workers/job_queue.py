@@ -1,7 +1,8 @@
 """The job queue of an executor: waiting jobs, finished jobs, and the error that stopped all workers, if any.
 
-An executor inherits from JobQueue and defines how a waiting job gets to a worker (``_hand_out``). Its threads
-hold ``_changed`` while they access the queue, and notify it when a job has ended.
+An executor inherits from JobQueue and defines how a waiting job gets to a worker (``_hand_out``). The
+executor's threads hold the condition ``_changed`` while they access the queue, and notify it when a job has
+ended.
 """
 
 import threading
@@ -65,10 +66,11 @@ class JobQueue(ABC):
             self._hand_out()
 
     def done(self, seconds: float) -> list[FinishedJob]:
-        """Returns the jobs that have ended since the last call, after at most ``seconds``.
+        """Returns the jobs that have ended since the last call; waits at most ``seconds`` for the first one.
 
         Raises:
-            RoadGPTError: no worker could be made ready; or the error that prevented it.
+            RoadGPTError: no worker could be started. If another kind of error prevented that, this error is
+                raised.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)

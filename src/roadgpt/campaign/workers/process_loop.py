@@ -2,9 +2,8 @@
 
 The parent sends the module search paths, the function that prepares the worker, and then jobs. A job has the
 call (function, item, names of shared values), the shared values that the worker does not have yet, and the
-names of those that it can drop. The worker sends a sign of life every second, and for each job how it ended
-with the pickled value or error. Calls and values are pickled one by one, so that one that cannot be unpickled
-costs one job.
+names of those that it can drop. The worker sends a sign of life every second, and the pickled value or error
+of each job. Calls and values are pickled one by one; if one cannot be unpickled, only its own job is lost.
 """
 
 import os
@@ -79,7 +78,7 @@ def main() -> None:
 
 
 def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
-    """Runs a job, and returns how it ended with its pickled value or error; updates the shared values."""
+    """Runs a job, updates the shared values, and returns how the job ended and its pickled value or error."""
     try:
         for name in order.old:
             shared.pop(name, None)
@@ -92,7 +91,9 @@ def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
 
 
 def portable(error: Exception) -> bytes:
-    """Returns an error as bytes; an error that cannot be pickled is replaced by one with the same text."""
+    """Returns a pickled error; if the error cannot be pickled, a RuntimeError with its type and text takes
+    its place.
+    """
     try:
         data = pickled(error)
         unpickled(data)

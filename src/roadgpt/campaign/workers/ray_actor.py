@@ -1,4 +1,4 @@
-"""A worker on a Ray cluster: prepared once, it then runs the jobs of one message after another."""
+"""A worker on a Ray cluster. It is prepared once; then it runs the jobs of each message one after another."""
 
 import faulthandler
 import os
@@ -42,7 +42,7 @@ class RayActor:
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
         """Runs jobs one after another, and returns how each ended.
 
-        If a job is sent alone, the sender measures its time, and so knows which job hangs.
+        If one job is sent, the sender measures its time; among several jobs, one that hangs ends this worker.
         """
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]

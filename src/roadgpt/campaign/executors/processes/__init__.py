@@ -1,8 +1,8 @@
 """The executor ``processes``: workers that are processes of this machine.
 
-One thread for each worker receives its messages and sends it its next job at once, whatever the campaign is
-doing. One more thread watches for workers that hang. concurrent.futures is not used, since it loses all its
-jobs when one process dies.
+Each worker has a thread in the campaign's process that receives its messages and sends it the next job, even
+while the main thread is busy. One more thread watches for workers that hang. This executor does not use
+``concurrent.futures``, whose pool loses all jobs when one process dies.
 """
 
 import threading

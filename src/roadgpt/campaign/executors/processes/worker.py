@@ -113,5 +113,7 @@ class Worker:
         return self.fault or children.ending(status)
 
     def join(self, patience: float = FAREWELL) -> None:
-        """Waits until the end of the process has been noticed, for at most ``patience`` seconds."""
+        """Waits at most ``patience`` seconds for the thread of the worker to end, which it does after the
+        process.
+        """
         self._thread.join(patience)
