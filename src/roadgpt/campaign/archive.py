@@ -77,8 +77,7 @@ class Archive:
 
 
 class Grid:
-    """A map with equally wide cells along each axis; values outside its range belong to the outermost cell.
-    """
+    """A map with equally wide cells along each axis; values out of range belong to the outermost cell."""
 
     def __init__(self, bounds: Array, cells: int) -> None:
         """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""

@@ -134,8 +134,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of the earlier batches; a draft in this batch has to differ from their designs.
-        """
+        """Returns the numbers of those batches from whose designs a draft in this batch has to differ."""
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)

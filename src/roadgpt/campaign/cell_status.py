@@ -32,7 +32,7 @@ class CellStatus:
     max_oob: float | None
     """Largest share, 0 to 1, of the car that was outside its lane in any passed test."""
     beyond: float | None
-    """Largest distance beyond the lane marking in any passed test, metres;
+    """Largest distance beyond the lane marking in any passed test, metres.
 
     None if an earlier version of RoadGPT wrote the store.
     """

@@ -31,7 +31,7 @@ class Budget(Frozen):
 
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
     seconds: Annotated[float, Field(gt=0, allow_inf_nan=False)] | None = None
-    """Wall-clock seconds, summed over all sessions, after which no further batch is started;
+    """Wall-clock seconds, summed over all sessions, after which no further batch is started.
 
     None: no limit.
     """

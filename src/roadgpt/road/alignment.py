@@ -8,8 +8,8 @@ The curvature of a turning segment changes from an entry value to its own value,
                 clothoid      clothoid
 
 Entry and exit are 0 next to a straight or a turn to the other side. Between two segments that turn to the
-same side, they are the smaller curvature of the two. Such segments therefore form one longer turn; the prompt
-in the RoadGPT thesis asks for this where a turn exceeds 70 degrees.
+same side, they are the smaller curvature of the two. Such segments therefore form one longer turn. The prompt
+in the RoadGPT thesis asks language models to build turns of more than 70 degrees in this way.
 """
 
 import math

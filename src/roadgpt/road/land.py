@@ -1,4 +1,6 @@
-"""Creates the land around a road: it stays below the road near it, and has gentle hills farther away."""
+"""Creates the terrain around a road: below the road surface close to the road, with gentle hills farther
+away.
+"""
 
 from dataclasses import dataclass
 
@@ -20,7 +22,7 @@ LONGEST_STEP = 2.0  # m along the road
 
 @dataclass(frozen=True, eq=False)
 class Land:
-    """Heights of the land on a rectangular grid with columns at ``x`` and rows at ``y``, in metres.
+    """Heights of the terrain on a rectangular grid with columns at ``x`` and rows at ``y``, in metres.
 
     Rows and columns are ``cell`` metres apart, except near the border of the grid, where they are farther
     apart.
@@ -36,7 +38,7 @@ class Land:
 
     @classmethod
     def around(cls, road: Road, world: World) -> "Land":
-        """Returns the land around a road. The land is flat if roads of this World have no shoulder."""
+        """Returns the terrain around a road. The terrain is flat if roads of this World have no shoulder."""
         line = road.centreline(LONGEST_STEP)
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)

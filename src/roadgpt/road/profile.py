@@ -44,7 +44,7 @@ class PaintedLine(NamedTuple):
 
     marking: Marking
     edges: Edges
-    """The offsets of its left and its right edge."""
+    """The offsets of the left and the right edge of the line."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Lane:
     kind: Kind
     width: Width
     marking: Marking = "none"
-    """The marking at its outer edge."""
+    """The marking at the outer edge of the lane."""
 
 
 @dataclass(frozen=True)
@@ -66,7 +66,7 @@ class Profile:
 
     Args:
         left: Lanes from the centre line outwards, driving lanes first, on the left.
-        right: Likewise on the right. At least one of them is a driving lane.
+        right: Lanes from the centre line outwards on the right; at least one is a driving lane.
         driven: Index in ``right`` of the lane that the tested car keeps to.
         centre_marking: The marking on the centre line.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
@@ -111,7 +111,7 @@ class Profile:
 
         Args:
             forward: Number of lanes along the road, one or more.
-            backward: Number of lanes against it. With 0 the road is one-way.
+            backward: Number of oncoming lanes. With 0 the road is one-way.
             lane_width: Width of every lane.
             shoulder: Width of the shoulder on each side in metres; 0 for none.
             superelevation_angle: As for the class.
@@ -127,7 +127,7 @@ class Profile:
 
     @property
     def count(self) -> tuple[int, int]:
-        """The numbers of driving lanes along the road and against it."""
+        """The number of driving lanes along the road, and the number of oncoming lanes."""
         return len(_driving(self.right)), len(_driving(self.left))
 
     @property
@@ -207,7 +207,7 @@ class Profile:
     def marking_limits(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the markings beside the driven lane.
 
-        Where a boundary of the lane has no marking, its own offset is returned.
+        If a boundary of the lane has no marking, the offset of the boundary is returned.
         """
         lane, (forward, backward) = self.lane(s), self.count
         inner = self.right[self.driven - 1].marking if self.driven else self.centre_marking

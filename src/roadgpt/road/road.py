@@ -72,7 +72,7 @@ class Road:
     """Control points ``(n, 2)`` of the SBFT test from which the road was read, if they differ from ``nodes``.
     """
     profile: Profile | None = None
-    """The road's own cross-section; None if the road takes that of the World in which it is used."""
+    """The road's own cross-section; None if the road uses the cross-section of the World."""
     _sampled: dict[float, Samples] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -139,7 +139,7 @@ class Road:
         """Returns the stations and the offsets to the left, in metres, of points given in plan.
 
         Each point is projected onto the nearest point of the centre line. On a road with superelevation, the
-        offset is that of the point of the surface above or below.
+        offset belongs to the surface point vertically above or below the given point.
         """
         points = np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
         s, t = project(self.plan, points)
@@ -153,7 +153,7 @@ class Road:
         return s, np.asarray(t / np.cos(self.profile.superelevation(s)))
 
     def with_profile(self, profile: Profile | None) -> Self:
-        """Returns the road with this cross-section; None for that of the World."""
+        """Returns the road with this cross-section; with None, the road uses that of the World."""
         return replace(self, profile=profile, _sampled={})
 
     def heading(self, s: ArrayLike) -> Array:
@@ -289,7 +289,7 @@ def check_grade(profile: ElevationProfile, length: float) -> None:
     """Checks that a road nowhere climbs or falls by more than ten metres per metre in plan.
 
     Raises:
-        UsageError: The road is steeper at some place.
+        UsageError: The road is steeper than this at some station.
     """
     with np.errstate(all="ignore"):
         steepest = float(np.abs(profile.grade(np.linspace(0.0, length, LOOKED_AT))).max())

@@ -1,4 +1,6 @@
-"""Replaces the segments of a design by short straight ones, so that a spline keeps its bends."""
+"""Replaces the segments of a design by short straight ones, so that a spline preserves the bends of the
+design.
+"""
 
 import math
 
@@ -16,9 +18,9 @@ HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m abov
 def in_short_segments(design: Design) -> Design:
     """Returns a design of short straight segments that approximates the given design.
 
-    With the geometry "spline", the new design follows the lines, arcs and clothoids of the given one. That
-    geometry adds a level stub at the start. To avoid overshoot of the spline after it, the grade is built up
-    over a few segments, so the heights of the rest of the road are shifted by a constant.
+    With the geometry "spline", the new design follows the lines, arcs and clothoids of the given one. The
+    geometry "spline" adds a level stub at the start. To avoid overshoot of the spline after this stub, the
+    grade is built up over a few segments, which shifts the heights of the rest of the road by a constant.
     """
     road = build(design)
     first = min(STUB, road.length / 2)

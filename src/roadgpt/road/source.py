@@ -41,7 +41,7 @@ def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
 
 
 def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
-    """Returns the Design or the Road in a file, and remarks.
+    """Returns the Design or the Road in a file, and remarks on the file.
 
     Each remark is a sentence about something in the file that was changed, ignored or unusual.
 

@@ -6,8 +6,8 @@ r"""Plans a driver's speed along its path, limited by the friction circle, in tw
 
 Source: the usual quasi-steady method, for example Kapania, Subosits, Gerdes (2016),
 https://doi.org/10.1115/1.4033311. On a road that is inclined by the angle e towards the inside of a bend of
-curvature k, the tyres carry ``v^2 k cos e - g sin e`` per mass across the road, and the wheel load per mass
-is ``g cos e + v^2 k sin e``.
+curvature k, the tyres carry a lateral force of ``v^2 k cos e - g sin e`` per mass, and the wheel load per
+mass is ``g cos e + v^2 k sin e``.
 """
 
 import math
@@ -60,7 +60,9 @@ class PathGeometry(Protocol):
 
 @dataclass(frozen=True)
 class DrivingLimits:
-    """The limits that a driver respects: accelerations in multiples of g, speed, and engine power."""
+    """The limits that a driver respects: largest accelerations in multiples of g, largest speed, and engine
+    power.
+    """
 
     lateral: float
     """Largest lateral acceleration in a steady bend, in g."""
@@ -91,8 +93,8 @@ def expected_speed(
     """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
     The car drives on dry asphalt in the middle of its lane, within the speed limit and the default driver's
-    limits of acceleration. Arguments are as for ``lane_speed``, and ``profile`` is the road's own
-    cross-section; with None the road has the lanes and the superelevation that the World gives it.
+    limits of acceleration. Arguments are as for ``lane_speed``. ``profile`` is the road's own cross-section;
+    with None, the road has the lanes and the superelevation of the World.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     s = step * np.arange(np.size(curvature))
@@ -117,8 +119,7 @@ def lane_speed(
 ) -> Array:
     """Returns the speeds in m/s, from a standing start, of a car in the middle of its lane.
 
-    The car slows down for bends but not for crests. Otherwise a more abrupt crest would have a lower planned
-    speed, and would appear gentler than it is.
+    The car slows down for bends but not for crests, so that abrupt crests are judged at full speed.
 
     Args:
         curvature: Curvature of the centre line in 1/m, ``(n,)``.

@@ -2,9 +2,9 @@
 
 Source: National Highways, CD 109 Highway link design (earlier TD 9/93), section 3: at a design speed of V
 km/h, a bend of radius R metres has a superelevation of V^2 / (2.828 R) percent, and at most 7 % outside
-towns. It is run in over the transition curve. Where this is so short that the edge of the carriageway would
-climb or fall by more than 1 % against the centre line, the run-in begins earlier and ends later, but not
-beyond the middle of the straight or arc beside it.
+towns. The superelevation is built up along the transition curve (the run-in). If the transition curve is so
+short that the edge of the carriageway would climb or fall by more than 1 % against the centre line, the
+run-in begins earlier and ends later, at most at the middle of the adjoining straight or arc.
 """
 
 import math
@@ -29,13 +29,14 @@ Knots = list[tuple[float, float]]
 
 
 def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | None = None) -> CubicProfile:
-    """Returns the angle in radians by station, negative in left bends, so that bends fall to their inside.
+    """Returns the superelevation in radians by station; it is negative in left bends, so that bends fall to
+    the inside.
 
     Args:
         plan: The centre line.
         reach: Distance in metres from the centre line to the farther edge of the carriageway.
         speed: Design speed in m/s.
-        ratio: The superelevation of every bend as a ratio; None takes that of CD 109 for its radius.
+        ratio: The superelevation of every bend as a ratio; None: the value of CD 109 for the bend's radius.
     """
     if isinstance(plan, PieceCurve):
         knots = _of_pieces(plan, reach, speed, ratio)
@@ -79,7 +80,7 @@ def _run_in(
 
 
 def superelevation_for(curvature: Array, speed: float, ratio: float | None = None) -> Array:
-    """Returns the angles in radians for curvatures in 1/m, positive to the left, without a run-in.
+    """Returns the superelevation in radians for curvatures in 1/m (positive to the left), without a run-in.
 
     Speed and ratio are as for ``superelevation``.
     """

@@ -27,13 +27,16 @@ class World(BaseModel):
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
     lanes: Annotated[str, Field(pattern=LANES.pattern)] = "1+1"
-    """Numbers of lanes along the road and against it. The tested car keeps to the rightmost lane."""
+    """Number of lanes along the road, and number of oncoming lanes.
+
+    The tested car keeps to the rightmost lane.
+    """
     lane_width: Positive = 4.0
     """Width of every lane in metres."""
     lane_width_end: Positive | None = None
     """Width in metres to which the lanes widen or narrow until the end of the road; None for no change."""
     bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=0.12)] = "none"
-    """Superelevation of bends: none, that of CD 109 for radius and speed limit, or one ratio for all."""
+    """Superelevation of bends: "none", "auto" for the values of CD 109, or one ratio for all bends."""
     verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
     """Width in metres of the firm shoulder beside the carriageway.
 
@@ -79,7 +82,7 @@ class World(BaseModel):
         """Returns the road with this World's lanes and banked bends.
 
         A road that has a cross-section of its own keeps it. If this World has the usual two lanes of one
-        width and no banked bends, the road is returned as it is.
+        width and no banked bends, the road is returned unchanged.
         """
         if road.profile is not None or all(getattr(self, name) == usual for name, usual in OWN.items()):
             return road

@@ -50,11 +50,14 @@ PLACES = 1_000  # at which the spline is compared with the line, and at which wi
 
 @dataclass(frozen=True)
 class ImportedRoad:
-    """A road that was read from an OpenDRIVE file, with the properties of its lanes in the file."""
+    """A road that was read from an OpenDRIVE file, with its lane width, speed limit and friction."""
 
     road: Road
-    """The road. It has a cross-section of its own unless that is the usual one of a World: one lane in each
-    direction, all of one width, with shoulders of one width."""
+    """The road.
+
+    It has no cross-section of its own if the file describes the usual one of a World: one lane in each
+    direction, both of the same constant width, with shoulders of the same constant width.
+    """
     id: str
     name: str
     lane_width: float
@@ -62,7 +65,7 @@ class ImportedRoad:
     shoulder: float
     """Width in metres of the shoulder on the right; the median if it varies."""
     speed_limit: float | None
-    """Speed limit in m/s; None where the file gives none."""
+    """Speed limit in m/s; None if the file gives no speed limit."""
     friction: float | None
     remarks: tuple[str, ...]
     """Sentences about contents of the file that were changed, replaced or left out."""
@@ -70,8 +73,8 @@ class ImportedRoad:
     def world(self, base: World) -> World:
         """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
 
-        A speed limit or friction that the file does not state is kept from ``base``. So are lane width and
-        shoulder if the road has a cross-section of its own.
+        A speed limit or friction that the file does not state is taken from ``base``. If the road has a
+        cross-section of its own, lane width and shoulder are taken from ``base`` as well.
         """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:

@@ -77,7 +77,7 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the cubics on a road of this length in metres, constant behind its end.
+    """Returns the cubics for a road of this length in metres, constant after its end.
 
     Rows that only continue a constant are left out.
     """

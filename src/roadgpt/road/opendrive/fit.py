@@ -18,7 +18,8 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 
 
 def clothoids(poses: Array) -> list[Piece] | None:
-    """Returns one clothoid between each two consecutive poses; None if one of them does not exist.
+    """Returns one clothoid between each two consecutive poses; None if two poses cannot be joined by a
+    clothoid.
 
     Every clothoid ends at its pose up to rounding, so that errors do not add up along the road.
 

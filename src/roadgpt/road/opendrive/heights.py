@@ -23,7 +23,7 @@ def elevation(road: Node) -> CubicProfile:
 
 
 def plain(profile: CubicProfile, length: float) -> ElevationProfile:
-    """Returns an equal profile of constant grades and parabolas, if there is one.
+    """Returns the profile as constant grades and parabolas, if it consists of them.
 
     A profile with steps, kinks or cubic terms is returned unchanged.
     """
@@ -55,7 +55,8 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
     """Returns the heights of the inner edge of the driving lanes over the stations of the file.
 
-    They are those of the reference line, except where the edge is beside it and the surface is inclined.
+    The heights equal those of the reference line, except where the edge is away from this line and the
+    surface is inclined.
 
     Args:
         heights: The heights of the reference line.
@@ -99,8 +100,8 @@ def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
     """Returns cubics of the file as cubics over the stations of the Road.
 
-    Stations of file and Road differ where the centre line is longer or shorter than the reference line. They
-    are interpolated linearly between the given stations.
+    Stations of file and Road differ where the centre line is longer or shorter than the reference line. The
+    stations are interpolated linearly between the given ones.
 
     Args:
         profile: The cubics over the stations of the file.

@@ -2,7 +2,7 @@
 
 Files contain rounded numbers, and some elements are shorter than the rounding errors. A curve through every
 pose would oscillate there: an error of 1 cm within one metre causes a bend with a radius of 33 m. Poses close
-to such a place are therefore left out, the more of them the larger the error.
+to such a place are therefore left out; the larger the error, the more poses.
 """
 
 import math
@@ -34,7 +34,8 @@ class SampledLine:
     poses: Array
     """One row (x, y, heading) per pose, ``(n, 3)``, in metres and radians."""
     gaps: Array
-    """Distance in metres between the ends of the two elements that meet at each pose, ``(n,)``; otherwise 0.
+    """Distance in metres between the ends of the two elements that meet at each pose, ``(n,)``; 0 where no
+    elements meet.
     """
     kinks: Array
     """Jump of the heading in radians at each pose, ``(n,)``; 0 where no elements meet."""
@@ -45,7 +46,7 @@ class SampledLine:
     """
 
     def only(self, kept: Array) -> "SampledLine":
-        """Returns the line with only the poses that ``kept`` selects, by a mask or indices."""
+        """Returns the line with only the poses that the mask or the indices ``kept`` select."""
         return SampledLine(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 

@@ -41,7 +41,7 @@ class LaneSection:
     lanes: tuple[LaneElement, ...]
     """The lanes on the driven side."""
     others: tuple[LaneElement, ...]
-    """The lanes on the other side."""
+    """The lanes on the side opposite to the driven side."""
     centre: tuple[Node, ...]
     """Lane 0, if there is one."""
     first: int
@@ -222,6 +222,6 @@ def _speeds(nodes: Sequence[Node]) -> list[float]:
 
 
 def friction(driven: Sequence[Node]) -> float | None:
-    """Returns the friction of the driven lane in the file; None where the file gives none."""
+    """Returns the friction of the driven lane in the file; None if the file gives no friction."""
     said = [node for lane in driven for node in lane.all("material") if "friction" in node.attributes]
     return number(said[0], "friction") if said else None

@@ -12,7 +12,10 @@ UNUSED = ("none", *BESIDE)  # lanes that are not worth a word
 
 
 def left_out(choice: Choice, profile: FileProfile) -> str | None:
-    """Returns a sentence that lists the contents of the file that are left out; None without any."""
+    """Returns a sentence that lists the contents of the file that are left out.
+
+    None if nothing is left out.
+    """
     parts = [*_parts(choice, profile)]
     return f"left out: {', '.join(parts)}" if parts else None
 

@@ -1,7 +1,7 @@
 """Computes the plan curve of a Road from the reference line and the driven lane of an OpenDRIVE file.
 
 exact      used if the edge is the reference line, made of lines, arcs and spirals that meet: kept unchanged
-fitted     used otherwise: clothoids through poses one metre apart, except near elements that do not meet
+fitted     used otherwise: clothoids through poses one metre apart, except near gaps between elements
 rounded    used if too many elements do not meet for clothoids to be fitted: a spline
 """
 
@@ -47,7 +47,7 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
 
 
 def lies_on_the_line(lanes: Lanes, length: float) -> bool:
-    """Returns whether the inner edge of the driven lane is the reference line itself."""
+    """Returns whether the inner edge of the driven lane coincides with the reference line."""
     s = np.linspace(0.0, length, max(FEWEST, int(length / STEP) + 1))
     s = np.unique(np.r_[s, [each for each in lanes.joints() if 0 <= each <= length]])
     t, slope = lanes.edge(s)
@@ -57,7 +57,8 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
     """Returns poses along the inner edge of the driven lane.
 
-    They are at most about one metre apart, with one wherever an element or a lane width begins.
+    The poses are at most about one metre apart, and there is a pose wherever an element or a lane width
+    begins.
 
     Args:
         line: The reference line.
@@ -142,10 +143,10 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """Returns a plan of clothoids through the poses, except those near elements that do not meet.
+    """Returns a plan of clothoids through the poses; poses near gaps between elements are skipped.
 
-    Also returns the stations of these poses in the file and on the plan, in metres. Returns None if clothoids
-    cannot follow the line.
+    Also returns the stations of the remaining poses in the file and on the plan, in metres. Returns None if
+    clothoids cannot follow the line.
     """
     kept = bridged(line)
     pieces = clothoids(kept.poses) if kept is not None else None

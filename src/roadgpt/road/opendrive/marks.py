@@ -23,7 +23,7 @@ MARKS: dict[str, Marking] = {
 
 
 class MarkedLane(NamedTuple):
-    """A lane in one section; its road marks are those at its outer edge."""
+    """A lane in one lane section, with the road marks at its outer edge."""
 
     span: Span
     node: Node

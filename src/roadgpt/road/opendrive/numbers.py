@@ -44,14 +44,15 @@ def cubic(node: Node) -> Cubic:
 
 
 def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
-    """Returns the cubic polynomials of elements, each valid from its station to the next; None without any.
+    """Returns the cubic polynomials of elements, each valid from its station to the next; None if there are
+    no elements.
 
     Before the first station, the value is constant.
 
     Args:
         nodes: Elements with the attributes a, b, c and d.
         station: Name of the attribute with the station at which a cubic begins.
-        start: Number that is added to each station, in metres.
+        start: Distance in metres that is added to each station.
     """
     rows = sorted(
         ((start + number(node, station, 0.0), cubic(node)) for node in nodes), key=lambda row: row[0]

@@ -1,7 +1,8 @@
 """Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
 
-The centre line is the inner edge of the innermost driving lane. The lanes of successive lane sections are
-joined in their order, except those that begin or end without a width; elsewhere a lane has no width.
+The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
+in their order from the inside out; lanes that begin or end with a width of 0 are not joined. In sections
+where a joined lane does not exist, its width is 0.
 """
 
 import math
@@ -41,7 +42,7 @@ class LaneMarkings:
     """The markings of a cross-section."""
 
     right: tuple[Marking, ...]
-    """Those at the outer edges of the lanes on the right."""
+    """The markings at the outer edges of the lanes on the right."""
     centre: Marking
     left: tuple[Marking, ...]
 
@@ -57,10 +58,10 @@ class FileProfile:
     """Index of the driven lane in ``right``."""
     angle: CubicProfile | None
     remarks: tuple[str, ...]
-    """Sentences about what was changed."""
+    """Sentences about properties of the file that were changed."""
 
     def used(self) -> set[int]:
-        """Returns the identities (``id``) of the XML elements of all lanes that are a part of the profile."""
+        """Returns Python's ``id`` of the XML element of every lane that is a part of the cross-section."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
     def driven_nodes(self) -> list[Node]:
