@@ -5,8 +5,8 @@ Sources and precedence are those of ``roadgpt.chat.config``: the command line fi
 (``ROADGPT_FRICTION``), then ``.env`` and ``roadgpt.toml`` in the working folder, then the user's
 ``config.toml``. The tables are ``[run]``, ``[world]`` and ``[beamng]``; ``[chat]`` is for language models.
 
-A working folder may come from somebody else. Therefore its files cannot name a driver's file, a program, a
-server or a plug-in that asks a language model: such a value is refused, and the user has to give it as an
+A working folder may come from somebody else. Therefore its files cannot specify a driver's file, a program, a
+server or a plug-in that uses a language model: such a value is refused, and the user has to give it as an
 option.
 """
 
@@ -103,7 +103,9 @@ def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
 
 
 def driver_guard(value: str, place: str) -> str:
-    """Refuses a driver's file if the working folder names it, or if its path depends on that folder."""
+    """Refuses a driver's file if a configuration file in the working folder specifies it, or if its path is
+    relative.
+    """
     if ".py" not in value:
         return ""
     if place == OF_FOLDER:
@@ -113,7 +115,7 @@ def driver_guard(value: str, place: str) -> str:
 
 
 def place_guard(value: str, place: str) -> str:
-    """Refuses a value that only the user may set, such as a host, if a file of the working folder sets it."""
+    """Refuses a value that only the user may set, such as a host, if a file in the working folder sets it."""
     del value
     return YOURSELF if place == OF_FOLDER else ""
 

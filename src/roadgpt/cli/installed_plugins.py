@@ -26,7 +26,7 @@ class InstalledPlugin:
 
 
 def installed() -> list[InstalledPlugin]:
-    """Returns every installed plug-in; the description of one that cannot be loaded says why."""
+    """Returns every installed plug-in; if a plug-in cannot be loaded, its description gives the reason."""
     return [_part(shelf, name) for shelf in plugins.KINDS for name in plugins.names(shelf)]
 
 

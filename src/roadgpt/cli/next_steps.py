@@ -51,7 +51,7 @@ class WithoutFailure:
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
     """Returns suggestions, each with the command that carries it out.
 
-    The list is empty if a test failed (``quiet`` is None) or too few tests were driven.
+    The list is empty if a test failed (then ``quiet`` is None) or if too few tests were driven.
     """
     return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 
@@ -102,7 +102,10 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Summarises a campaign in which no test failed; None if it is running or a test failed."""
+    """Summarises a campaign in which no test failed.
+
+    Returns None if the campaign is still running or a test failed.
+    """
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
     from roadgpt.campaign.record import Record
@@ -117,7 +120,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_runs(folder: Path) -> WithoutFailure | None:
-    """Summarises a folder of runs in which no road failed; None if one failed."""
+    """Summarises a folder of runs in which no test failed; None if a test failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.card import read_card
@@ -129,7 +132,7 @@ def of_runs(folder: Path) -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Summarises the rows of roads, none of which failed; None if one failed."""
+    """Summarises the result rows of roads on which no test failed; None if a test failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

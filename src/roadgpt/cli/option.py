@@ -41,7 +41,8 @@ class Option(click.Option):
     Several commands can share one Option. ``click.Option`` documents the other arguments.
 
     Args:
-        names: The names of the option, and that of the function's argument if it differs, between blanks.
+        names: The names of the option, separated by blanks, and the name of the function's argument if it
+            differs.
         sentence: The option's text in the help.
         kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
         default: The value without the option; the help shows it unless ``sentence`` does.
@@ -205,10 +206,10 @@ class Argument(click.Argument):
 
     Args:
         name: The name of the function's argument; with "..." behind it, the argument takes several values.
-        metavar: What the help calls it.
+        metavar: The name of the argument in the help.
         advice: A sentence that says what to type; empty if click's own message is enough.
         kind: A type as click takes it, or a function that converts the text.
-        required: Whether it must be given.
+        required: Whether the user must give the argument.
     """
 
     def __init__(
@@ -233,7 +234,7 @@ def words_of(
 
     Args:
         options: The options.
-        values: An object that has the options' fields; None: there are no arguments.
+        values: An object that has the options' fields; None gives no arguments.
         usual: An object with the defaults of these fields; None: the defaults are those of the options.
         told: The keys of options that configuration files set, so that even a default has to be given.
     """

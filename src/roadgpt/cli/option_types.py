@@ -43,7 +43,7 @@ def lanes(value: str) -> str:
 
 
 def bank(value: str) -> str | float:
-    """Converts a superelevation to a number in percent; "none" and "auto" stay."""
+    """Converts a superelevation to a number in percent; returns "none" and "auto" unchanged."""
     text = str(value).strip().removesuffix("%").strip()
     if text in ("none", "auto"):
         return text

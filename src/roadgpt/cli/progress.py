@@ -68,7 +68,7 @@ class _Lines:
 
 
 def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
-    """Yields the steps, each when it is done, and shows their progress as ``progress`` does."""
+    """Yields each step when it is done, and shows the progress as ``progress`` does."""
     with progress(what, total, quiet) as tell:
         for done, step in enumerate(steps, 1):
             tell(done)

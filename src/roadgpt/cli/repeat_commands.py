@@ -40,12 +40,12 @@ def request_words(request: Request, roads: int) -> list[str]:
 def option_words(
     setup: Setup, world: World, of_setup: Sequence[Option] = options.SETUP, asks: bool = True
 ) -> list[str]:
-    """Returns the options that differ from their defaults, or that a file of settings would change.
+    """Returns the options that differ from their defaults or are set in a configuration file.
 
     Args:
         setup, world: The values of the options.
-        of_setup: The options of the Setup that the command has.
-        asks: Whether the command has options of language models.
+        of_setup: The options of the command that set fields of the Setup. asks: Whether the command has
+            options for language models.
     """
     told = keys_set()
     words = [*words_of(of_setup, setup, told=told), *words_of(options.WORLD, world, told=told)]

@@ -75,7 +75,7 @@ class Row:
 
     @property
     def outcome(self) -> str:
-        """The outcome with its cause or grade, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
+        """The outcome with cause or qualifier, such as 'FAIL (out of lane)' or 'PASS (mostly outside)'."""
         if self.cause:
             return f"{self.test_outcome} ({self.cause})"
         from roadgpt.verdict import graded

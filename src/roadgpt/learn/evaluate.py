@@ -28,7 +28,7 @@ class Reading:
     """The reason why the reader refused the description."""
     right: bool
     parts: frozenset[str]
-    """The aspects listed in PARTS that are right; all of them if the description was rightly refused."""
+    """The aspects listed in PARTS that are right; all aspects if the description was rightly refused."""
 
     @property
     def is_honest(self) -> bool:
@@ -55,7 +55,7 @@ class Score:
     refused_wrongly: float
 
     def row(self, name: str) -> str:
-        """Returns the scores as one row of a Markdown table, which begins with ``name``."""
+        """Returns the scores as one row of a Markdown table; the first cell of the row is ``name``."""
         shares = (
             self.exact,
             self.turns,

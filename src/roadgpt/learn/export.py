@@ -116,14 +116,14 @@ def _graphs(
 def export_checkpoint(
     checkpoint: Path, folder: Path, train_pairs: Sequence[Pair], held_back: Sequence[Pair], seed: int
 ) -> None:
-    """Writes everything that the reader needs, from the checkpoint of a training.
+    """Writes all files that the reader needs, from the checkpoint of a training run.
 
     Args:
         checkpoint: folder with ``checkpoint.pt`` and ``pieces.txt``.
         folder: where the graphs, the pieces, the learnt words and the settings are written.
         train_pairs: hand-written pairs that the model was trained on.
         held_back: pairs that the model was not trained on, for the calibration of the confidence.
-        seed: seed of the generated pairs in which words are counted.
+        seed: seed of the generated pairs from which the learnt words are found.
 
     Raises:
         LearnError: there is no checkpoint.

@@ -18,7 +18,7 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 
 
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
-    """Yields one line of JSON for each pair: a chat that asks for the Brief of a description and gives it."""
+    """Yields one line of JSON for each pair: a chat that asks for a description's Brief, and the answer."""
     for pair in pairs:
         answer = ADVICE.get(pair.plan) or read_plan(pair.plan).model_dump_json(exclude_defaults=True)
         yield _chat(TO_BRIEF, pair.text, answer)

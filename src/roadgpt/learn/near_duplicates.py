@@ -24,7 +24,9 @@ MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
 
 @dataclass(frozen=True, slots=True)
 class NearDuplicate:
-    """Two descriptions, by index, that share too many 5-grams; ``shared`` is the share, from 0 to 1."""
+    """Two descriptions, by index, that have too many 5-grams in common; ``shared`` is the common fraction, 0
+    to 1.
+    """
 
     shared: float
     first: int

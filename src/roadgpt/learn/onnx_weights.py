@@ -1,4 +1,4 @@
-"""Reads the weights of an exported reader, so that a new training can start from the installed reader."""
+"""Reads the weights of an exported reader, so that a new training run can start from the installed reader."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""Prepares a new training: verifies, by their hash, the public weights that the encoder starts from."""
+"""Prepares a new training run: verifies, by their hash, the public weights from which the encoder starts."""
 
 from collections.abc import Sequence
 from hashlib import file_digest
@@ -25,10 +25,10 @@ were rounded to 8 bits. pieces.txt is a part of the vocabulary of BERT (Google, 
 
 
 def begin(out: Path, weights: Path | None, exported: Path | None = None) -> Sequence[str]:
-    """Returns the word pieces of a training, and prepares the folder of the training if it is new.
+    """Returns the word pieces used by a training run, and prepares the folder of the run if the run is new.
 
     Args:
-        out: folder of the training.
+        out: folder of the training run.
         weights: folder with ``model.safetensors`` and ``vocab.txt``; not needed to resume a training.
         exported: folder of an exported reader from which a new training may start instead.
 

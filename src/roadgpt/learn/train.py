@@ -28,7 +28,7 @@ occur in no pair keep their meaning."""
 
 @dataclass(frozen=True, slots=True)
 class TrainingSettings:
-    """Settings of a training."""
+    """Settings of a training run."""
 
     steps: int = 14_000
     size: int = 48
@@ -68,7 +68,8 @@ def train(
         hand: hand-written pairs for training.
         plan: settings of the training.
         report: called with a progress line from time to time.
-        check: called before every step and while waiting for other workers; raises if one has ended.
+        check: called before every step and while waiting for other workers; raises an error if a worker has
+            ended.
     """
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")

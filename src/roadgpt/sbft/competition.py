@@ -1,5 +1,6 @@
-"""Defines the Competition, which runs one generator test after test until its budget is used up or it
-ends."""
+"""Defines the Competition, which runs one generator, test after test, until the generator ends or its budget
+is used up.
+"""
 
 import time
 from collections.abc import Callable, Iterator

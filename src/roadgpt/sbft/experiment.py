@@ -26,7 +26,9 @@ class Experiment(Frozen):
     time_budget: Positive | None = None
     """Seconds of wall time for generating and driving."""
     test_budget: Annotated[int, Field(ge=1)] | None = None
-    """Number of tests, invalid ones included; a fair budget on every machine."""
+    """Number of tests, including invalid ones; unlike time, this budget does not depend on the speed of the
+    machine.
+    """
     patience: Positive = 600.0
     """Seconds of wall time within which the generator must submit its next test."""
     grace: Positive = 30.0
@@ -48,5 +50,5 @@ class Ending(Frozen):
 
     @property
     def is_of_a_generator(self) -> bool:
-        """Whether the generator could be loaded."""
+        """True if the generator could be loaded."""
         return self.how not in UNBEGUN

@@ -16,8 +16,8 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
 
 
 def by_parts(voice: Voice) -> Composition:
-    """Returns a description of three to eight turns in two parts that differ, sometimes with a hairpin at an
-    end.
+    """Returns a description of three to eight turns whose first and last part differ, sometimes with a
+    hairpin at one end.
     """
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)

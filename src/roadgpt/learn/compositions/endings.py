@@ -21,7 +21,7 @@ def corrected(voice: Voice) -> Composition:
 
 
 def nothing_more(voice: Voice) -> Composition:
-    """Returns a description that lists features and states that there are no others."""
+    """Returns a description that lists features and states that the road has no further features."""
     said: list[str] = []
     parts: list[str] = []
     for _ in range(voice.whole(1, 4)):

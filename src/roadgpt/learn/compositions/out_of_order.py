@@ -1,4 +1,6 @@
-"""Descriptions that name features out of driving order: what comes before, what lies between, how it ends."""
+"""Descriptions that do not name features in driving order, but say what comes before another feature, what is
+between two, or how the road ends.
+"""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, Voice
 

@@ -181,8 +181,8 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Yields the control points of endless roads, in metres: at most 2 m apart, at most 500 points, and
-        valid for the competition.
+        """Yields the control points of one road after another, without end; they are in metres, at most 2 m
+        apart, at most 500 per road, and valid for the competition.
 
         Raises:
             RoadGPTError: as for ``start``.

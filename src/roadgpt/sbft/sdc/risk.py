@@ -116,11 +116,10 @@ class RiskModel:
         return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
-        """Returns the indices of the tests to select: those most likely to fail.
+        """Returns the indices of the tests to select: the tests most likely to fail.
 
-        It selects 5 % of all tests. It selects further tests until three failures are expected, as long as
-        each is more likely to fail than the average test. If no outcomes are known, it selects 10 % of all
-        tests.
+        These are 5 % of all tests, and further tests until three failures are expected, as long as each is
+        more likely to fail than the average test. If no outcomes are known, 10 % of all tests are selected.
         """
         scores = self.scores(features)
         first = order(scores)

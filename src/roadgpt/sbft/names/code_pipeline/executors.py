@@ -27,8 +27,11 @@ PER_TEST = 35.0  # s: what one test takes in the competition's own pipeline
 
 
 class Remaining(Dict[str, float]):
-    """The remaining budget: a dictionary, as the competition has had it since 2022, that also compares like
-    the number that it was before."""
+    """The remaining budget.
+
+    It is a dictionary, as in the competition since 2022, but can also be compared with numbers, as in earlier
+    competitions.
+    """
 
     def __float__(self) -> float:
         return self[REMAINING]
@@ -58,8 +61,9 @@ class SharedCounter:
 class Budget:
     """A budget: seconds of wall time, a number of tests, or both.
 
-    If only the number of tests is limited, the remaining time is 35 s for each remaining test, as a test
-    takes in the competition. A generator that plans by the remaining time then behaves as in the competition.
+    If only the number of tests is limited, the remaining time is 35 s per remaining test, which is what a
+    test takes in the competition. A generator that plans by the remaining time then behaves as in the
+    competition.
     """
 
     def __init__(

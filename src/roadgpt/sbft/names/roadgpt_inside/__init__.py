@@ -2,6 +2,6 @@
 Python 3.8.
 
 It runs in the generator's interpreter, which has libraries of its own. Whatever needs more than the standard
-library is requested from RoadGPT: RoadGPT runs in the generator's interpreter if it is installed there, else
-in its own.
+library is requested from RoadGPT, which runs in the generator's interpreter if it is installed there, else in
+an interpreter of its own.
 """

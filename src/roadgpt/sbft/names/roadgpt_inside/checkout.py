@@ -1,5 +1,5 @@
-"""Imports the modules under the competition's names: RoadGPT's own, else those of a checkout of the
-competition's code.
+"""Imports modules by the competition's names: RoadGPT's modules where they exist, else those in a checkout of
+the competition's code.
 
 A name that a module of RoadGPT lacks is taken from the same module of the checkout. Most of these names
 control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.

@@ -44,8 +44,9 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Returns the share of the car's box, 0 to 1, that is outside the lane or the road that ``wrt``
-        names."""
+        """Returns the share of the car's box, 0 to 1, that is outside the lane or the road; ``wrt`` selects
+        which.
+        """
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
@@ -54,13 +55,14 @@ class OutOfBoundsMonitor:
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Returns half the width of the lane or the road minus the car's distance from its centre line, in
-        metres."""
+        """Returns half the width of the lane or the road minus the car's distance from the centre line of the
+        lane or road, in metres.
+        """
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
 
     def is_oob(self, wrt: str = "right") -> bool:
-        """Returns whether the car's centre is outside the lane or the road that ``wrt`` names."""
+        """Returns whether the car's centre is outside the lane or the road; ``wrt`` selects which."""
         return not self._of(wrt, "polygon").contains(self._place())
 
     def _of(self, wrt: str, kind: str) -> Any:
