@@ -26,12 +26,12 @@ HEADINGS = {
     "Evaluate": {
         "check": "Check roads against the rules.",
         "report": "Write a report on a folder of runs, a campaign or a study.",
-        "study": "Repeat the evaluation of the thesis, measure alignment, survey people.",
+        "study": "Repeat the evaluation of the RoadGPT thesis, or survey people.",
     },
     "Exchange": {
         "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",
         "import": "Read a road from an OpenDRIVE file.",
-        "compete": "Run test generators of SBFT, or serve the SDC competition.",
+        "compete": "Run SBFT test generators, or the server of the SDC competition.",
     },
     "Set up": {
         "config": "Show all settings and where each comes from; list plug-ins.",

@@ -51,9 +51,9 @@ WORLD = (
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
             0.95),
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
-    _world("--lanes", "Lanes along + against, such as 2+1.", lanes, "1+1"),
+    _world("--lanes", "Lanes in driving direction + oncoming.", lanes, "1+1"),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
-    _world("--lane-width-end", "Width to which lanes widen or narrow until the end, m. [default: the same]",
+    _world("--lane-width-end", "Lane width at the end of the road, m; it changes evenly. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
     _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
     _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
@@ -64,14 +64,14 @@ WORLD = (
 
 SETUP = (
     _run("--reader", "Reader: model, grammar or chat.", str, "model", guard=reader_guard),
-    _run("--designer", "Designer: planner, chat or thesis.", str, "planner",
+    _run("--designer", "What designs: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
     _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
     _run("--geometry",
-         "How a design becomes a road: lines, arcs and clothoids (arcs), or the thesis' spline.",
+         "How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in the thesis).",
          click.Choice(["arcs", "spline"]), "arcs", is_rare=True),
     _run("--rules", "Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
          "competition.", click.Choice(["strict", "sbft"]), "strict", is_rare=True),
@@ -149,8 +149,8 @@ BEAMNG = (
 )
 
 AXES = _files(
-    "--axes", "Axes of pictures: equal, to scale; or thesis, with the ranges of RoadGPT's thesis: 220 m by "
-    "220 m seen from above, 200 m by 20 m for the height.", click.Choice(["equal", "thesis"]), "equal",
+    "--axes", "Axes of pictures: equal (to scale), or thesis (the ranges of the RoadGPT thesis: 220 m x "
+    "220 m from above, 200 m x 20 m for the height).", click.Choice(["equal", "thesis"]), "equal",
     is_rare=True, table="run",
 )
 FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
@@ -159,8 +159,8 @@ NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
 JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 DRIVER_AGAIN = Option(
-    "--driver", "The driver's file. Give it again if the run used a driver from a file: for safety, code "
-    "that only a folder names is never run.", driver_again, metavar="FILE.py:CLASS", heading=Heading.DRIVE,
+    "--driver", "The driver's file. Repeat it here if the run used one: for safety, a driver's file is not "
+    "run just because a folder refers to it.", driver_again, metavar="FILE.py:CLASS", heading=Heading.DRIVE,
 )
 
 _output = partial(Option, kind=bool, heading=Heading.OUTPUT)

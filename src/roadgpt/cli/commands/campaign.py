@@ -44,7 +44,7 @@ PARAMETERS = (
     *options.WORKERS,
     *named(options.SETUP, "reader", "designer"),
     Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With "
-           "FILE.toml: permits running the code of a driver that FILE.toml names.", driver, ("beamng_like",),
+           "FILE.toml: confirms that a driver's file listed there may be run.", driver, ("beamng_like",),
            multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,

@@ -48,7 +48,7 @@ OPTIONS = (
 def command(
     one: str, other: str, out: Path, no_plot: bool, mirror: bool, as_json: bool, axes: Any, **rest: Any
 ) -> None:
-    """Measure how similar two roads are, and plot one above the other, as in RoadGPT's thesis.
+    """Measure how similar two roads are, and plot them in two panels, one above the other.
 
     A and B are runs, tests of campaigns or road files. A similarity is a number from 0 (nothing in
     common) to 1 (identical). Moving or rotating a road does not change it.

@@ -138,7 +138,7 @@ OPTIONS = (
 
 @click.command("sdc", cls=GroupedCommand, params=[*OPTIONS])
 def sdc_command(port: int, host: str, quiet: bool) -> None:
-    """Serve test selection and prioritisation over gRPC, ranked by how likely the car is to leave its lane.
+    """Select and prioritise tests over gRPC, by how likely the car is to leave its lane.
 
     The likelihood is estimated from how far the driver's planned line leaves the lane, and from how the road
     bends; nothing is driven. The estimate learns from outcomes that the evaluator sends. Ctrl-C ends the
@@ -164,7 +164,7 @@ def sdc_command(port: int, host: str, quiet: bool) -> None:
 
 @click.group(cls=CommandGroup)
 def command() -> None:
-    """Run a test generator of the SBFT competition, or serve the SDC testing competition."""
+    """Run a test generator of the SBFT competition, or the server of the SDC competition."""
 
 
 command.add_command(sbft_command)

@@ -16,8 +16,8 @@ from roadgpt.errors import UsageError
 ADVICE = "Name the folder of a campaign, as 'roadgpt campaign' printed it."
 OPTIONS = (
     *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
-    Option("--base-url", "Address of the server. Give it again if the campaign used one: for safety, no API "
-           "key is sent to an address that only a folder names.", heading=Heading.MODEL),
+    Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
+           "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
     *FAULT_OPTIONS,
     options.JUNIT,
     options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT),
