@@ -38,8 +38,8 @@ def names(kind: str) -> list[str]:
     """Returns the sorted names of the plug-ins of a kind.
 
     Raises:
-        PartError: There are no plug-ins of this kind. (An empty list of rules, for example, would accept
-            every road.)
+        PartError: No plug-ins of this kind are installed. This is an error because, for example, every road
+            would be accepted if there were no rules.
     """
     found = sorted(_registered(kind))
     if not found:

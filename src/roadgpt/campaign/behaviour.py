@@ -85,8 +85,8 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """Returns how many turns have features of their own: all turns if the Brief states their number, else
-    0.
+    """Returns the number of turns that get features of their own: the number that the Brief states, or 0 if
+    it states no exact number or more than six.
     """
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0

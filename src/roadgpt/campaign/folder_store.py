@@ -56,8 +56,8 @@ class FolderStore(Store):
         return self._cells[name]
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Writes the files of tests that have ended; a test without a road is written once another test of
-        its cell has one.
+        """Writes the files of tests that have ended; a test without a road is held back until another test of
+        its cell has a road.
         """
         super().keep(ended, *rest)
         for name, one in ended:

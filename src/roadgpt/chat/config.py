@@ -167,7 +167,8 @@ def key_for(base_url: str | None) -> Key | None:
 
 
 def trust_server(base_url: str, wanted: str | None, place: object) -> None:
-    """Allows a server that a file names to receive the user's key, because the user names the same server.
+    """Allows the server that a file names to receive the user's key, provided that the user has named the
+    same server.
 
     Args:
         base_url: the server that the user names.
@@ -175,7 +176,7 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
         place: the file or folder, for the message.
 
     Raises:
-        UsageError: the file names another server.
+        UsageError: the file names another server, or none.
     """
     if wanted is None or origin_of(base_url) != origin_of(wanted):
         told = wanted or "no server of its own"

@@ -1,7 +1,8 @@
-"""Elements and RoadGPT's segments: how each is written as the other.
+"""Converts elements to RoadGPT's segments and back.
 
-RoadGPT's format cuts a turn beyond 70 degrees into several segments; an element is the whole turn. Elements
-that a planner drafted come back from their segments as they were, to the last written digit.
+In RoadGPT's format, a turn of more than 70 degrees is split into several segments; an element is the whole
+turn. Elements that the planner drafted are recovered from their segments exactly, to the last digit that is
+written.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,14 +27,16 @@ SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn 
 def turn_element(
     angle: float, hand: int, radius: float, transition: float, required_grade: Range | None = None
 ) -> Element:
-    """Returns a turn with its numbers rounded as they will be written, and its transition short enough.
+    """Returns a turn with its numbers rounded as they will be written, and its transitions short enough for
+    its arc.
 
     Args:
-        angle: degrees, positive.
-        hand: 1 to the left, -1 to the right.
-        radius: metres.
-        transition: metres, of the clothoid at either end; a segment limits it to a share of its arc.
-        required_grade: percent that was asked for.
+        angle: change of heading in degrees, positive.
+        hand: 1 for a left turn, -1 for a right turn.
+        radius: radius of the arc in metres.
+        transition: length in metres of the clothoid at each end; it is shortened to at most 0.55 of the arc
+            length of one segment.
+        required_grade: range that the mean grade must lie in, in percent; None if no grade is required.
     """
     parts = segments_of_turn(angle)
     share = round(angle / parts * TENTH) / TENTH
@@ -46,12 +49,14 @@ def turn_element(
 
 
 def least_radius(world: World) -> float:
-    """Returns the least radius in metres that a turn is written with, a little above what the rules allow."""
+    """Returns the smallest radius in metres with which a turn is written, slightly above the smallest that
+    the rules allow.
+    """
     return world.min_radius * OVER_LEAST_RADIUS
 
 
 def as_written(element: Element) -> Element:
-    """Returns the element with its plan rounded as it will be written."""
+    """Returns the element with its length, angle, radius and transition rounded as they will be written."""
     if not element.turn:
         return element._replace(straight=max(element.straight, SHORTEST))
     hand = 1 if element.turn > 0 else -1
@@ -60,7 +65,7 @@ def as_written(element: Element) -> Element:
 
 
 def segments_of_turn(angle: float) -> int:
-    """Returns the number of RoadGPT segments into which a turn of ``angle`` degrees is cut."""
+    """Returns the number of RoadGPT segments into which a turn of ``angle`` degrees is split."""
     return max(1, ceil(angle / MAX_TURN - 1e-9))
 
 
@@ -98,7 +103,9 @@ def cut(element: Element) -> list[Segment]:
 
 
 def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
-    """Returns the elements of segments in driving order; neighbouring straights of one incline are one."""
+    """Returns the elements of segments in driving order; neighbouring straights with the same incline become
+    one element.
+    """
     out: list[Element] = []
     for group in _groups(segments):
         for element in _of_group(group):

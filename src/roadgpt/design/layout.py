@@ -155,11 +155,12 @@ def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | N
 
 
 def boxes(z: Complex, thetas: Array) -> tuple[Array, Array, Array, Array]:
-    """Returns left edges, lower edges, widths and heights of the boxes around turned points, ``(m,)`` each.
+    """Returns the left edges, lower edges, widths and heights, ``(m,)`` each, of the bounding boxes of the
+    points after each rotation.
 
     Args:
         z: points as x + iy in metres.
-        thetas: degrees by which they are turned about the origin, ``(m,)``.
+        thetas: angles in degrees by which the points are rotated about the origin, ``(m,)``.
     """
     turned = np.exp(1j * np.radians(thetas))[:, None] * z
     left, low = turned.real.min(axis=1), turned.imag.min(axis=1)

@@ -51,7 +51,9 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
 
 
 def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
-    """Returns the pair, in a few percent of the cases with an added requirement that makes it impossible."""
+    """Returns the pair; in a few percent of the cases, a requirement is added that makes the description
+    impossible to satisfy.
+    """
     way = rng.random()
     if way < SPOILED / 2:
         text, plan = contradicted(pair.text, pair.plan, pair.lang, rng), "!contradiction"

@@ -1,4 +1,6 @@
-"""Makes the pictures that notebooks show for values; ``roadgpt`` registers ``png_of`` with IPython."""
+"""Makes the pictures with which notebooks display roads, designs, Runs and campaigns; ``roadgpt`` registers
+``png_of`` with IPython.
+"""
 
 from typing import Any
 
@@ -18,7 +20,7 @@ SIDE = 5.0  # inches
 
 @in_our_style
 def png_of(value: Any) -> bytes | None:
-    """Returns the picture of a value as the bytes of a PNG file; None if there is nothing to show.
+    """Returns the bytes of a PNG file with a picture of the value, or None if there is nothing to show.
 
     Args:
         value: a Road, a Design, a Run, or a Campaign, whose first page is shown.

@@ -7,8 +7,8 @@
     tables                 .csv and .tsv, with a header that names x and y, or without one
 
 All values are in metres. Widths are ignored, because lane widths are defined by the World. If points have a
-height and a width, and all heights are equal, the heights are ignored as well: such files state the height of
-the simulator's level there.
+height and a width, and all heights are equal, the heights are ignored as well, since they only state the
+ground height of the simulator's map.
 """
 
 import csv

@@ -74,8 +74,9 @@ def _post(side: float, height: float, light: float) -> Colour:
 
 @inlined
 def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
-    """Returns a colour as seen through haze: the share ``thin`` (0 to 1) of the colour remains, and the rest
-    is the colour of the haze, whose brightness increases by ``warm``, mostly in red."""
+    """Blends a colour with the colour of haze: ``thin`` (0 to 1) is the weight of the original colour;
+    ``warm`` brightens the haze, its red channel most.
+    """
     thick = 1.0 - thin
     r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
     return r, g, b * thin + (0.79 + 0.7 * warm) * thick

@@ -56,7 +56,7 @@ class StudyPlan(Frozen):
     """The command that makes the study again."""
 
     def parts(self) -> tuple[StudyPart, ...]:
-        """Returns all parts: all prompts of the first designer, then those of the next."""
+        """Returns all parts, one for each designer and prompt, ordered by designer and then by prompt."""
         return tuple(
             StudyPart(designer, number, prompt)
             for designer in self.designers

@@ -85,8 +85,8 @@ def most_to_one_side(order: DrivingOrder) -> None:
 
 
 def hills_of_a_list(order: DrivingOrder) -> None:
-    """Drops the three changes of slope that 'hilly' implies if a list names fewer, as in 'hilly: up, down,
-    up'.
+    """Drops the three changes of slope that 'hilly' requires by itself if the description lists fewer
+    changes: 'hilly: up, down, up' has two.
     """
     hills, changes, before = order.wishes.hills, 0, ""
     for thing in order.things:

@@ -68,7 +68,8 @@ def smallest_change(
     Args:
         kept: a Run that passed.
         failure: a Run that failed.
-        brief: requirements that every road driven in between must satisfy; None: no requirements.
+        brief: requirements that every road that is driven during the search must satisfy; None if there are
+            no requirements.
         most: maximum number of drives.
 
     Raises:

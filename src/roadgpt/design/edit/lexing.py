@@ -1,4 +1,4 @@
-"""Splits a change request into meanings."""
+"""Splits a change request into lexemes: words, phrases and numbers, each with its meaning."""
 
 import re
 from collections.abc import Sequence
@@ -21,13 +21,15 @@ SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%":
 
 @dataclass(frozen=True, slots=True)
 class RequestLexeme:
-    """A meaning: a name of the vocabulary, "#" for a number, "ord" for an ordinal."""
+    """A word, phrase or number with its meaning: ``name`` is a name of the vocabulary, "#" for a number, or
+    "ord" for an ordinal.
+    """
 
     name: str
     text: str
     value: float = 0.0
     unit: str = ""
-    """Of a number: deg, m, %, times, or nothing."""
+    """The unit of a number: deg, m, %, times, or empty if it has none."""
 
 
 @cache
@@ -60,7 +62,9 @@ def _longest() -> int:
 
 
 def lexemes(words: str) -> list[RequestLexeme]:
-    """Returns the meanings of a request in order; words without a meaning are UNKNOWN, noise is left out."""
+    """Returns the lexemes of a request in order; words without a meaning are UNKNOWN, and words without
+    effect are left out.
+    """
     found = tokens(_OWNER.sub(r"\1", _ELIDED.sub(r"\1 ", words)))
     out: list[RequestLexeme] = []
     at = 0

@@ -25,13 +25,16 @@ DECIMALS = 6
 
 
 class OpenScenario:
-    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car drives the right lane to its end; drives are replayed."""
+    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows the right lane; a second file replays the drive.
+    """
 
     name = "openscenario"
     suffix = ".xosc"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scenario, an OpenDRIVE file with the road, and the drive, if any, to NAME.drive.xosc."""
+        """Writes the scenario, an OpenDRIVE file with the road, and, if there is a drive, NAME.drive.xosc,
+        which replays it.
+        """
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
         OpenDrive().save(road, map_, world)

@@ -28,8 +28,8 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns a description of three to seven turns, some of them different; sometimes all turns have one
-    side.
+    """Returns a description of three to seven turns of different kinds; sometimes all of them go in the same
+    direction.
     """
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)

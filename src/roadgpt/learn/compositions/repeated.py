@@ -1,4 +1,6 @@
-"""Descriptions of repeated patterns, and of sides given as letters, with an angle for each side."""
+"""Describes repeated patterns, and turns whose directions are given as letters, such as 'L, L, R', with one
+angle for all left turns and one for all right turns.
+"""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
 
@@ -39,8 +41,8 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
 
 
 def lettered(voice: Voice) -> Composition:
-    """Returns a description with sides as letters ('L, L, R'), one angle for the lefts and one for the
-    rights.
+    """Returns a description whose turns are given as letters ('L, L, R'), sometimes with an angle for all
+    left turns, for all right turns, or one for each.
     """
     turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
     text = voice.pick((", ", "-", " ", ", ")).join(turn.mods["side"][0].upper() for turn in turns)

@@ -110,7 +110,9 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """Returns a value with an apostrophe before text that a spreadsheet would take for a formula."""
+    """Returns the value; text gets uniform line ends, and an apostrophe in front if a spreadsheet would
+    interpret it as a formula.
+    """
     if not isinstance(value, str):
         return value
     words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there

@@ -1,4 +1,4 @@
-"""Reads the elevation of an OpenDRIVE file, and converts cubics of the file to the stations of the Road."""
+"""Reads the elevation of an OpenDRIVE file, and expresses its cubics over the stations of the Road."""
 
 from itertools import pairwise
 

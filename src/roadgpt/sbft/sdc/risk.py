@@ -118,8 +118,9 @@ class RiskModel:
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
         """Returns the indices of the tests to select: the tests most likely to fail.
 
-        These are 5 % of all tests, and further tests until three failures are expected, as long as each is
-        more likely to fail than the average test. If no outcomes are known, 10 % of all tests are selected.
+        Selects the riskiest 5 % of all tests, then adds tests in order of risk until three failures are
+        expected or the next test is no more likely to fail than the average test. If no outcomes are known,
+        10 % of all tests are selected.
         """
         scores = self.scores(features)
         first = order(scores)

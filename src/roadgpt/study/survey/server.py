@@ -47,18 +47,20 @@ class LimitedConnection(H11Protocol):
         self._watch()
 
     def on_response_complete(self) -> None:
-        """Starts to wait for the next request."""
+        """Limits the time until the next request has arrived, after an answer is complete."""
         self._stop("request")
         super().on_response_complete()
         self._watch()
 
     def pause_writing(self) -> None:
-        """Starts to wait until the rater's side has received what was sent."""
+        """Pauses sending until the rater's browser has received most of what was sent; limits how long this
+        may take.
+        """
         super().pause_writing()
         self._start("answer", PATIENCE)
 
     def resume_writing(self) -> None:
-        """Sends more, since the rater's side has received most of what was sent."""
+        """Continues sending after the rater's browser has received most of what was sent."""
         self._stop("answer")
         super().resume_writing()
 

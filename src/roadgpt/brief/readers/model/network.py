@@ -71,7 +71,8 @@ class Network:
         Args:
             across: the keys and values of the description, as ``encode`` returns them.
             text: the description.
-            refuse_from: probability of a refusal, from 0 to 1, from which refusals are allowed as plans.
+            refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a
+                plan; with a value above 1, refusals are never allowed.
             width: number of plans that the beam search keeps at each step.
         """
         drafts, done = [Draft.of(text)], list[Draft]()

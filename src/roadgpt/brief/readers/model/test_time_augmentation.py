@@ -87,8 +87,8 @@ def scored_plans(
     Args:
         network: writes the plans.
         words: the description.
-        refuse_from: probability of a refusal, from 0 to 1, from which refusals are allowed as plans; a value
-            above 1 never allows them.
+        refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
+            with a value above 1, refusals are never allowed.
         shown: applied to the text before the network reads it, for example to replace unusual numbers.
     """
     text = shown(slotted(words))

@@ -113,7 +113,7 @@ class Worker:
         return self.fault or children.ending(status)
 
     def join(self, patience: float = FAREWELL) -> None:
-        """Waits at most ``patience`` seconds for the thread of the worker to end, which it does after the
+        """Waits at most ``patience`` seconds for the worker's thread to end; the thread ends after its
         process.
         """
         self._thread.join(patience)

@@ -55,8 +55,9 @@ class OutOfBoundsMonitor:
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Returns half the width of the lane or the road minus the car's distance from the centre line of the
-        lane or road, in metres.
+        """Returns the distance in metres from the car to the edge of the lane or road, negative if the car is
+        outside. It is half the width minus the distance from the centre line, both of the lane that ``wrt``
+        names ("right" or "left"), or of the road for any other value.
         """
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
