@@ -25,8 +25,7 @@ DECIMALS = 6
 
 
 class OpenScenario:
-    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows the right lane; a second file replays the drive.
-    """
+    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows the right lane, or replays its recorded drive."""
 
     name = "openscenario"
     suffix = ".xosc"

@@ -111,7 +111,7 @@ def csv_of(table: Table) -> str:
 
 def unformulated(value: Raw) -> Raw:
     """Returns the value; text gets uniform line ends, and an apostrophe in front if a spreadsheet would
-    interpret it as a formula.
+    read it as a formula.
     """
     if not isinstance(value, str):
         return value
