@@ -130,6 +130,10 @@ def test_a_road_file_keeps_the_cross_section_to_the_last_digit() -> None:
         ({"right": "all"}, "list"),
         ({"left": [{"kind": "driving", "width": 3}]}, "marking"),
         ({"superelevation": [[0, 0.5, 0, 0, 0]]}, "beyond"),
+        ({"superelevation": [[0, 0, 1e308, 0, 0], [30, 0, 0, 0, 0]]}, "beyond"),
+        ({"superelevation": [[0, 0, 0, 1e308, -1e308], [30, 0, 0, 0, 0]]}, "beyond"),
+        ({"superelevation": [[0, 0, 0, 0, 0], [9e18, 0, 0, 0, 0]]}, "beyond"),
+        ({"superelevation": [[0, 0, 1, 0, 0], [30, 0, 0, 0, 0]]}, "beyond"),
         ({"colour": 3}, "colour"),
     ],
 )

@@ -112,12 +112,14 @@ class CubicProfile:
 
     def extremes(self) -> tuple[float, float]:
         """Returns the smallest and the largest height in metres from the first station to the last one."""
-        s = [*self.stations]
-        for start, end, (_, b, c, d) in zip(s, s[1:], self.coefficients, strict=False):
-            turning = np.roots([3 * d, 2 * c, b])
-            s += [start + u.real for u in turning if abs(u.imag) < 1e-9 and 0 < u.real < end - start]
-        heights = self.height(np.array(s))
-        return float(heights.min()), float(heights.max())
+        found = [self.coefficients[-1][0]]
+        for start, end, (a, b, c, d) in zip(
+            self.stations, self.stations[1:], self.coefficients, strict=False
+        ):
+            turning = [u.real for u in np.roots([3 * d, 2 * c, b]) if abs(u.imag) < 1e-9]
+            for u in (0.0, *(u for u in turning if 0 < u < end - start), end - start):
+                found.append(a + u * (b + u * (c + u * d)))
+        return min(found), max(found)
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""

@@ -219,7 +219,7 @@ class Profile:
         """Returns the angle in radians of the surface, positive where it falls to the right."""
         if self.superelevation_angle is None:
             return np.zeros(np.shape(s))
-        return self.superelevation_angle.height(s)
+        return _at(self.superelevation_angle, s)
 
 
 NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0

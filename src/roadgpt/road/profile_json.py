@@ -4,7 +4,6 @@ A width is a number, or rows ``[s, a, b, c, d]``: from station ``s`` on, it is `
 metres at ``u`` metres after ``s``. The superelevation has the same form, in radians.
 """
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any, get_args
 
@@ -15,6 +14,7 @@ from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
 MOST_LANES = 20  # on one side
 MOST_ROWS = 20_000
 WIDEST = 100.0  # m, of a lane or shoulder
+LARGEST = 1e12  # of a station or a coefficient
 STEEPEST = 0.35  # rad, of superelevation
 
 
@@ -92,8 +92,8 @@ def _cubics(rows: Any, most: float) -> CubicProfile:
     ):
         raise ValueError("a row has five numbers [s, a, b, c, d]")
     numbers = [tuple(float(v) for v in row) for row in rows]
-    if not all(math.isfinite(v) for row in numbers for v in row):
-        raise ValueError("a number is not finite")
+    if not all(abs(v) <= LARGEST for row in numbers for v in row):
+        raise ValueError(f"a number is not finite, or beyond {LARGEST:g}")
     cubics = CubicProfile(tuple(row[0] for row in numbers), tuple((a, b, c, d) for _, a, b, c, d in numbers))
     if max(abs(v) for v in cubics.extremes()) > most:
         raise ValueError(f"a value is beyond {most:g}")
