@@ -1,4 +1,4 @@
-"""Errors that depend on the size of the map; they carry the Brief, since another map may hold the road."""
+"""Errors that depend on the size of the map; they carry the Brief, since the road may fit on another map."""
 
 from roadgpt.brief.model import Brief
 from roadgpt.errors import BriefError

@@ -39,8 +39,8 @@ class WithoutFailure:
 
     @property
     def is_worth_it(self) -> bool:
-        """Whether enough tests were driven for suggestions, and command-line options can express the whole
-        request.
+        """Whether enough tests were driven to make suggestions, and whether the whole request can be
+        expressed by command-line options.
         """
         named = {flag.field for flag in options.WORLD}
         usual = type(self.request.world)().model_dump(exclude=named)

@@ -36,7 +36,7 @@ class Designer(Protocol):
             world: the map and the limits of the rules.
             notes: sentences of the rules that objected to the draft before.
             earlier: designs of the campaign so far, which are not repeated.
-            seed: seed of the random generator.
+            seed: seed of the random number generator.
 
         Raises:
             DesignError: this designer found no such Design.
@@ -60,7 +60,7 @@ def draft(
         world: the map and the limits of the rules.
         notes: sentences of the rules that objected to the draft before.
         earlier: designs of the campaign so far, which are not repeated.
-        seed: seed of the random generator.
+        seed: seed of the random number generator.
         designer: name of a plug-in of the kind ``designers``.
         chat: settings of the language model, for designers that use one; None for the user's settings.
 

@@ -1,6 +1,6 @@
 """Writes the sentence of a refusal: which requirement no road can meet, and what to ask for instead.
 
-Lengths and maps are only offered if roads were drafted with them.
+A length or a map is suggested only if a road could be drafted with it.
 """
 
 from collections import Counter
@@ -40,7 +40,7 @@ def advice(
         brief: the requirements.
         outline: the same requirements as ranges.
         world: the map.
-        failed: the reasons why drafts failed, and how often each occurred.
+        failed: the reasons why drafts failed, with the number of times that each occurred.
         boxes: side in metres of the smallest square around each draft that was too large for the map.
         fits: tests whether roads can be drafted for another Brief, or on another map.
     """
@@ -62,7 +62,7 @@ def advice(
 
 
 def too_fast(world: World, slower: float | None) -> str:
-    """Returns one sentence that says that crests and dips would be too abrupt for the speed limit.
+    """Returns one sentence, which says that crests and dips would be too abrupt for the speed limit.
 
     Args:
         world: the speed limit.
@@ -116,7 +116,9 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
 
 
 def no_room(error: NoRoomError, world: World) -> str:
-    """Returns the sentence of a refusal by ``map_fit``, with an offer that was verified by drafting."""
+    """Returns the sentence of a refusal by ``map_fit``, with a suggestion that was verified by drafting a
+    road.
+    """
     from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
 
     brief = error.brief

@@ -1,4 +1,4 @@
-"""Composes a draft of turns, of the required straights between them, and of straights that only join.
+"""Composes a draft from turns, the required straights between them, and straights that only join the others.
 
 lead-in | turn | joining straight | turn | required straight | turn | lead-out
 """

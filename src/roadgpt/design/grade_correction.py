@@ -2,7 +2,7 @@
 
 The parabola that joins two grades belongs to both straights. A level straight is measured only where the road
 is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls. The planner
-therefore measures a draft, moves joints and grades by what is missing, and measures again.
+therefore measures a draft, corrects joints and grades by the errors, and measures again.
 """
 
 from collections.abc import Sequence
@@ -27,7 +27,7 @@ def with_vertical_radii(
     """Returns the elements with vertical radii in rows of straights of which at least one has a fixed length.
 
     Args:
-        elements: of a draft, in driving order.
+        elements: the elements of a draft, in driving order.
         pace: the vertical radii that the expected speeds require.
         ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
         bumps: True if radii may be as small as the wheels can follow.
@@ -46,7 +46,7 @@ def corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: 
     Between two turns, nothing is moved if the measured straights do not correspond to those of the draft.
 
     Args:
-        elements: of the draft that was measured, in driving order.
+        elements: the elements of the draft that was measured, in driving order.
         ends: station in metres at which each element should end.
         found: the measured road.
         limit: range of inclines that are allowed, in percent.

@@ -141,7 +141,7 @@ def drawn_heights(
     A straight of several slopes becomes several elements.
 
     Args:
-        plan: elements of a draft, in driving order.
+        plan: the elements of a draft, in driving order.
         outline: the requirements.
         windows: the grades that the requirements allow.
         rng: source of randomness.
@@ -385,10 +385,10 @@ def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: flo
     """Returns grades shifted alike, each as far as its limits allow, until the road climbs by ``metres``.
 
     Args:
-        grades: percent, ``(n,)``.
-        lengths: metres, ``(n,)``.
+        grades: grades in percent, ``(n,)``.
+        lengths: lengths in metres, ``(n,)``.
         limits: range of each grade in percent.
-        metres: height of the end above the start.
+        metres: required height of the end above the start, in metres.
     """
     least, most = np.array([r.lo for r in limits]), np.array([r.hi for r in limits])
     down, up = -MOST_SHIFT, MOST_SHIFT

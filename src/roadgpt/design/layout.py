@@ -189,8 +189,8 @@ def smallest_box(line: PlanLine) -> float:
 def moved_onto_map(design: Design, world: World) -> Design | None:
     """Returns the design moved onto the map; None if its road is too large.
 
-    The road is moved no further than it must be. Where moving is not enough, it is also turned about its
-    middle by the smallest angle, in hundredths of a degree, at which it fits.
+    The road is moved no further than necessary. If moving is not enough, it is also rotated about its middle,
+    by the smallest multiple of 0.01 degrees at which it fits.
     """
     corners = _corners(world.lay(build(design)), world)
     room = world.map_size - 2 * LEAST_EDGE

@@ -1,11 +1,12 @@
-"""Repairs a proposed Design by the smallest change that makes it valid and meets its Brief: ``repair``.
+"""Repairs a proposed Design by the smallest change that makes it valid and meets its Brief.
 
-    none   nothing is touched
-    place  the road is moved, turned only where that is not enough, and raised above the ground
-    full   then lengths and angles, radii and grades are changed as little as it takes; turns, their sides and
-           whether they go up, down or level stay those that were proposed
+    none   nothing is changed
+    place  the road is moved, rotated only if that is not enough, and raised above the ground
+    full   then lengths, angles, radii and grades are changed as little as necessary; the number of turns,
+           their sides, and whether they go up, down or level stay as proposed
 
-A road that cannot be repaired comes back placed at best; ``check.inspect`` says what is still wrong with it.
+A road that cannot be repaired is at least placed on the map if possible; ``check.inspect`` says what is still
+wrong with it. Main function: ``repair``.
 """
 
 from collections.abc import Iterator, Sequence
@@ -43,9 +44,9 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
 
     Args:
         design: The design as proposed.
-        brief: The requirements; None where there are none.
+        brief: The requirements; None if there are none.
         world: The map and the limits of the rules.
-        how: "none", "place" or "full"; see above.
+        how: "none", "place" or "full", as described at the top of this module.
     """
     if how == "none":
         return Repaired(design, ())

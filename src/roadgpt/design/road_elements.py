@@ -38,10 +38,11 @@ class RoadElement:
     first: int = 0
     """Index of its first segment among all segments of the road."""
     seen: MeasuredFeature | None = None
-    """The feature that was measured for this element before a change. None if the element is new, was not
-    measured, or is too short to be measured as a straight."""
+    """The measured feature of this element before a change; None if the element is new, was not measured,
+    or is too short to be measured as a straight.
+    """
     asked: Feature | None = None
-    """The requirement that the element has to meet; None if there is none."""
+    """The requirement that the element must meet; None if there is none."""
 
     @property
     def length(self) -> float:
@@ -82,7 +83,9 @@ def measured(design: Design, geometry: Geometry) -> Measures:
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the elements of a design by the turns that are measured on its road, and the measurement."""
+    """Returns the elements of a design, divided at the turns that are measured on its road, and the
+    measurement.
+    """
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (
@@ -123,7 +126,9 @@ def _members(
 
 
 def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
-    """Returns the turns and straights of a list of segments in driving order, without a measurement."""
+    """Returns the turns and straights that a list of segments forms, in driving order, without measuring a
+    road.
+    """
     rows: list[list[int]] = []
     for index, segment in enumerate(segments):
         last = segments[rows[-1][-1]] if rows else None
@@ -153,7 +158,8 @@ def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
 
 
 def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether each measured turn goes up, down or level as it is written, or has the grade asked for.
+    """Returns whether each measured turn goes up, down or level as its segments do, or has the required
+    grade.
 
     The road must have the turns of the elements.
     """
@@ -166,9 +172,10 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
 
 
 def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
-    """Returns the measured feature of an element; None where it is not seen by itself.
+    """Returns the measured feature of an element; None if it is not measured as a feature of its own.
 
-    The road must have the turns of the elements. Of several elements between two turns, the longest is seen.
+    The road must have the turns of the elements. If there are several elements between two turns, the longest
+    one counts as measured.
     """
     turns = [element.name for element in elements if element.is_turn]
     if name in turns:
@@ -193,7 +200,7 @@ def numbered(elements: RoadElements) -> RoadElements:
 
 
 def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadElements:
-    """Returns numbered elements made of other segments, as many of them as before."""
+    """Returns numbered elements with other segments, of which there must be as many as before."""
     return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
 
 

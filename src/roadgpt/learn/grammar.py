@@ -6,9 +6,16 @@ A grammar is a text. ``= name`` begins the rules of a symbol; each following lin
     3* <sharpness?> {bend|curve} to the <side>        => turn <sharpness> <side>
     [rather ]<#2-9:n> bends, the last one a hairpin   => turn x<=n-1>; hairpin
 
-``3*`` is a weight, ``{a|b}`` a choice, ``[a]`` is used half of the time (``[20:a]`` in 20 % of cases),
-``<name>`` is another symbol (``<name?>`` half of the time, ``<name?20>`` in 20 % of cases, ``<name:label>``
-with a label), ``<#2-9>`` a number (``<#20-90/5>`` in steps of 5), ``<=n-1>`` a sum of numbers in the text.
+The parts of a rule are:
+
+    ``3*``         the weight of the rule
+    ``{a|b}``      a choice between ``a`` and ``b``
+    ``[a]``        ``a`` in half of the cases (``[20:a]`` in 20 % of cases)
+    ``<name>``     another symbol (``<name?>`` in half of the cases, ``<name?20>`` in 20 % of cases), which
+                   may have a label: ``<name:label>``
+    ``<#2-9>``     a number (``<#20-90/5>`` in steps of 5), which may have a label: ``<#2-9:n>``
+    ``<=n-1>``     only in a plan: a number computed from labelled numbers of the text, here ``n`` minus 1
+
 Without ``=>``, the plan of a rule consists of the plans of its parts in order. In a plan, ``|word`` is a
 requirement for the whole road, wherever it occurs.
 """

@@ -70,7 +70,7 @@ class Planner:
             world: the map and the limits of the rules.
             notes: objections to an earlier draft; only their number matters, as it changes the seed.
             earlier: designs of the campaign so far; the new one differs from them as far as possible.
-            seed: seed of the random generator.
+            seed: seed of the random number generator.
 
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.

@@ -1,10 +1,11 @@
-"""Changes a Design as a request asks, and leaves the rest alone: ``read_request``, ``edit``.
+"""Edits a Design as a change request asks, and leaves the rest unchanged. Main functions: ``read_request``,
+``edit``.
 
     words --read_request--> EditRequest --pointed--> elements --steps--> requirements --fit--> Edited
 
-Turns and straights are those that are measured on the finished road (``check.measures``), numbered as they
-are before the edit. Elements that the request does not name keep every number; the road as a whole may be
-moved or turned, so that it stays inside the map.
+Turns and straights are those that are measured on the finished road (``check.measures``); they have the
+numbers that they had before the edit. Elements that the request does not name keep all their values, but the
+road as a whole may be shifted or rotated, so that it stays inside the map.
 """
 
 from collections.abc import Sequence
@@ -32,12 +33,12 @@ MOST_CHANGES = 12
 
 
 class Edited(NamedTuple):
-    """A changed Design, and sentences that say what is different from the old one."""
+    """A changed Design, and sentences that describe how it differs from the old one."""
 
     design: Design
     changes: tuple[str, ...]
     unused: tuple[str, ...] = ()
-    """Words that were not understood."""
+    """Words of the request that were not understood."""
 
 
 def edit(
@@ -48,21 +49,22 @@ def edit(
     designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> Edited:
-    """Returns the Design, changed as the words ask for.
+    """Returns the Design, changed as the words ask.
 
     Args:
-        design: as it is; it is not changed itself.
+        design: the Design before the edit; this value itself is not changed.
         words: a change request.
-        world: map and limits.
-        geometry: what the Design becomes.
-        designer: where it is one that asks a language model, the model changes the road; else rules do.
-        chat: the language model; None: what the user's settings say.
+        world: the map and the limits of the rules.
+        geometry: the kind of geometry that the road is built with.
+        designer: name of a designer; if it asks a language model, the model changes the road, otherwise rules
+            do.
+        chat: settings of the language model; None for the user's settings.
 
     Raises:
-        EditError: the words cannot be read, name what is not on the road, or ask for what no valid road can
-            be; one sentence says which.
+        EditError: the words cannot be read, name something that is not on the road, or ask for something that
+            no valid road can have; the message says which.
         PartError: there is no designer of that name.
-        ChatError: a language model could not be asked.
+        ChatError: the language model could not be asked.
     """
     part = plugins.find("designers", designer)
     if asks_a_model(part):

@@ -1,7 +1,7 @@
-"""The steps that make a change: which values to aim at, and what range may be measured in their stead.
+"""Returns candidates for a change: values to aim at, and ranges in which the measured values may lie.
 
-Words without numbers leave room ('sharper'). Numbers do not: then only what was not said gives way, such as
-the radius of a turn whose angle was said. A second candidate has wider ranges, or lets more elements change.
+Words ('sharper') allow wide ranges. Numbers do not: only other values may then vary, such as the radius of a
+turn whose angle is given. A second candidate has wider ranges, or lets more elements change.
 """
 
 from collections.abc import Callable, Sequence
@@ -52,16 +52,16 @@ STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 def change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates, the preferred one first; none where everything is as was asked for already.
+    """Returns all candidates, the preferred one first; none if the road already is as requested.
 
     Args:
-        change: Anything but an addition, a removal or a mirror image.
-        elements: The elements that are meant.
-        found: The measures of the whole road.
+        change: Any change except an addition, a removal or a mirror image.
+        elements: The elements to change.
+        found: The measurements of the whole road.
         world: The limits of the rules.
 
     Raises:
-        EditError: No road can be like that.
+        EditError: No road can have the requested values.
     """
     if change.bound:
         elements = [element for element in elements if _is_beyond(change, element, found)]
@@ -106,7 +106,7 @@ def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that make turns alternate from the first one on; none where they do already."""
+    """Returns the candidates that make turns alternate, from the first one on; none if they already do."""
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
         wrong += [element] if element.side != side else []

@@ -1,7 +1,9 @@
-"""Edits by a language model: it answers with the whole road, and code keeps what it was not to touch.
+"""Edits a road by a language model: the model answers with the whole road, and code restores what was not to
+be changed.
 
-The model says of every segment of its answer which one of the old road it is, and names the segments that the
-request speaks of. All others are put back number by number, whatever the model made of them.
+For every segment of its answer, the model gives the number of the same segment in the old road; it also lists
+the segments that the request concerns. All other segments get their old values back, whatever the model made
+of them.
 """
 
 import json
@@ -53,7 +55,7 @@ class EditedRoad(BaseModel):
 def edited_by_chat(
     chat: Chat, settings: ChatSettings, design: Design, words: str, world: World, geometry: Geometry
 ) -> tuple[Design, tuple[str, ...]]:
-    """Returns the Design as a language model changes it, and sentences that say what is different.
+    """Returns the Design as a language model changed it, and sentences that describe the differences.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

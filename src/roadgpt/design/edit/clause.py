@@ -1,4 +1,4 @@
-"""A clause of a change request, taken apart: what it names, and the words that are left."""
+"""Defines a clause of a change request: the places that it names, and the words that remain."""
 
 from dataclasses import dataclass, field
 
@@ -11,36 +11,36 @@ IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the",
 
 @dataclass
 class RequestClause:
-    """The meanings that were found in one clause of a request."""
+    """What one clause of a request contains."""
 
     targets: list[Target] = field(default_factory=list)
     new: list[Target] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     row: list[RequestLexeme] = field(default_factory=list)
-    """What is left: verbs, comparatives and amounts."""
+    """The lexemes that remain: verbs, comparatives and amounts."""
     unknown: list[str] = field(default_factory=list)
     begins_unknown: bool = False
-    """Is its first word, where verbs stand, not understood?"""
+    """Whether its first word, where a verb is expected, was not understood."""
     words: str = ""
 
     @property
     def names(self) -> set[str]:
-        """Names of all meanings that are left."""
+        """Names of the lexemes that remain."""
         return {lexeme.name for lexeme in self.row}
 
     @property
     def keeps(self) -> bool:
-        """Whether it says only what is to stay as it is."""
+        """Whether the clause only says what must stay as it is."""
         return "keep" in self.names and not self.is_action
 
     @property
     def is_amount(self) -> bool:
-        """Whether it is only a number."""
+        """Whether the clause is only a number."""
         named = self.targets or self.new or self.places or self.unknown
         return not named and "#" in self.names and self.names <= IDLE | {"#"}
 
     @property
     def is_action(self) -> bool:
-        """Whether it says what is to be done."""
+        """Whether the clause asks for a change."""
         is_side = "make" in self.names and any(target.is_bare for target in self.targets)
         return bool(self.new) or is_side or bool(self.names - IDLE)

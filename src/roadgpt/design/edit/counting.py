@@ -1,4 +1,4 @@
-"""Reads places in a row: 'the second', 'first and third', 'turns 2 to 4'."""
+"""Reads positions such as 'the second', 'first and third' and 'turns 2 to 4'."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,17 +7,19 @@ from roadgpt.design.edit.lexing import RequestLexeme
 
 
 class CountedRow:
-    """Meanings in a row, and the numbers that are said in it."""
+    """A row of lexemes, and methods that read positions from it."""
 
     def __init__(self, row: Sequence[RequestLexeme]) -> None:
         self.row = row
 
     def name(self, at: int) -> str:
-        """Returns the name of the meaning at an index; empty where there is none."""
+        """Returns the name of the lexeme at an index; empty if there is none."""
         return self.row[at].name if 0 <= at < len(self.row) else ""
 
     def ordinals(self, at: int, found: dict[str, Any]) -> int:
-        """Reads 'second', 'first and third', 'last two' or 'second to fourth'."""
+        """Reads 'second', 'first and third', 'last two' or 'second to fourth' into ``found``; returns the
+        index behind it.
+        """
         numbers = [int(self.row[at].value)]
         at += 1
         if self.name(at) == "#" and not self.row[at].unit and abs(numbers[0]) == 1:
@@ -41,7 +43,7 @@ class CountedRow:
         return at
 
     def numbers(self, at: int, found: dict[str, Any]) -> int:
-        """Reads 'turns 2 to 4', 'turn 3' or 'turns 1, 3 and 5'."""
+        """Reads 'turns 2 to 4', 'turn 3' or 'turns 1, 3 and 5' into ``found``; returns the index behind."""
         numbers: list[int] = []
         while (
             self.name(at) == "#" and not self.row[at].unit and self.row[at].value == int(self.row[at].value)

@@ -1,4 +1,4 @@
-"""Says in sentences what an edit changed, by the measures of the road before and after it."""
+"""Describes in sentences what an edit changed, by the measurements of the road before and after it."""
 
 from collections.abc import Iterator, Sequence
 
@@ -19,8 +19,8 @@ def sentences(
 
     Args:
         before: The road before the edit.
-        elements: Its elements.
-        found: Its measures.
+        elements: The elements of that road.
+        found: The measurements of that road.
         after: The road after the edit.
         besides: Sentences about what was changed only to keep the road valid.
     """
@@ -32,7 +32,7 @@ def sentences(
 
 
 def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
-    """Returns sentences that compare two designs, turn by turn where both have the same elements."""
+    """Returns sentences that compare two designs, turn by turn if both have the same elements."""
     (elements, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
     same = [element.name for element in elements] == [element.name for element in new]
     things = tuple(_things(elements, new, measured)) if same else _counted(found, measured)

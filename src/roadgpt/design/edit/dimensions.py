@@ -1,4 +1,4 @@
-"""What the words of one clause say of angle, radius, length, slope and side, and by how much."""
+"""Reads from the words of one clause how angle, radius, length, slope and side change, and by how much."""
 
 from dataclasses import dataclass, replace
 
@@ -24,7 +24,7 @@ NEAR = 3  # words between a number and the noun that it belongs to
 
 @dataclass(frozen=True, slots=True)
 class StatedNumber:
-    """A number of a request, with its unit and the words around it."""
+    """A number in a request, with its unit and the words around it."""
 
     value: float
     unit: str
@@ -34,7 +34,7 @@ class StatedNumber:
 
 
 class Dimensions:
-    """Reads what a clause says about angle, radius, length, slope and side."""
+    """Reads what a clause requires of angle, radius, length, slope and side."""
 
     def __init__(self, clause: RequestClause) -> None:
         self.clause, self.row, self.names = clause, clause.row, clause.names
@@ -71,7 +71,7 @@ class Dimensions:
         return StatedNumber(lexeme.value, lexeme.unit, before, noun, after in comparatives and before != "to")
 
     def has(self, *names: str) -> bool:
-        """Returns whether the clause has one of these words."""
+        """Returns whether the clause has a lexeme with one of these names."""
         return any(name in self.names for name in names)
 
     def changes(self) -> list[Change]:
@@ -93,11 +93,11 @@ class Dimensions:
         return Change("angle" if noun == "turn" else "length", to=self.amounts[0].value)
 
     def way(self) -> Way | None:
-        """Returns up, down or flat, where the clause has one of these words."""
+        """Returns up, down or flat, if the clause contains such a word; else None."""
         return next((way for way in WAYS if way in self.names), None)
 
     def side(self) -> Side | None:
-        """Returns left or right, where the clause has one of these words."""
+        """Returns left or right, if the clause contains such a word; else None."""
         return next((side for side in SIDES if side in self.names), None)
 
     def _more(self, up: tuple[str, ...], down: tuple[str, ...], noun: str) -> int:

@@ -1,4 +1,4 @@
-"""Combines clauses; what one omits is taken from its neighbours. Main function: ``gathered``."""
+"""Combines clauses; what a clause omits is taken from its neighbours. Main function: ``gathered``."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,10 +12,10 @@ ADVICE = "say what is to be different where, for example: make the second turn s
 
 
 def gathered(clauses: Sequence[RequestClause]) -> list[Change]:
-    """Returns the changes that clauses ask for.
+    """Returns the changes that the clauses ask for.
 
     Raises:
-        EditError: a clause cannot be understood, or says of no change what it is about.
+        EditError: a clause cannot be understood, or does not say what is to be changed.
     """
     work = _Gathering()
     for number, clause in enumerate(clauses):
@@ -113,7 +113,7 @@ def _complains_of_it(clause: RequestClause) -> bool:
 
 
 def short(words: str) -> str:
-    """Returns words shortened so that they can be quoted in a sentence."""
+    """Returns the words in one line of at most 60 characters, to be quoted in a message."""
     plain = " ".join(words.split())
     return plain if len(plain) <= 60 else f"{plain[:59]}…"
 

@@ -1,4 +1,6 @@
-"""Ways to add turns and straights, and to take them away; all around them keeps every number."""
+"""Returns candidates that add or remove turns and straights; the elements around them keep all their
+values.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -53,16 +55,16 @@ SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent that are aimed at
 def insertion_candidates(
     change: Change, elements: RoadElements, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that add what a change asks for.
+    """Returns all candidates that add what the change asks for.
 
     Args:
-        change: what, and where.
-        elements: of the road before the edit.
-        world: limits.
-        number: of the change, for the names of new elements.
+        change: what to add, and where.
+        elements: the elements of the road before the edit.
+        world: the limits of the rules.
+        number: the number of the change, used in the names of new elements.
 
     Raises:
-        EditError: the place does not exist, or no turn can be like that.
+        EditError: the place does not exist, or no turn can have the requested values.
     """
     before, splits = _place(change, elements)
     if change.target is not None and change.target.noun == "straight":
@@ -289,7 +291,7 @@ def _straight_ways(
 
 
 def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that replace turns or straights by nothing or by a straight."""
+    """Returns all candidates that remove turns or straights, or replace them by a straight."""
     if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     return tuple(tuple(_without(element, elements, filler) for element in gone) for filler in FILLERS)

@@ -34,7 +34,9 @@ def _apart(lexeme: RequestLexeme, behind: str) -> tuple[RequestLexeme, ...]:
 
 
 def bounded(row: Row) -> Row:
-    """Returns the row with 'at most' or 'at least' in place of what a road is not to be."""
+    """Returns the row with 'at most' or 'at least' in place of a negated comparison, such as 'no steeper
+    than'.
+    """
     row = [y for at, x in enumerate(row) for y in _apart(x, _name(row, at + 1))]
     out: Row = []
     at = 0

@@ -1,4 +1,4 @@
-"""Reads the names of places out of meanings: 'the second left turn', 'turns 2 to 4', 'the end'."""
+"""Reads places from lexemes: 'the second left turn', 'turns 2 to 4', 'the end'."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -36,19 +36,19 @@ PLACES = {"after", "before", "between", "on"}
 
 
 class NamedTarget(NamedTuple):
-    """A target that was read from a row, and the index behind it."""
+    """A target that was read from a row, and the index of the first lexeme behind it."""
 
     target: Target
     stop: int
 
 
 def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
-    """Returns the target that is named from index ``at`` on; None where there is none."""
+    """Returns the target whose name begins at index ``at``; None if there is none."""
     return _TargetReader(row).read(at)
 
 
 def place_at(row: Sequence[RequestLexeme], at: int) -> tuple[int, Place | None]:
-    """Returns a place such as 'after the second turn' and the index behind it; None where there is none."""
+    """Returns a place such as 'after the second turn', and the index behind it; None if there is none."""
     return _TargetReader(row).place_behind(at)
 
 

@@ -1,4 +1,4 @@
-"""Finds the elements of a road that a name means: 'the second left turn', 'the straight after it'."""
+"""Finds the elements of a road that a target refers to: 'the second left turn', 'the straight after it'."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,15 +15,15 @@ KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chi
 
 
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
-    """Returns the elements that a target means, in driving order.
+    """Returns the elements that a target refers to, in driving order.
 
     Args:
-        target: as it was read.
-        elements: of the road as it is before the edit.
-        what: is to be changed; a name without a noun, and the ends of a road, depend on it.
+        target: the places, as they were read from the request.
+        elements: the elements of the road before the edit.
+        what: the property to be changed; it decides what 'the end' and a name without a noun refer to.
 
     Raises:
-        EditError: there is none such, or there are several and one was meant.
+        EditError: there is no such element, or there are several where the request means one.
     """
     match target.noun:
         case "end" | "start":
@@ -46,7 +46,7 @@ def turns(elements: RoadElements) -> list[RoadElement]:
 
 
 def straights(elements: RoadElements) -> list[RoadElement]:
-    """Returns all straights that are long enough to be seen."""
+    """Returns all straights that are long enough to be measured as straights."""
     return [element for element in elements if element.kind == "gap" and element.seen is not None]
 
 

@@ -1,8 +1,8 @@
 """Reads change requests by rules: words -> EditRequest. Main function: ``read_request``.
 
-The words are cut into clauses at commas and at 'and'. Each clause names a place and the change to make there;
-what a clause omits is taken from the clause before or after it: 'make the first and the last turn sharper',
-'make it longer, too'.
+The words are split into clauses at commas and at 'and'. Each clause names a place and the change to make
+there; what a clause omits is taken from the clause before or after it: 'make the first and the last turn
+sharper', 'make it longer, too'.
 """
 
 from collections.abc import Sequence
@@ -26,7 +26,7 @@ def read_request(words: str) -> EditRequest:
     """Reads what a change request asks for.
 
     Raises:
-        EditError: it is empty, too long, or asks for no change that is known.
+        EditError: the request is empty, too long, or asks for no known change.
     """
     if not words.strip():
         raise EditError(f"no change was asked for; {ADVICE}")

@@ -1,4 +1,4 @@
-"""A change request as data: what is to be changed, of which places along the road."""
+"""Defines a change request as data: the changes to make, and the places along the road that they concern."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -28,45 +28,47 @@ class Target:
     """Places on the road, as a person names them: 'the second left turn', 'turns 2 to 4', 'the end'."""
 
     noun: Noun | None = None
-    """None if only a number was given: 'the second'."""
+    """The noun of the name; None if there is only a number, as in 'the second'."""
     kind: Kind | None = None
-    """Kind of turn: 'the hairpin'."""
+    """The kind of turn, as in 'the hairpin'."""
     numbers: tuple[int, ...] = ()
-    """Counted from 1, from the last backwards from -1; empty for all that are meant."""
+    """Positions, counted from 1, or from -1 backwards from the end; empty if none is given."""
     middle: bool = False
     every: bool = False
-    """All of them were meant: 'every turn', 'turns'; else it must be one."""
+    """True if all matching elements are meant, as in 'every turn' or 'turns'; else only one may match."""
     side: Side | None = None
     sharpness: Sharpness | None = None
     way: Way | None = None
     size: Literal["long", "short"] | None = None
     most: tuple[Measure, int] | None = None
-    """'The longest' is ("long", 1), 'the gentlest' is ("sharp", -1)."""
+    """The superlative: ("long", 1) for 'the longest', ("sharp", -1) for 'the gentlest'."""
     place: "Place | None" = None
-    """'The straight after the second turn'."""
+    """The place of the element, as in 'the straight after the second turn'."""
     but: "Target | None" = None
-    """'All turns except the first'."""
+    """The exceptions, as in 'all turns except the first'."""
     indefinite: bool = False
-    """'A turn': something new, not something that is there."""
+    """True for 'a turn': a new element, not one that is on the road."""
     count: int | None = None
-    """'Two turns', of new ones."""
+    """The number of new elements, as in 'two turns'."""
     degrees: float | None = None
-    """'The 90 degree bend'."""
+    """The angle, as in 'the 90 degree bend'."""
     length: float | None = None
-    """'The 40 m straight'."""
+    """The length in metres, as in 'the 40 m straight'."""
     is_that: bool = False
-    """'That turn': the one that was spoken of last."""
+    """True for 'that turn': the one that was mentioned last."""
     is_bare: bool = False
-    """A side without a noun: 'the third left'."""
+    """True for a side without a noun, as in 'the third left'."""
     half: int | None = None
-    """1 or 2: that half of the road."""
+    """1 or 2 if only the first or the second half of the road is meant."""
     is_definite: bool = True
-    """Something says which: 'the', 'every', a number; 'left turns' alone may be what others are to become."""
+    """True if 'the', 'every' or a number says which elements are meant; 'left turns' alone may be what
+    other turns are to become.
+    """
     words: str = ""
 
     @property
     def is_new(self) -> bool:
-        """Whether it names something that is not on the road yet."""
+        """Whether the name is that of something that is not on the road yet."""
         return self.indefinite or (self.count is not None and not (self.numbers or self.most))
 
 
@@ -81,42 +83,44 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """One change that is asked for."""
+    """One requested change."""
 
     what: What
     target: Target | None = None
-    """None where nothing was named: the whole road, or what was spoken of before."""
+    """The places to change; None if none is named: the whole road, or what was mentioned before."""
     more: int = 0
-    """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 where a value was said."""
+    """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if a value is given."""
     by: float | None = None
     to: float | None = None
     times: float | None = None
     bound: Literal[-1, 0, 1] = 0
     """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0
-    """How much is meant where no number was said: 'slightly' is less than 1, 'much' more."""
+    """The size of a change for which no number is given: 'slightly' is less than 1, 'much' is more."""
     way: Way | None = None
     side: Side | None = None
-    """New side; None for the opposite of the present one."""
+    """The new side; None for the opposite of the present one."""
     kind: Kind | None = None
     sharpness: Sharpness | None = None
     count: int = 1
     place: Place | None = None
     degrees: float | None = None
-    """Angle of a turn that is added."""
+    """The angle of a turn that is added."""
     radius: float | None = None
     length: float | None = None
     grade: float | None = None
     is_whole: bool = False
-    """Of a straight at an end of the road: with what is there already ('end with a 60 m straight')."""
+    """For a straight at an end of the road: whether its length includes the straight that is already there
+    ('end with a 60 m straight').
+    """
     words: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class EditRequest:
-    """All changes that are asked for at once."""
+    """All changes that one request asks for."""
 
     words: str
     changes: tuple[Change, ...]
     unused: tuple[str, ...] = ()
-    """Words that were not understood."""
+    """Words of the request that were not understood."""

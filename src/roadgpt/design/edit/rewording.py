@@ -1,4 +1,4 @@
-"""Says the same in words that the reader of clauses knows. Main function: ``reworded``.
+"""Rewrites a request in words that the reader of clauses knows. Main function: ``reworded``.
 
 turn 4 (the last one) a hairpin          turn 4 a hairpin
 left instead of right                    left
@@ -35,7 +35,7 @@ ONTO = {"to", "from", "on", "the", "ord", "every", "it", "at_end", "at_start", "
 
 
 def reworded(row: Sequence[RequestLexeme]) -> Row:
-    """Returns the same request in a plainer form."""
+    """Returns the same request in simpler words."""
     out = _by_extremes(_turning(_without_statements(_without_asides([*row]))))
     out = [lexeme for lexeme in out if lexeme.name != "is"]
     out = _by_amounts(_new_in_row(_from_to(_followed(_instead(bounded(_apart(_pairs(out))))))))

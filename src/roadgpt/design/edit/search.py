@@ -1,8 +1,9 @@
-"""Makes all changes of a request at once: ``made``.
+"""Makes all changes of a request at once. Main function: ``made``.
 
-The steps of the changes are applied to the elements of the road, and ``design.fit`` moves the elements that
-were spoken of until the road is valid and measures as was asked. All other elements are frozen. The road
-starts where it started, and is moved or turned only where it would leave the map.
+The steps of the changes are applied to the elements of the road. Then ``design.fit`` changes the elements
+that the request names until the road is valid and its measurements are as requested; all other elements are
+frozen. If that fails, the other elements of a road of arcs may change as well. The start stays the same,
+unless the road would leave the map: then the road is shifted or rotated.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,17 +35,17 @@ def made(
     world: World,
     geometry: Geometry,
 ) -> tuple[Look | None, str, Design]:
-    """Returns the road with all changes, or None and the objection to the preferred one.
+    """Returns the road with all changes, or None and the objection to the preferred candidates.
 
-    The last value is the design before the elements that nobody spoke of were changed as well; it equals that
-    of the road where they were not.
+    The last value is the design of the road, or, if elements that the request does not name were changed too,
+    the design before these changes.
 
     Args:
         design: The road before the edit.
-        elements: Its elements.
-        changes: For every change its candidates, the preferred one first.
+        elements: The elements of that road.
+        changes: The candidates of every change, the preferred one first.
         world: The map and the limits of the rules.
-        geometry: What a design becomes.
+        geometry: The kind of geometry that roads are built with.
     """
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):

@@ -1,7 +1,8 @@
-"""Steps: small changes of elements. What must be measured afterwards is written into ``RoadElement.asked``.
+"""Defines the steps of an edit, which change elements and store in ``RoadElement.asked`` what must be
+measured afterwards.
 
-A step writes the values that are wished for. ``design.fit`` then moves the elements that have something asked
-of them, where the road would break a rule, or is measured otherwise than it is written.
+A step sets the desired values. ``design.fit`` then adjusts the elements that have a requirement, if the road
+would break a rule, or if its measurements differ from the desired values.
 """
 
 from collections.abc import Callable, Sequence
@@ -29,10 +30,10 @@ FREE_STRAIGHT = Feature("straight", "straight")
 
 
 class EditStep(Protocol):
-    """A change of elements."""
+    """One change to the elements of a road."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with the change."""
+        """Returns the elements after the change."""
         ...
 
 
@@ -46,34 +47,38 @@ def changed(elements: RoadElements, name: str, change: Callable[[RoadElement], R
 
 
 class Wanted(NamedTuple):
-    """A value to aim at, and the range in which it may be measured."""
+    """A value to aim at, and the range in which the measured value may lie."""
 
     aim: float
     room: Range
 
     def nearer_to(self, now: float) -> "Wanted":
-        """Returns the range with an aim halfway to its end that is nearest to ``now``."""
+        """Returns the same range; the new aim is halfway from the old one to the value in the range that
+        is nearest to ``now``.
+        """
         return Wanted((self.aim + min(max(now, self.room.lo), self.room.hi)) / 2, self.room)
 
 
 def near(aim: float, slack: float) -> Wanted:
-    """Returns a value that may be missed by ``slack``."""
+    """Returns an aim with a tolerance of ``slack`` in both directions."""
     return Wanted(aim, Range(aim - slack, aim + slack))
 
 
 @dataclass(frozen=True, slots=True)
 class Adjust:
-    """Gives one element other measures; what is None stays as it is."""
+    """Gives one element new values; those that are None stay as they are."""
 
     element: RoadElement
     degrees: Wanted | None = None
     radius: Wanted | None = None
     length: Wanted | None = None
     grade: Wanted | None = None
-    """Percent."""
+    """The mean grade in percent."""
 
     def milder(self) -> "Adjust":
-        """Returns the step with aims that are nearer to what the element has now, in the same ranges."""
+        """Returns the step with aims nearer to the present measurements of the element, in the same
+        ranges.
+        """
         seen = self.element.seen
         if seen is None:
             return self
@@ -85,7 +90,7 @@ class Adjust:
         )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements, of which this one is bent, stretched or sloped, and is asked to be so."""
+        """Returns the elements with new values for this one, and with its ranges as its requirement."""
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
@@ -129,12 +134,12 @@ class Adjust:
 
 
 def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
-    """Returns the steps; a single adjustment is followed by a milder one in the same ranges."""
+    """Returns the steps; a single Adjust is followed by a milder one with the same ranges."""
     return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
-    """Returns a segment that turns ``more`` times as far at ``wider`` times the radius."""
+    """Returns a segment with ``more`` times the angle and ``wider`` times the radius."""
     if not segment.turn_degrees:
         return segment
     degrees = round(segment.turn_degrees * more * TENTH) / TENTH
@@ -162,12 +167,12 @@ def straight(length: float, incline: float) -> Segment:
 
 
 def gap(name: str, length: float, incline: float) -> RoadElement:
-    """Returns a new straight, whose length may be changed."""
+    """Returns a new straight whose length may be changed."""
     return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """Returns a turn that has the element's side and slope and is written anew."""
+    """Returns a new turn with this angle and radius, and with the side and the slope of the element."""
     transitions = [s.transition for s in element.segments if s.transition]
     transition = transitions[0] if transitions else TRANSITION_SHARE * radius * radians(degrees)
     segments = turn_segments(
@@ -179,13 +184,13 @@ def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElemen
 def turn_segments(
     degrees: float, hand: int, radius: float, transition: float, incline: float
 ) -> tuple[Segment, ...]:
-    """Returns the segments of a turn as the planner writes it."""
+    """Returns the segments of a turn, as the planner writes them."""
     turn = turn_element(degrees, hand, radius, transition)
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:
-    """Returns a gap with its straight road lengthened by ``more`` metres."""
+    """Returns a gap whose straight segments are longer by ``more`` metres in total."""
     straight = [i for i, s in enumerate(element.segments) if not s.turn_degrees]
     if not straight:
         new = Segment(distance=max(round(more * TENTH) / TENTH, LEAST), direction="straight")
@@ -209,22 +214,24 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class RoadLength:
-    """Asks for a length of the whole road in metres; other steps say which elements may change for it."""
+    """Requires a range of lengths for the whole road, in metres; other steps decide which elements may
+    change for it.
+    """
 
     room: Range
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements as they are."""
+        """Returns the elements unchanged."""
         return elements
 
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Changes each incline of many elements by itself; none exceeds what the rules allow."""
+    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow."""
 
     names: frozenset[str]
     slope: Callable[[float], float]
-    """Returns the new incline in percent for a present one."""
+    """A function that returns the new incline of a segment for its present one, both in percent."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
@@ -247,7 +254,7 @@ class Mirror:
     """Names of the elements to mirror; None for all elements."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements, those of these names bent to the other side."""
+        """Returns the elements, with those of these names mirrored."""
         return tuple(flipped(e) if self.names is None or e.name in self.names else e for e in elements)
 
 
@@ -269,7 +276,7 @@ def _mirrored(segment: Segment) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class Become:
-    """Replaces an element by a gap of these segments, or removes it."""
+    """Replaces an element by a gap with these segments, or removes it if there are none."""
 
     element: RoadElement
     segments: Sequence[Segment] = ()
@@ -284,12 +291,14 @@ class Become:
 
 @dataclass(frozen=True, slots=True)
 class Insert:
-    """Inserts new elements before the element of that name, or at the end where the name is empty."""
+    """Inserts new elements before the element named ``before``, or at the end if the name is empty."""
 
     before: str
     elements: RoadElements
     split: str = ""
-    """The gap that is split in two first; its second half is what the new elements stand before."""
+    """Name of a gap to split in two; the new elements are then inserted between its halves. Empty for
+    none.
+    """
     index: int = 0
     """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
 

@@ -1,7 +1,8 @@
-"""The words of change requests: what is written, without accents, and what it means to the reader.
+"""The vocabulary of change requests: phrases, written without accents, and their meanings.
 
-A phrase of several words wins over its parts. A meaning with blanks stands for several in a row. The five
-languages share one table, as their words hardly collide; where they do, English wins.
+A phrase of several words takes precedence over its parts. A meaning with blanks stands for several meanings
+in a row. The five languages share one table, as their words hardly collide; where they do, English takes
+precedence.
 """
 
 NUMBERS = {

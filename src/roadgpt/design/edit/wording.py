@@ -1,4 +1,6 @@
-"""From one clause to the changes that it asks for: words of angles, radii, lengths, slopes and sides."""
+"""Converts one clause to the changes that it asks for, from words about angles, radii, lengths, slopes and
+sides.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -32,14 +34,14 @@ ENDINGS = {
 
 
 def wanted(clause: RequestClause, before: tuple[Target, ...]) -> list[Change]:
-    """Returns the changes that one clause asks for; none where nothing in it is known.
+    """Returns the changes that one clause asks for; none if no word in it is known.
 
     Args:
-        clause: places, new things and the words that are left.
-        before: what the clause before spoke of.
+        clause: the clause, with its places, its new elements and the words that remain.
+        before: the targets of the previous clause.
 
     Raises:
-        EditError: something is left open that cannot be guessed.
+        EditError: the clause is ambiguous, or omits something that cannot be guessed.
     """
     _is_of_this_road(clause)
     names = clause.names

@@ -1,10 +1,10 @@
-"""Changes the free elements of a road as little as it takes to meet requirements: ``fit``.
+"""Changes the free elements of a road as little as needed to meet requirements. Main function: ``fit``.
 
     elements --look--> what is wrong? --least_change--> lengths and turns --slopes--> look --> ... --> Look
 
-Repairs leave all elements of a proposal free. Changes of a road freeze every element that nobody spoke of:
-its lengths, turns and radii stay exactly as they are. The road as a whole may be moved or turned, so that it
-stays inside the map.
+A repair leaves all elements of a proposal free. An edit freezes every element that the request does not name:
+its lengths, turns and radii stay exactly as they are. The road as a whole may be shifted or rotated, so that
+it stays inside the map.
 """
 
 from collections.abc import Collection, Iterator
@@ -52,27 +52,29 @@ FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter th
 
 
 class Requirements(NamedTuple):
-    """What a road must meet, besides what is asked of each of its elements."""
+    """The requirements for a road, in addition to those for each of its elements."""
 
     world: World
     """The map and the limits of the rules."""
     outline: Outline = Outline(groups=(), turns=Range())
-    """Requirements of the whole road; none by default."""
+    """Requirements for the whole road; none by default."""
     brief: Brief | None = None
-    """The Brief that the rule ``promises`` compares with the road. If it is None, the measured elements are
-    compared with what is asked of each."""
+    """The Brief that the rule ``promises`` compares with the road. If it is None, each measured element is
+    compared with its own requirement.
+    """
     before: Design | None = None
-    """The road that is changed: parabolas between its slopes stay. None for a proposal, whose turns must be
-    measured on the slopes that were proposed."""
+    """The road before an edit; the parabolas between its slopes stay. None for a proposal, whose turns
+    must be measured with the slopes that were proposed.
+    """
     geometry: Geometry = "arcs"
 
 
 @dataclass(frozen=True)
 class Look:
-    """A road as it was built, checked and measured once."""
+    """A design with the road that was built from it, the findings of the rules, and measurements."""
 
     design: Design
-    """The design, moved inside the map and above the ground where it was not."""
+    """The design, moved inside the map and above the ground if necessary."""
     elements: RoadElements
     road: Road
     findings: tuple[check.Finding, ...]
@@ -85,7 +87,9 @@ class Look:
 
     @cached_property
     def objection(self) -> str:
-        """A sentence that says which rule or requirement the road does not meet; empty if it meets all."""
+        """A sentence that says which rule or requirement the road does not meet; empty if it meets all of
+        them.
+        """
         if self.findings:
             return self.findings[0].sentence
         if not shows_turns(self.found, self.elements):
@@ -99,12 +103,14 @@ class Look:
 
     @property
     def keeps_all_but_slopes(self) -> bool:
-        """Whether the rules are met and the turns are seen, each to its side."""
+        """Whether the road breaks no rule and all turns are measured, each to its side."""
         return not self.findings and shows_turns(self.found, self.elements)
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Returns the design as it is built, inside the map and above the ground where that is possible."""
+    """Builds, checks and measures the road of a design, moved inside the map and above the ground if
+    possible.
+    """
     world, geometry = requirements.world, requirements.geometry
     road = world.lay(build(design, geometry))
     moved = _moved(design, road, world)
@@ -148,21 +154,21 @@ def fit(
     requirements: Requirements,
     frozen: Collection[str] = frozenset(),
 ) -> Look:
-    """Returns the road nearest to a design that meets all requirements, and whose ``objection`` is empty.
+    """Finds the road nearest to a design that meets all requirements; its ``objection`` is empty.
 
     Args:
-        design: The road as it was proposed, or as a change request wants it.
-        elements: Its turns and straights in driving order, each with what is asked of it; together they have
-            all segments of the design.
-        requirements: What the road must meet besides.
+        design: The road as it was proposed, or after the steps of an edit.
+        elements: The turns and straights of the road in driving order, each with its requirement; together
+            they have all segments of the design.
+        requirements: The other requirements for the road.
         frozen: Names of the elements whose lengths, turns and radii stay as they are.
 
     Returns:
-        Where no such road is found: one that meets all but the slopes that were proposed, else the design,
-        moved inside the map if possible.
+        That road. If none is found, a road that meets everything except the proposed slopes, or else the
+        design, moved inside the map if possible.
 
     Raises:
-        UsageError: No road can be built of these segments.
+        UsageError: No road can be built from these segments.
     """
     elements = numbered(elements)
     if requirements.before is None:

@@ -1,7 +1,7 @@
-"""Gives single elements of a road the grades that were asked for, and leaves all other slopes as they are.
+"""Gives single elements of a road the required grades, and leaves all other slopes as they are.
 
 A short turn between two slopes is measured flatter than it is written, as parabolas join the slopes. So the
-inclines of an element are moved by what is missing, and measured again.
+inclines of an element are changed by the measured error, and the road is measured again.
 """
 
 from collections.abc import Iterator, Sequence
@@ -29,13 +29,13 @@ INSIDE = 0.2  # percentage points off the edge of what was asked for, or a third
 def graded(design: Design, elements: RoadElements, before: Design, world: World) -> Iterator[Design]:
     """Yields the design with required grades, and with parabolas where slopes meet that did not meet before.
 
-    The first designs have the most comfortable parabolas, and leave those in front of segments that were
-    there before as they were. The later ones make room for parabolas that the rules would object to. If none
+    The first designs have the most comfortable parabolas, and keep the parabolas at segments that the road
+    had before the change. The later designs make room for parabolas to which the rules would object. If none
     has the required grades, the first one is yielded.
 
     Args:
         design: The changed road.
-        elements: Its numbered elements, some with a grade that is asked for.
+        elements: The numbered elements of that road, some with a required grade.
         before: The road before the change.
         world: The limits of the rules.
     """
@@ -90,9 +90,10 @@ def _raised(element: RoadElement, by: float, world: World) -> RoadElement:
 
 
 def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
-    """Returns the element on another mean grade in percent.
+    """Returns the element with another mean grade, in percent.
 
-    Its inclines are changed in proportion where they all go that way, else they become equal.
+    Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they become
+    equal.
     """
     limit = 100 * world.max_grade - 0.2
     aim = float(np.clip(grade, -limit, limit))

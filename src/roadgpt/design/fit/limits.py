@@ -33,13 +33,13 @@ class Margins(NamedTuple):
     radius: float = 1.045
     """Factor on the least radius that the rules allow, because the competition's spline cuts corners."""
     seen: float = 12.0
-    """Least angle of a turn, in degrees."""
+    """Smallest angle of a turn, in degrees."""
     apart: float = 15.5
-    """Least distance between two successive turns to the same side, in metres."""
+    """Smallest distance between two successive turns to the same side, in metres."""
     clear: float = 1.1
-    """Metres between two stretches of the road, more than it is wide."""
+    """Distance in metres between two parts of the road, in addition to its width."""
     edge: float = 0.6
-    """Metres between the road and the border of the map."""
+    """Distance in metres between the road and the border of the map."""
     promise: float = 0.04
     """Margin inside a required range of lengths or radii, as a share of its bounds."""
 
@@ -100,11 +100,11 @@ def limits_of(
 
     Args:
         segments: The ``n`` segments as proposed.
-        elements: The turns and straights that they make, some with requirements of their own.
+        elements: The turns and straights that the segments form, some with requirements of their own.
         peak: Ratio of the largest to the mean curvature of each segment, ``(n,)``.
         outline: The requirements of the whole road.
         world: The limits of the rules.
-        margins: The distances that are kept from all limits.
+        margins: The margins to all limits.
     """
     rows = Rows(len(segments))
     radius = world.min_radius * margins.radius

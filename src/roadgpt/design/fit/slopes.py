@@ -1,8 +1,8 @@
 """Changes inclines as little as needed, so that every slope is measured as proposed and as required.
 
 Parabolas join the grades of a road, so a short level turn between two climbs is measured as climbing itself.
-The incline of a turn that is measured wrong is moved by what is missing, as far as it stays up, down or level
-itself. What remains is moved at its neighbours.
+If a turn is measured with a wrong grade, its incline is changed by the error, as far as the turn itself
+remains up, down or level. The rest of the error is corrected at its neighbours.
 """
 
 from collections.abc import Sequence
@@ -41,15 +41,15 @@ def sloped(
     outline: Outline,
     world: World,
 ) -> Design:
-    """Returns the design with inclines at which every turn is measured on the slope it should have.
+    """Returns the design with inclines at which every turn is measured with the slope that it should have.
 
     If none are found, the last inclines that were tried are returned. The plan and the start stay the same.
 
     Args:
         design: the design, with the plan that it is to have.
         proposed: its segments as proposed, with the proposed inclines.
-        elements: its turns and gaps, each with what is required of it.
-        outline: requirements of the whole road.
+        elements: its turns and gaps, each with its requirement.
+        outline: requirements for the whole road.
         world: the limits of the rules.
     """
     windows = [_window(element, outline, world) for element in elements]

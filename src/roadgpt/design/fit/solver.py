@@ -1,4 +1,5 @@
-"""Finds the smallest change of the lengths and turns of a plan that keeps all limits: ``least_change``.
+"""Finds the smallest change to the lengths and turns of a plan that meets all limits. Main function:
+``least_change``.
 
 The objective is a weighted sum of squared relative changes. Its weights make a few larger changes cost no
 more than many small ones. A penalty is added for each limit that is broken, in metres, and its weight grows
@@ -43,22 +44,23 @@ STARTS = (1.0, 0.8, 0.6, 0.45, 0.3, 0.2)  # shares of all free turns where the s
 
 
 class PlanPolyline(NamedTuple):
-    """A plan as steps of a polyline."""
+    """A plan as a polyline."""
 
     owner: NDArray[np.intp]
-    """Index of the segment that each step belongs to, ``(k,)``."""
+    """Index of the segment to which each step of the polyline belongs, ``(k,)``."""
     share: Array
     """Share of its segment's turn that is completed in the middle of each step, ``(k,)``."""
     peak: Array
     """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
 
     def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
-        """Returns points ``(k + 1,)`` as x + iy from the origin, and every step.
+        """Returns the points ``(k + 1,)`` of the polyline as x + iy, starting at the origin, and its steps
+        ``(k,)``.
 
         Args:
-            lengths: of the segments, metres.
-            turns: of the segments, radians, left positive.
-            heading: of the start, radians.
+            lengths: lengths of the segments in metres.
+            turns: turning angles of the segments in radians, left positive.
+            heading: heading at the start in radians.
         """
         count = np.bincount(self.owner, minlength=len(lengths))
         before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
@@ -103,14 +105,14 @@ def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
 
 
 class Aim(NamedTuple):
-    """The lengths and turns that a plan should have, and the limits that it must keep."""
+    """The lengths and turns that a plan should have, and the limits that it must meet."""
 
     lengths: Array
-    """Metres, one for each segment."""
+    """Length of each segment in metres."""
     turns: Array
-    """Radians, left positive."""
+    """Turning angle of each segment in radians, left positive."""
     free: NDArray[np.bool_]
-    """Whether the length and turn of each segment may change; the others are no variables."""
+    """Whether the length and the turn of each segment may change; the others are constants."""
     figure: PlanPolyline
     rows: Array
     """Limits of lengths and turns, ``(m, 2 n)``."""
@@ -121,23 +123,23 @@ class Aim(NamedTuple):
 
 
 class Solution(NamedTuple):
-    """The lengths and turns that were found, what the change costs, and how far limits are broken."""
+    """The lengths and turns that were found, the cost of the change, and how far limits are exceeded."""
 
     lengths: Array
-    """Metres."""
+    """Length of each segment in metres."""
     turns: Array
-    """Radians, left positive."""
+    """Turning angle of each segment in radians, left positive."""
     cost: float
     broken: float
-    """Metres by which the limit that is broken most is broken."""
+    """Largest amount in metres by which a limit is exceeded."""
     steps: int
     """Number of solver steps that were taken."""
 
 
 def least_change(aim: Aim) -> Solution | None:
-    """Returns the cheapest change that was found; None where none keeps the limits.
+    """Returns the cheapest change that was found; None if no change meets the limits.
 
-    Limits that only concern segments that are not free are left out.
+    Limits that concern only segments that are not free are ignored.
     """
     concerned = (aim.rows[:, np.tile(aim.free, 2)] != 0).any(axis=1)
     aim = aim._replace(rows=aim.rows[concerned], most=aim.most[concerned])

@@ -52,7 +52,12 @@ class DriverProcess:
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
     def ask(self, seconds: float, what: str, *given: Any) -> dict[str, Any]:
-        """Sends a request to the driver's process: the name of a method of its host, and arguments.
+        """Sends a request to the driver's process, and waits for the answer.
+
+        Args:
+            seconds: time limit for the answer.
+            what: name of a method of the object that holds the driver in that process.
+            given: arguments for this method.
 
         Returns:
             The answer; after an error, with the keys ``said``, ``is_users`` and ``trace``.

@@ -107,7 +107,7 @@ class OOBAnalyzer:
         return f"{HEADER}\n{total},{left},{total - left},{mean:.3f},{deviation:3.0f}"
 
     def create_oob_report(self) -> str:
-        """Returns the text of the competition's oob_stats.csv, as ``create_summary`` does."""
+        """Returns the same text as ``create_summary``."""
         return self.create_summary()
 
 
