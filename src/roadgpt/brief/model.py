@@ -86,7 +86,7 @@ def between(low: float, high: float) -> Amount:
 
 
 class Clause(Frozen):
-    """One feature along the road, or a row of several features of the same kind."""
+    """One feature along the road, or several features of the same kind in a row."""
 
     kind: Kind
     count: Amount = Amount(lo=1, hi=1)
@@ -94,7 +94,7 @@ class Clause(Frozen):
     switchback with a number ("4 switchbacks"), ``count`` is the number of turns. An s_bend or a chicane
     counts as one feature ("two S-bends" is 2)."""
     side: Side | None = None
-    """The side of every turn; if the turns alternate, the side of the first."""
+    """The direction of every turn; if the turns alternate, that of the first."""
     alternating: bool = False
     sharpness: Sharpness | None = None
     degrees: Amount | None = None

@@ -54,7 +54,7 @@ class Feature:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A row of ``lo`` to ``hi`` equal features; if ``hi`` is None, there is no upper limit."""
+    """A row of ``lo`` to ``hi`` equal features; ``hi`` is None if there is no upper limit."""
 
     feature: Feature
     lo: int = 1
@@ -93,7 +93,7 @@ class Outline:
 
     @property
     def widest(self) -> float:
-        """The radius in metres below which a bend of this road counts as a turn."""
+        """The largest radius in metres at which a bend of this road counts as a turn."""
         ends = (end for end in (self.starts, self.ends) if end)
         features = (self.each_turn, *(group.feature for group in self.groups), *ends)
         radii = (feature.radius.lo for feature in features if feature.radius)

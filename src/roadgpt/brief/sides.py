@@ -10,7 +10,9 @@ NONE = exactly(0)
 
 
 def with_other_side(whole: Brief, turns: Amount) -> Brief:
-    """Fills in the number of turns to one side, if the total and the number to the other side are exact."""
+    """Fills in the number of turns in one direction, if the total and the number in the other direction
+    are exact.
+    """
     if not turns.exact or turns.lo is None:
         return whole
     for one, other in SIDES:
@@ -21,7 +23,9 @@ def with_other_side(whole: Brief, turns: Amount) -> Brief:
 
 
 def forced_side(whole: Brief) -> Side | None:
-    """Returns the side of all turns if turns to the other side are excluded; None if they are not."""
+    """Returns the direction of all turns if turns in the other direction are excluded; None if they are
+    not.
+    """
     sides = [one for one, other in SIDES if getattr(whole, other) == NONE]
     return sides[0] if len(sides) == 1 else None
 

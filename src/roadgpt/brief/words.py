@@ -34,7 +34,9 @@ class Range:
         return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
 
     def drawn_in(self, margin: float, share: float) -> Range:
-        """Returns the range without a margin at either end, which is at most this share of its width."""
+        """Returns the range, made narrower by ``margin`` at both ends, but by at most ``share`` of its
+        width at each end.
+        """
         edge = min(margin, share * (self.hi - self.lo))
         return Range(self.lo + edge, self.hi - edge)
 
@@ -55,13 +57,14 @@ class Meaning:
     names: tuple[str, ...]
     """The English words with this meaning; RoadGPT's own texts use the first one."""
     turns: Range | None = None
-    """How many turns one such feature has, if the description gives no number."""
+    """The number of turns of one such feature, if the description gives no number."""
     alternating: bool = False
     degrees: Range | None = None
     """The change of heading of each turn in degrees; for a straight, the total change of heading along it."""
     aim: Range | None = None
-    """The degrees that designers aim for, if some values in the allowed range would be poor examples of the
-    word."""
+    """The range of degrees that designers aim for, if some allowed values would be poor examples of the
+    word.
+    """
     radius: Range | None = None
     """The radius in metres at the tightest place of each turn."""
     length: Range | None = None

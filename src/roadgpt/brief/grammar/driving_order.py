@@ -45,9 +45,13 @@ class DrivingOrder:
     things: list[Phrase] = field(default_factory=list)
     wishes: RoadWishes = field(default_factory=RoadWishes)
     mostly: Side | None = None
-    """The side named in 'mostly left turns'; the number of turns is computed when the description ends."""
+    """The direction in 'mostly left turns'; the number of these turns is computed when the whole
+    description has been read.
+    """
     hills_are_counted: bool = False
-    """True if the description counts slopes ('at least 2 changes of slope'), not if it only says 'hilly'."""
+    """True if the description gives a number of slopes ('at least 2 changes of slope'), False if it only
+    says 'hilly'.
+    """
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
     """Features that are followed by a list of their parts ('three turns: left, right, left'), each with the
     number of features that precede the list."""
@@ -262,7 +266,9 @@ class DrivingOrder:
 
 
 def turns(thing: Phrase) -> bool:
-    """Returns True if the phrase is a turn, or a side that stands for a turn: 'first left, then right'."""
+    """Returns True if the phrase is a turn, or a side that stands for a turn, as in 'first left, then
+    right'.
+    """
     return thing.turning or (thing.kind is None and thing.side is not None)
 
 
@@ -297,7 +303,7 @@ def default_count(thing: Phrase) -> None:
 
 
 def overlay(under: Phrase, over: Phrase) -> None:
-    """Fills in the fields that are empty in ``under`` with their values in ``over``."""
+    """Copies values from ``over`` to those fields of ``under`` that are empty."""
     for name in ("side", "sharpness", "size", "degrees", "radius", "length", "incline"):
         if getattr(under, name) is None:
             setattr(under, name, getattr(over, name))

@@ -1,4 +1,4 @@
-"""Handlers: one for each meaning of a word; a handler enters the meaning into the current Phrase."""
+"""Defines a handler for each meaning of a word; a handler enters the meaning into the current Phrase."""
 
 from collections.abc import Callable
 from typing import TypeGuard

@@ -1,4 +1,4 @@
-"""Applies phrases that name no feature of their own to the previous feature or to the road as a whole."""
+"""Applies phrases that contain no feature of their own to the previous feature or to the whole road."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ from roadgpt.errors import BriefError
 
 
 def modify(order: DrivingOrder, phrase: Phrase, before: Phrase | None, after: Phrase | None) -> bool:
-    """Applies a phrase that names no feature of its own to the previous feature or to the road as a whole.
+    """Applies a phrase that contains no feature of its own to the previous feature or to the whole road.
 
     Returns:
         True if something in the phrase was used.

@@ -67,7 +67,7 @@ class Phrase:
     height: Amount | None = None
     height_said: str = ""
     turned: Amount | None = None
-    """The sum of all turning angles in degrees."""
+    """The sum of the angles of all turns in degrees."""
     turned_said: bool = False
     incline: Amount | None = None
     highest: bool = False
@@ -82,15 +82,15 @@ class Phrase:
     place: str = ""
     hilly: bool = False
     more: str = ""
-    """The side to which most turns go, 'left' or 'right'; 'same' if both sides have equally many turns."""
+    """The direction of most turns, 'left' or 'right'; 'same' if there are as many left as right turns."""
     climbs_said: bool = False
-    """True for 'with steep climbs': the road has climbs, but their places are not given."""
+    """True for 'with steep climbs': the road has climbs, but the description does not say where."""
     changes: bool = False
     """True if the count is the number of changes of slope."""
     relative: bool = False
     """True if the phrase is a relative clause: 'the last turn, which is downhill'."""
     slope_alone: bool = False
-    """True if the description gives only a slope here, for which a straight was inserted."""
+    """True if the description gives only a slope at this place, and a straight was inserted for it."""
     free_turns: bool = False
     hard: bool = False
     mountain: bool = False
@@ -98,7 +98,7 @@ class Phrase:
     loop: bool = False
     items: list[Term] = field(default_factory=list)
     exception: list[Term] = field(default_factory=list)
-    """The term 'except', if the phrase follows that word; else empty."""
+    """The word 'except' if the phrase follows it; else empty."""
     ignored: list[Term] = field(default_factory=list)
 
     @property

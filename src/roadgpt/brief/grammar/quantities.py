@@ -25,7 +25,9 @@ LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A meaning of one or more words; or a quantity, with an ``amount``, named 'count' or after its unit."""
+    """A meaning of one or more words; or a quantity: a number with an ``amount``, whose name is 'count' or
+    its unit.
+    """
 
     name: str
     start: int

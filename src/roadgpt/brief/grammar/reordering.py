@@ -10,7 +10,9 @@ from roadgpt.brief.normal import STRAIGHT
 
 
 def in_driving_order(order: DrivingOrder) -> None:
-    """Moves features that start the road to the front: 'finally a left turn, but first two right turns'."""
+    """Moves features to the front that come first on the road, as in 'finally a left turn, but first two
+    right turns'.
+    """
     things = order.things
     ends = next((at for at, thing in enumerate(things) if thing.joint == "end"), len(things))
     start = next((at for at in range(ends + 1, len(things)) if things[at].joint == "start"), None)
@@ -19,7 +21,7 @@ def in_driving_order(order: DrivingOrder) -> None:
 
 
 def place_picks(order: DrivingOrder) -> None:
-    """Applies phrases about single turns to those turns: 'the last turn is sharp; four turns'."""
+    """Applies phrases about single turns to these turns, as in 'the last turn is sharp; four turns'."""
     picked = [thing for thing in order.things if thing.pick is not None and turns(thing)]
     others = [
         thing for thing in order.things if turns(thing) and thing.pick is None and thing.scope != "rest"
@@ -76,7 +78,9 @@ def share_of_the_rest(order: DrivingOrder) -> None:
 
 
 def most_to_one_side(order: DrivingOrder) -> None:
-    """Requires more than half of the turns to go to the side named in 'mostly left turns, 5 in total'."""
+    """Requires more than half of the turns to go in the direction given by a phrase such as 'mostly left
+    turns, 5 in total'.
+    """
     if order.mostly is None:
         return
     wished = order.wishes.turns
@@ -103,8 +107,8 @@ _SLOPES = {"crest": ("up", "down"), "dip": ("down", "up")}
 
 
 def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
-    """Returns True if the road may have turns that are not named: for 'a road with a crest', not 'a straight
-    road'.
+    """Returns True if the road may have turns that the description does not mention: true for 'a road with
+    a crest', false for 'a straight road'.
     """
     things = order.things
     if order.wishes.turns is not None or not things or any(t.kind not in STRAIGHT for t in things):

@@ -23,8 +23,8 @@ _WORDS: dict[tuple[str, str], Slope] = {
 
 
 def slope_of(phrase: Phrase) -> Slope | None:
-    """Returns the slope of a phrase as a value of a Brief; 'steeply' and 'gently' are dropped if it has a
-    number.
+    """Returns the slope of a phrase as a value of a Brief; if the phrase gives a number, 'steeply' and
+    'gently' are dropped.
     """
     if not phrase.slope:
         return None

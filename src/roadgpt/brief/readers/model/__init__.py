@@ -95,7 +95,7 @@ class ModelReader:
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
     ) -> tuple[Brief, ...]:
-        """Returns up to ``number`` different readings: the likeliest first, then others that were sampled.
+        """Returns up to ``number`` different readings: first the likeliest, then sampled ones.
 
         Args:
             words: the description.

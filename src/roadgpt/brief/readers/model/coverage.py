@@ -1,4 +1,6 @@
-"""Finds words without effect on the plan: numbers not copied, sides not used, words unknown from training."""
+"""Finds words that had no effect on the plan: numbers and sides that it does not use, and words that are
+unknown from training.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,7 +18,9 @@ SHORTEST = 3  # letters; shorter words are function words in all five languages
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """The words that a reader has learnt: words that affected plans in training, and function words."""
+    """The words that a reader has learnt: words that affected plans in the training data, and function
+    words.
+    """
 
     known: frozenset[str]
 

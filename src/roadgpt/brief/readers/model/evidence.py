@@ -22,7 +22,7 @@ HILLY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """Which kinds of numbers a description can imply: angles, a grade ("mountain"), a count of hills."""
+    """The kinds of numbers that a description can imply: angles, a grade ("mountain"), a number of hills."""
 
     angles: bool = True
     mountains: bool = True
@@ -30,8 +30,6 @@ class Evidence:
 
     @classmethod
     def of(cls, text: str) -> "Evidence":
-        """Returns the evidence in a description, which must be lower case and without accents, as for the
-        model.
-        """
+        """Returns the evidence in a description; the text must be in lower case and without accents."""
         patterns = (ANGLE, MOUNTAIN, HILLY)
         return cls(*(pattern.search(text) is not None for pattern in patterns))

@@ -60,7 +60,7 @@ class VariantPlans:
 
     plans: dict[str, tuple[float, WrittenPlan]]
     refusal: float
-    """The probability that the description asks for no road that can be built."""
+    """The probability that the description does not ask for a road that can be built."""
 
     @property
     def least(self) -> float:
@@ -69,7 +69,7 @@ class VariantPlans:
 
     @property
     def is_clear(self) -> bool:
-        """True if one plan is nearly certain, and so is whether the description is to be refused."""
+        """True if one plan is nearly certain, and so is the decision whether to refuse the description."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
             return False
         _, best = max(self.plans.values(), key=lambda plan: plan[0])
