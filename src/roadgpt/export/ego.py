@@ -1,4 +1,5 @@
-"""Defines the ego vehicle of exported files: dimensions, start, planned speeds, and positions in a drive.
+"""Defines the ego vehicle of exported files: its dimensions, start, planned speeds, and positions during a
+drive.
 
 The dimensions are those of BeamNG's ETK 800, a mid-size saloon, which the built-in simulator also uses.
 """

@@ -17,7 +17,7 @@ ACROSS = 7  # points of the edge at an end of the road
 
 
 class Embankment(NamedTuple):
-    """One slope, given by the points of its upper edge and of its foot, ``(n, 3)`` each, in metres."""
+    """One slope, given by the points of its upper and of its lower edge, ``(n, 3)`` each, in metres."""
 
     edge: Array
     foot: Array

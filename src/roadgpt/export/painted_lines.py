@@ -19,10 +19,12 @@ class NamedLine(NamedTuple):
     number: int
     """Index of the line in the result of ``Profile.markings``."""
     place: Place
-    """At the left or right edge of the carriageway, on the centre line, or between two lanes."""
+    """The place of the line: at the left or right edge of the carriageway, on the centre line, or between
+    two lanes.
+    """
     is_broken: bool
     edges: Edges
-    """The offsets of its left and its right edge in metres, at the given stations."""
+    """The offsets in metres of the left and the right edge of the line, at the given stations."""
 
 
 def named_lines(profile: Profile, s: Array) -> list[NamedLine]:

@@ -79,7 +79,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
-    """Returns the scenario in which the car repeats a drive, as a trajectory with times."""
+    """Returns the scenario in which the car repeats a recorded drive, given as a trajectory with times."""
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])

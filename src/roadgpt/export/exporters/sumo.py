@@ -36,8 +36,8 @@ ROUND = 5 / 3.6  # m/s: limits are multiples of 5 km/h, as on signs
 class Sumo:
     """SUMO's plain nodes and edges with heights, a trip, settings; .net.xml where netconvert is installed.
 
-    A lane in SUMO has one width and a level cross-section: of a lane whose width varies, the mean is written,
-    and superelevation is left out.
+    A lane in SUMO has a single width and a level cross-section: if the width of a lane varies, its mean is
+    written, and superelevation is left out.
     """
 
     name = "sumo"
@@ -63,9 +63,10 @@ class Sumo:
 
 
 def netconvert() -> str | None:
-    """Returns the path of SUMO's netconvert; None where it is not installed.
+    """Returns the path of SUMO's netconvert; None if it is not installed.
 
-    It is looked for in PATH, SUMO_HOME and the Python package eclipse-sumo."""
+    It is looked for in PATH, SUMO_HOME and the Python package eclipse-sumo.
+    """
     places = [Path(os.environ["SUMO_HOME"])] if os.environ.get("SUMO_HOME") else []
     package = find_spec("sumo")
     if package is not None:
@@ -93,7 +94,8 @@ class SpeedZone(NamedTuple):
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
-    """Returns consecutive parts of the road, each with the lowest speed that a calm driver has on that part.
+    """Divides the road into consecutive parts, each with the lowest speed at which a calm driver drives on
+    it.
 
     A part is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
     the speed limit of the next part, so they drive bends at a suitable speed.

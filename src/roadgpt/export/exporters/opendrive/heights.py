@@ -1,4 +1,6 @@
-"""Writes heights and other cubics by station: parabolas and cubics exactly, splines as fitted cubics."""
+"""Writes elevations and other profiles over the station: parabolas and cubics exactly, splines as fitted
+cubics.
+"""
 
 import numpy as np
 

@@ -29,7 +29,9 @@ def lanes(road: Road, world: World) -> XmlElement:
 
 
 def lateral_profile(road: Road) -> list[XmlElement]:
-    """Returns the element ``lateralProfile`` with the superelevation; an empty list for a level road."""
+    """Returns the element ``lateralProfile`` with the superelevation, in a list that is empty for a road
+    without superelevation.
+    """
     angle = road.profile.superelevation_angle if road.profile is not None else None
     if angle is None:
         return []
