@@ -152,7 +152,9 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
 
 
 def severities(drive: Drive | None) -> list[Severity]:
-    """Returns how far outside its lane the car was at each step that counts; empty without a drive."""
+    """Returns how far the car was outside its lane at each step that is judged; empty if there is no
+    drive.
+    """
     return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
 
 

@@ -35,7 +35,9 @@ EARTH, SURFACE = "#dcd9c3", "#4b5563"
 
 
 def height_profile(run: Run, scale: Scale = "equal") -> Figure:
-    """Returns a picture of the height over the distance along the road, with grades of longer sections."""
+    """Returns a picture of the height over the distance along the road; longer sections are labelled with
+    their grade.
+    """
     assert run.road is not None
     s = stations_of(run.road)
     z = run.road.at(s)[:, 2]

@@ -1,4 +1,4 @@
-"""Writes tests as JUnit XML, which continuous integration reads.
+"""Writes tests as JUnit XML, which continuous integration systems read.
 
     PASS, VALID    a test that passed
     FAIL           <failure>: the car failed on a road that the rules allow
@@ -32,11 +32,11 @@ class Case:
     name: str
     outcome: str
     says: str
-    """The outcome in a sentence."""
+    """A sentence that describes the outcome."""
     kind: str = ""
-    """Kind of failure or error: 'out of lane', 'fell' and so on."""
+    """Kind of failure or error, such as 'out of lane' or 'fell'."""
     seconds: float = 0.0
-    """Wall time of the test."""
+    """Wall-clock time of the test in seconds."""
     file: str = ""
     trace: str = ""
     properties: Properties = field(default_factory=dict)

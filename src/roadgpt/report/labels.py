@@ -35,13 +35,13 @@ class Labels:
     clear_of: Array
     """Points ``(n, 2)`` that no label should cover."""
     radius: float
-    """Metres around each of these points."""
+    """Radius in metres around each of these points that no label should cover."""
     _boxes: list[Box] = field(default_factory=list)
     _leaders: list[Array] = field(default_factory=list)
-    """Points on the lines from labels to their places, each ``(n, 2)``."""
+    """Points on the lines that connect labels with their places, each ``(n, 2)``."""
 
     def name_border(self, size: float) -> None:
-        """Writes a label beside a border of a map of ``size`` metres that is in view, if there is room."""
+        """Labels a visible border of a map whose side is ``size`` metres, if there is room."""
         wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
         offers = _offers(self.frame, size, wide, HIGH * self.per_inch, GAP * self.per_inch)
         clear = ((box, turned) for box, turned in offers if _away(box, self.clear_of) > CLEAR)
@@ -58,9 +58,9 @@ class Labels:
         """Labels a place.
 
         Args:
-            place: x and y, metres; a place outside the frame gets no label.
-            text: the label, of one line or several.
-            colour: of the text.
+            place: x and y in metres; a place outside the frame gets no label.
+            text: the text of the label, in one or more lines.
+            colour: colour of the text.
             away: preferred direction ``(2,)`` from the place to the label, of length 1.
         """
         if not self.frame.holds(*place):

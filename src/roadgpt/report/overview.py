@@ -54,7 +54,7 @@ class Entry:
     points: Array
     failed_at: tuple[float, float] | None
     share: float | None = None
-    """Largest share of the car outside its lane; None where nobody drove."""
+    """Largest share of the car that was outside its lane; None if there is no drive."""
 
     @property
     def graded(self) -> str:
@@ -153,7 +153,7 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
     Args:
         entries: the roads.
         about: the description and the seed, for the header.
-        part: the number of the page and of all pages, for the header; empty if there is only one page.
+        part: the page number and the number of pages, for the header; empty if there is only one page.
         size: side of the map, metres.
     """
     count = len(entries)

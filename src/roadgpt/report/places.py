@@ -41,7 +41,9 @@ class MarkedPlace:
     s: float
     text: str
     step: int | None = None
-    """Index of the drive's step at which the car was there; None if no drive is involved."""
+    """Index of the step of the drive at which the car was there; None if the place does not come from a
+    drive.
+    """
     colour: str = VERMILLION
 
     @property

@@ -31,7 +31,8 @@ class Frame:
 
     @classmethod
     def around(cls, points: Array, margin: float, least: float, size: float) -> "Frame":
-        """Returns a frame around points and a margin, not too narrow, and within the map if possible.
+        """Returns a frame that shows points with a margin, has a minimum size, and stays on the map if
+        possible.
 
         Args:
             points: the points that the frame must show, shape ``(n, 2)``, in metres.

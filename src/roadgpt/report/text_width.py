@@ -20,7 +20,9 @@ def inches(text: str, size: float, bold: bool = False) -> float:
 
 
 def fitted(text: str, width: float, size: float, bold: bool = False, lines: int = 1) -> str:
-    """Returns text in at most ``lines`` lines of ``width`` inches; an ellipsis replaces what is left out."""
+    """Returns text wrapped to at most ``lines`` lines of ``width`` inches; an ellipsis marks what is cut
+    off.
+    """
     words = plain(text).split(" ")
     rows: list[str] = []
     while words and len(rows) < lines:

@@ -51,9 +51,9 @@ class Settings:
     height: int = 360
     fps: int = 25
     begin: float = 0.0
-    """Seconds of the drive at which it begins."""
+    """Time of the drive in seconds at which the film begins."""
     seconds: float | None = None
-    """Seconds of the drive that are shown at most; None shows all of it."""
+    """Largest number of seconds of the drive that the film shows; None for all of it."""
 
     def __post_init__(self) -> None:
         sides = (self.width, self.height)
@@ -85,7 +85,9 @@ class Pane:
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; after the drive, the last one."""
+        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; for later times than the end of
+        the drive, the last picture.
+        """
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car
@@ -160,7 +162,7 @@ def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Se
     """Films one drive into an MP4 file, and returns the path.
 
     Args:
-        run: the drive; if nobody drove, the camera moves along the road at a calm speed.
+        run: the Run with the drive; if it has no drive, the camera moves along the road at a calm speed.
         path: the file, which is replaced if it exists.
         view: from behind ("chase"), from the hood camera ("bonnet"), or both side by side ("both").
         settings: size, frames per second, and which seconds of the drive.
@@ -183,7 +185,9 @@ def write(
     runs: Sequence[Run], path: Path | str, view: View | str = "chase", settings: Settings | None = None,
     watch: Watch | None = None,
 ) -> Path:  # fmt: skip
-    """Films one or two Runs, and returns the path; ``watch`` receives each frame before it is written."""
+    """Films one or two Runs, and returns the path; ``watch`` may wrap the iterator of frames, for example
+    to show progress.
+    """
     encoder()  # before anything is drawn
     film = Film.of(runs, view, settings)  # type: ignore[arg-type]
     title = " and ".join(dict.fromkeys(run.title for run in runs))

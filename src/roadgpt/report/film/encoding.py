@@ -40,7 +40,7 @@ def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -
         frames: frames of the same size; width and height must be even numbers of pixels.
         path: the file, which is replaced if it exists.
         fps: frames per second.
-        about: the title for the file's metadata.
+        about: the title in the file's metadata.
 
     Raises:
         UsageError: as for ``encoder``.

@@ -19,11 +19,11 @@ class Glyph(NamedTuple):
     cover: NDArray[np.uint8]
     """Coverage of each pixel, ``(height, width)``, 0 to 255."""
     top: int
-    """Pixels from the baseline up to its first row."""
+    """Pixels from the baseline up to the first row of the image."""
     left: int
-    """Pixels from where the letter begins to its first column."""
+    """Pixels from the start of the letter to the first column of the image."""
     advance: float
-    """Pixels to the next letter."""
+    """Pixels from the start of the letter to the start of the next one."""
 
 
 @cache
@@ -68,7 +68,7 @@ def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple
 
 
 def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
-    """Reduces the brightness of a rectangle to ``left`` / 256, so that text can be read on it."""
+    """Multiplies the brightness of a rectangle by ``left`` / 256, so that text on it can be read."""
     part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
     part[:] = (part.astype(np.uint16) * left) >> 8
 

@@ -29,9 +29,9 @@ class Readout(NamedTuple):
     s: float
     """Distance along the road, m."""
     margin: float | None
-    """Distance to out of bounds as the verdict defines it, m; None where nobody drove."""
+    """Distance to out of bounds as the verdict defines it, in metres; None if there is no drive."""
     outside: float = 0.0
-    """Share of the car outside its lane."""
+    """Share of the car that is outside its lane."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,13 +40,13 @@ class Trip:
 
     time: Array
     columns: dict[str, Array]
-    """Columns COLUMNS and ``wheel``, the angle that the wheels have turned by."""
+    """The columns COLUMNS, and ``wheel``, the angle by which the wheels have rolled."""
     followed: dict[str, Array]
     """``heading`` and ``pitch`` of the camera behind the car."""
     s: Array
     margin: Array | None
     outside: Array | None = None
-    """Share of the car outside its lane."""
+    """Share of the car that is outside its lane."""
 
     @classmethod
     def of(cls, run: Run) -> "Trip":
@@ -89,7 +89,9 @@ class Trip:
         return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
 
     def follower(self, time: float) -> Pose:
-        """Returns the pose that the camera behind the car follows; it turns and tilts later than the car."""
+        """Returns the pose that the camera behind the car follows; its heading and pitch lag behind those
+        of the car.
+        """
         late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
         return self.car(time)._replace(**late, roll=0.0)
 

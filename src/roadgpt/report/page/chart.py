@@ -63,7 +63,9 @@ in_page_style = rc_context(_style())
 def new_chart(
     width: float, height: float, left: float, right: float, bottom: float, top: float
 ) -> tuple[Figure, Axes]:
-    """Returns a figure and its axes; all arguments are in px, the last four from the figure's borders."""
+    """Returns a figure and its axes; all arguments are in px, and the last four are distances from the
+    borders of the figure.
+    """
     figure = Figure(figsize=(width / POINTS, height / POINTS), dpi=POINTS)
     FigureCanvasSVG(figure)
     box = (left / width, bottom / height, (width - left - right) / width, (height - bottom - top) / height)
@@ -94,7 +96,7 @@ def embedded(figure: Figure, label: str) -> str:
     Colours of ``palette`` become the page's variables, and letters are in the page's font.
 
     Args:
-        figure: made by ``new_chart`` in ``in_page_style``.
+        figure: a figure made by ``new_chart`` within ``in_page_style``.
         label: what the chart shows, for screen readers.
     """
     data = io.BytesIO()

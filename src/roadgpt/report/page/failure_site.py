@@ -21,7 +21,7 @@ class FailureSite:
     """The lines of the picture, as points of shape ``(n, 2)`` in metres."""
 
     left: Array
-    """Left edge of the road."""
+    """Points of the left edge of the road."""
     middle: Array
     right: Array
     path: Array
@@ -31,7 +31,7 @@ class FailureSite:
     at: Array
     """The place of the failure, ``(2,)``: the middle of the right lane."""
     heading: float
-    """Heading of the road before the failure, radians; up in the picture."""
+    """Heading of the road before the failure in radians; this direction points up in the picture."""
 
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
@@ -57,7 +57,7 @@ def _step(drive: Drive, station: float) -> int:
 
 
 def draw_site(of: FailureSite, label: str) -> str:
-    """Returns the picture as SVG, turned so that the road leads upwards to the failure."""
+    """Returns the picture as SVG, rotated so that the road leads upwards to the failure."""
     turned = np.pi / 2 - of.heading
     turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
     size = SIDE / ACROSS

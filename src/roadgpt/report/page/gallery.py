@@ -24,7 +24,7 @@ class Thumbnail:
     failed_at: tuple[float, float] | None = None
     href: str = ""
     share: float | None = None
-    """Largest share of the car outside its lane; None where nobody drove."""
+    """Largest share of the car that was outside its lane; None if there is no drive."""
 
 
 def gallery(roads: Sequence[Thumbnail], size: float, label: str, columns: int = COLUMNS) -> str:

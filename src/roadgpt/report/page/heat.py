@@ -49,7 +49,7 @@ def heat(
     """Returns a picture of a matrix ``(rows, columns)`` as SVG; cells that are NaN or 0 are left empty.
 
     Args:
-        values: row 0 is the lowest, or the topmost where ``downwards``.
+        values: the matrix; row 0 is at the bottom, or at the top if ``downwards`` is True.
         across: the horizontal axis.
         upwards: the vertical axis.
         meaning: the meaning of the colours.

@@ -46,8 +46,8 @@ def bars(
     """Returns a histogram as SVG.
 
     Args:
-        edges: ``(n + 1,)``, ascending.
-        counts: ``(n,)``, the number of values between every two edges.
+        edges: limits of the bars in ascending order, ``(n + 1,)``.
+        counts: number of values between consecutive edges, ``(n,)``.
         across: name of the horizontal axis.
         upwards: name of the vertical axis, which shows counts.
         label: what the chart shows, for screen readers.

@@ -15,7 +15,7 @@ class TableCell(NamedTuple):
     text: str
     """The text that people read."""
     href: str = ""
-    """Relative address that it links to; empty for no link."""
+    """Relative address of the cell's link; empty for no link."""
 
 
 def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
@@ -35,7 +35,7 @@ class Table:
     """A table."""
 
     name: str
-    """Name of its files: letters, digits and '-'."""
+    """Name of the table's files: letters, digits and '-'."""
     caption: str
     heads: Sequence[str]
     rows: Sequence[Sequence[TableCell]]

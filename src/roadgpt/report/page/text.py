@@ -43,7 +43,7 @@ HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # Markdown passes HTML tags t
 
 
 def markdown_of(page: Page) -> str:
-    """Returns the text, the tables and the captions of figures of a page as Markdown."""
+    """Returns a page as Markdown: its text, its tables, and the captions of its figures."""
     parts = [f"# {_escaped(page.title)}", *([_escaped(page.lead)] if page.lead else [])]
     parts.append("\n".join(f"- {_line(line)}" for line in page.summary))
     for section in page.sections:
@@ -102,7 +102,9 @@ def _table(table: Table) -> str:
 
 
 def csv_of(table: Table) -> str:
-    """Returns a table as CSV with raw values; None gives an empty field, and no text can be a formula."""
+    """Returns a table as CSV with raw values; None becomes an empty field, and text cannot be read as a
+    formula.
+    """
     values = (
         [None if each.value is None else unformulated(each.value) for each in row] for row in table.rows
     )
