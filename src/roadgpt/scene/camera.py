@@ -85,7 +85,7 @@ class Camera:
     """Horizontal field of view in rad."""
     mount: Mount = "bonnet"
     placement: CameraPlacement | None = None
-    """Placement on the car; None: the placement of the mount's name in MOUNTS."""
+    """Position and tilt on the car; None selects the placement in MOUNTS that has the name of the mount."""
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):

@@ -25,14 +25,16 @@ MIRRORED = 0.05  # share of light that paint and glass reflect at normal inciden
 
 @dataclass(frozen=True, eq=False)
 class Saloon:
-    """The surface of the car at rest, its normals, and the points that turn with each wheel."""
+    """The surface of the car at rest, its normals, and the points that rotate with each wheel."""
 
     mesh: Mesh
     """The triangles of the car; the mesh's attributes are empty, because they depend on the pose."""
     normals: Array
     gloss: Array
     shade: Array
-    """Share of light, 0 to 1, that reaches each point; less than 1 near the ground and under the sills."""
+    """Share of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
+    sills.
+    """
     wheels: tuple[tuple[slice, Array, bool], ...]
     """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 

@@ -1,4 +1,4 @@
-"""The light of sun and sky; all colours are linear, before the gamma curve of the screen."""
+"""Models the light of sun and sky; all colours are linear, without the gamma curve of the screen."""
 
 import numpy as np
 

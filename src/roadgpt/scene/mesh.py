@@ -16,13 +16,13 @@ class Patch:
     """Triangles that lie close together."""
 
     points: Array
-    """(n, 3), metres."""
+    """Points in metres, (n, 3)."""
     attributes: Array
-    """(n, 3): two surface coordinates, and the brightness of the light."""
+    """Attributes of each point, (n, 3): two surface coordinates, and the brightness of the light."""
     triangles: NDArray[np.int64]
-    """(m, 3), counter-clockwise as seen from the visible side."""
+    """Indices of points, (m, 3), counter-clockwise as seen from the visible side."""
     kinds: NDArray[np.int64]
-    """(m,): kind of surface of each triangle."""
+    """Kind of surface of each triangle, (m,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,10 +34,11 @@ class Mesh:
     triangles: NDArray[np.int64]
     kinds: NDArray[np.int64]
     ranges: NDArray[np.int64]
-    """(p, 4): per patch, the indices of its first point, the end of its points, its first triangle, and the
-    end of its triangles."""
+    """Index ranges of each patch, (p, 4): first point, end of the points, first triangle, end of the
+    triangles.
+    """
     spheres: Array
-    """(p, 4): centre and radius of a bounding sphere of each patch, metres."""
+    """Centre and radius in metres of a bounding sphere of each patch, (p, 4)."""
 
     @classmethod
     def of(cls, patches: list[Patch]) -> "Mesh":

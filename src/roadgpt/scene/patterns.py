@@ -1,5 +1,6 @@
-"""Noise at the resolution of a pixel, and the share of a pixel that a marking covers, for use in compiled
-code."""
+"""Computes noise at the resolution of a pixel, and the share of a pixel that a marking covers, in compiled
+code.
+"""
 
 import math
 

@@ -43,7 +43,9 @@ class RenderBuffers:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The scene of one road: built once, it renders any number of images, also from several threads."""
+    """The scene of one road; it is built only once, and renders any number of images, also from several
+    threads.
+    """
 
     road: Road
     world: World
@@ -79,8 +81,8 @@ class Scene:
         Args:
             camera: the camera.
             pose: pose of the car that carries the camera.
-            out: contiguous array to write the image to; None: a new array is made.
-            car: pose of the car that is drawn, with its shadow; None: no car is drawn.
+            out: contiguous array to write the image to; None for a new array.
+            car: pose of the car that is drawn, with its shadow; None to draw no car.
 
         Raises:
             UsageError: a number of a pose is not finite, or ``out`` has another shape.

@@ -170,9 +170,9 @@ def shade(
         tiles: those of `textures.noise`.
         eye: as for `raster.draw`.
         lanes: boundaries of the road's lanes.
-        numbers: for the shadow, the point on the ground under the car (3 numbers), the car's direction (2),
-            its length, its width, the distance from that point forward to the car's middle, and 1 if there
-            is a car, else 0.
+        numbers: data for the shadow: the point on the ground under the car (3 numbers), the car's direction
+            (2), its length, its width, the distance from that point forward to the car's middle, and 1 if
+            there is a car, else 0.
         picture: the image in linear light; filled by this function.
     """
     rows, columns = picture.shape[0], picture.shape[1]

@@ -1,4 +1,4 @@
-"""Linear colours of sky, terrain and road, before sunlight is applied, for use in compiled code."""
+"""Computes linear colours of sky, terrain and road without sunlight, in compiled code."""
 
 import math
 from typing import NamedTuple
@@ -22,9 +22,9 @@ class LaneBoundaries(NamedTuple):
     """The boundaries of all lanes, from left to right, at equally spaced stations."""
 
     offsets: Array
-    """(n, k): offsets of k boundaries at n stations, metres."""
+    """Offsets of the k boundaries in metres at each of n stations, (n, k)."""
     marks: NDArray[np.int64]
-    """(k,): kind of marking of each boundary."""
+    """Kind of marking of each boundary, (k,)."""
     driven: int
     """Index of the left boundary of the driven lane."""
     spacing: float

@@ -27,13 +27,13 @@ class Trees:
     """The trees of a scene: upright pictures that face the camera."""
 
     places: Array
-    """(n, 3): position of the foot, metres."""
+    """Position of the foot of each tree in metres, (n, 3)."""
     sizes: Array
-    """(n,): height and width, metres."""
+    """Height of each tree in metres, which is also its width, (n,)."""
     looks: NDArray[np.int64]
-    """(n,): index of the tree's picture."""
+    """Index of the picture of each tree, (n,)."""
     tints: Array
-    """(n,): factor on the picture's brightness."""
+    """Factor on the brightness of the picture of each tree, (n,)."""
 
 
 def plant(road: Road, world: World, land: Land) -> Trees:
