@@ -1,4 +1,6 @@
-"""Addresses of servers: the URL for requests, and the origin (scheme, host, port) that a key is valid for."""
+"""Handles the addresses of servers: the URL for requests, and the origin (scheme, host, port) for which a
+key is valid.
+"""
 
 from urllib.parse import urlsplit
 

@@ -77,7 +77,9 @@ class ApiClient:
         return self._sent(self._client.responses.with_raw_response.create, body)
 
     def begin_conversation(self) -> dict[str, Any]:
-        """Starts a conversation that the server stores, and returns the server's description of it."""
+        """Starts a conversation that the server stores, and returns the server's answer, which describes
+        it.
+        """
         return self._sent(self._client.conversations.with_raw_response.create, {})
 
     def models(self) -> list[dict[str, Any]]:

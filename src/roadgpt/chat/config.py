@@ -141,7 +141,7 @@ def key_for(base_url: str | None) -> Key | None:
 
     Raises:
         UsageError: a settings file cannot be read.
-        ChatError: the key contains invalid characters, or only the user has a key and only a file names the
+        ChatError: the key contains invalid characters, or the key is the user's own but only a file names the
             server.
     """
     host = origin_of(base_url)[1]
@@ -185,9 +185,9 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """Returns the file that names this server, if the user does not name the server; else an empty text.
+    """Returns the file that names this server, if the user has not named it too; otherwise an empty text.
 
-    The text is also empty for OpenAI's server, and if no file names the server.
+    The text is also empty for OpenAI's server, and for a server that no file names.
     """
     if not base_url:
         return ""

@@ -15,8 +15,8 @@ MOST_DEPTH = 5  # OpenAI's limit on nesting
 
 
 def fixed_description(text: str) -> ConfigDict:
-    """Returns a configuration that makes ``text``, instead of the docstring, the description in a model's
-    schema.
+    """Returns a pydantic configuration with which ``text``, instead of the docstring, describes a model in
+    its schema.
 
     Recorded answers are found by a hash of the question, which includes the schema. So the docstring of a
     model may change, but the description in its schema may not.

@@ -93,7 +93,7 @@ _now: ContextVar[_Now | None] = ContextVar("roadgpt_meter", default=None)
 
 @contextmanager
 def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
-    """Counts all questions that are asked inside a ``with`` block with this meter.
+    """Makes this meter count all questions that are asked inside a ``with`` block.
 
     Args:
         meter: the meter.

@@ -157,7 +157,7 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Returns the settings with defaults for those that may change when a campaign is resumed.
+        """Returns the settings, with default values for those that may change when a campaign is resumed.
 
         These are the limits of tokens and money, the price, the time-out, the retries and the folders of
         recordings.
@@ -169,7 +169,7 @@ class ChatSettings(ChatValue):
     def came_with(self, file: object) -> Self:
         """Returns the settings without folders, and notes that ``file``, not the user, names their server.
 
-        For settings from somebody else's file. The user's API key is then not sent to the server.
+        This is for settings from somebody else's file: the user's API key is then not sent to the server.
         """
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)

@@ -2,7 +2,7 @@
 
 Source: OpenAI's price page as stored in the package genai-prices 0.2.3, standard rates for prompts below
 272,000 tokens, taken on 2026-11-20. Discounts for cached prompts are not counted, so a computed cost may be
-too high but never too low. Models that are not in the table, and all models on other servers, have no known
+too high, but not too low. Models that are not in the table, and all models on other servers, have no known
 price: use ``--price``.
 """
 

@@ -1,4 +1,4 @@
-"""The error of a failed request to a server, and which failures may pass."""
+"""Defines the error for a failed request to a server, and decides which failures may be temporary."""
 
 from dataclasses import dataclass
 

@@ -2,7 +2,7 @@
 
 A server may answer with a gigabyte even when it reports an error, and a compressed megabyte may contain a
 gigabyte. So every response is decompressed piece by piece, and only up to the limit. The library ``openai``
-uses this client and repeats requests that failed; a response header tells it which failures may pass.
+uses this client and repeats requests that failed; a response header tells it which failures may be temporary.
 """
 
 import contextvars

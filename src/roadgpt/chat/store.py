@@ -51,8 +51,8 @@ class ExchangeStore:
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
         """Returns the next recorded answer to a question on an occasion; None if no answer is left.
 
-        Answers that were recorded outside a campaign are used for every occasion that has none of its own.
-        Outside a campaign, the answers of all occasions are used.
+        Answers that were recorded outside a campaign are used for every occasion that has no answers of its
+        own. Outside a campaign, the answers of all occasions are used.
         """
         name = name_of(question)
         answers = self._answers(name)

@@ -31,7 +31,7 @@ class NotReadableError(ValueError):
 
 
 def plain(text: str, most: int = 80) -> str:
-    """Returns text from a model or a server for a one-line message: printable, shortened to ``most``
+    """Returns text from a model or a server as one line of printable characters, shortened to ``most``
     characters.
     """
     shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
