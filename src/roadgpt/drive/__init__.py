@@ -69,9 +69,9 @@ class Simulator(Protocol):
         """Drives from the start of the road until the drive ends.
 
         At every control step the simulator checks these conditions in this order: the car has reached the
-        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside its lane or,
-        with ``world.lane_departure``, a front tyre is beyond a marking (both unless ``keep_driving``); the
-        car has fallen; the time is up. The first condition that holds ends the drive.
+        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside its lane or, with
+        ``world.lane_departure``, a front tyre is beyond a marking (neither ends the drive with
+        ``keep_driving``); the car has fallen; the time is up. The first condition that holds ends the drive.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -125,7 +125,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
 
     Args:
         simulator: the simulator or its class.
-        world: a field with its default value counts as not set.
+        world: the World; a field with its default value counts as not set.
         road: the road, if it is known; its own superelevation counts as ``World.bank``.
 
     Raises:

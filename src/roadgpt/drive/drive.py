@@ -48,29 +48,30 @@ FORMAT = 2
 
 
 class Box(NamedTuple):
-    """The outline of the car, and the position and lock angle of its front wheels.
+    """The outline of the car, and the position and largest steering angle of its front wheels.
 
     The defaults are the numbers of RoadGPT's saloon; they are used if a file of an older version lacks a
     field.
     """
 
     length: float
-    """Metres."""
+    """Length in metres."""
     width: float
-    """Metres."""
+    """Width in metres."""
     ahead: float = 0.0
-    """Metres from the centre of gravity forward to the middle of the box; negative if the middle is
-    behind."""
+    """Distance in metres from the centre of gravity forward to the middle of the box; negative if the
+    middle is behind.
+    """
     lock: float = 0.6
-    """Radians, the angle of the front wheels at full lock; 0.5 to 0.7 for saloons."""
+    """Angle of the front wheels at full lock in radians; 0.5 to 0.7 for saloons."""
     axle: float = 1.36
-    """Metres from the centre of gravity forward to the front axle."""
+    """Distance in metres from the centre of gravity forward to the front axle."""
     tyres: float = 1.805
-    """Metres between the outer edges of the two front tyres."""
+    """Distance in metres between the outer edges of the two front tyres."""
     height: float = 0.56
-    """Metres from the road up to the centre of gravity."""
+    """Height in metres of the centre of gravity above the road."""
     under: float = 0.42
-    """Metres from the underside of the car up to the centre of gravity."""
+    """Height in metres of the centre of gravity above the underside of the car."""
 
 
 class Columns(Mapping[str, FloatArray]):
@@ -125,7 +126,7 @@ class Drive:
 
     @property
     def duration(self) -> float:
-        """Simulated seconds."""
+        """Duration in seconds of simulated time."""
         return float(self.columns["time"][-1])
 
     @property

@@ -80,8 +80,9 @@ class DriveMonitor:
         return "timeout" if time >= self.limit - ROUNDING else None
 
     def is_at_goal(self, x: float, y: float, s: float) -> bool:
-        """Returns whether the car has arrived; if a road ends near its start, only from half of the road
-        on."""
+        """Returns whether the car has reached the goal; if the road ends near its start, only after half
+        of the road.
+        """
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
@@ -91,7 +92,8 @@ class DriveMonitor:
         return time - self._since >= STUCK_TIME - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
-        """Returns whether the car is out of its lane, or a front tyre beyond a marking where that counts.
+        """Returns whether the car is out of its lane, or, if lane departures count, a front tyre is beyond a
+        marking.
 
         Args:
             outside: share of the car's box outside the lane, 0 to 1.

@@ -36,7 +36,7 @@ TICK = 0.2  # s between two checks of the clock
 
 
 class RemoteDriverError(DriverError):
-    """A DriverError from the driver's own process, whose message needs no further wording."""
+    """A DriverError from the driver's own process; its message needs no additions."""
 
 
 class _HungError(BaseException):

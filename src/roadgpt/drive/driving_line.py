@@ -42,17 +42,17 @@ class DrivingLine:
     step``."""
 
     step: float
-    """Metres of road between stations."""
+    """Distance in metres between stations along the road."""
     offset: list[float]
-    """Metres to the left of the centre line."""
+    """Offset in metres to the left of the centre line."""
     x: list[float]
     y: list[float]
     heading: list[float]
     """Heading of the line in radians, continuous (not wrapped)."""
     curvature: list[float]
-    """1/m, curvature of the line itself, positive to the left."""
+    """Curvature of the line itself in 1/m, positive to the left."""
     stretch: list[float]
-    """Metres of line per metre of road."""
+    """Length of the line per length of the road."""
     grade: list[float]
     """Grade of the road as a ratio."""
     crest: list[float]
@@ -83,8 +83,8 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
 
     Args:
         road: the road.
-        offset: metres to the left; one number, or one number per station of ``stations(road)``. On a road
-            with superelevation it is measured along the surface.
+        offset: offset in metres to the left; one number, or one number per station of ``stations(road)``. On
+            a road with superelevation, it is measured along the surface.
     """
     s = stations(road)
     step = float(s[1])
@@ -138,8 +138,8 @@ def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
 
 
 def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[float, float]:
-    """Returns throttle and brake, 0..1 each, that follow a speed plan by feed-forward and feedback on the
-    speed error.
+    """Returns throttle and brake, 0..1 each, by feed-forward for a speed plan and feedback on the speed
+    error.
 
     Args:
         line: the driving line.

@@ -34,7 +34,7 @@ class SampledRoad(NamedTuple):
     first: float
     """Station of row 0 in metres; negative."""
     step: float
-    """Metres between rows."""
+    """Distance between rows in metres."""
     length: float
     """Length of the road itself in metres."""
 

@@ -58,8 +58,8 @@ class BeamngLike:
         edge_room: distance in metres that the right wheels keep from the right edge of the carriageway where
             it has no shoulder (a floating mesh road), and on a one-way road the left wheels from the left
             edge; with None the driver ignores the edges and may fall off.
-        assumed_friction: friction that it plans for; None: the friction of the world.
-        wheelbase: metres.
+        assumed_friction: friction that it plans for; None for the friction of the world.
+        wheelbase: wheelbase in metres.
     """
 
     name = "beamng_like"

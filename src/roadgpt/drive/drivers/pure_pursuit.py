@@ -21,7 +21,7 @@ class PurePursuit:
         risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
         headway: time to the point ahead, in seconds.
         nearest: smallest distance to the point ahead, in metres.
-        wheelbase: metres.
+        wheelbase: wheelbase in metres.
     """
 
     name = "pure_pursuit"

@@ -25,15 +25,15 @@ class Reference:
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
-        wheelbase: metres.
-        to_rear: metres from the centre of gravity to the rear axle.
+        wheelbase: wheelbase in metres.
+        to_rear: distance in metres from the centre of gravity to the rear axle.
         understeer: steering angle beyond the Ackermann angle per lateral acceleration, in rad per m/s^2.
             ``understeer`` and ``slip`` depend on the car; both were measured on RoadGPT's car in steady state
             at 0.3 g.
         slip: slip angle of the rear axle per lateral acceleration, in rad per m/s^2.
-        gain: rad of steering angle per metre of lateral error at the point ahead.
-        ahead: metres; the point ahead is ``ahead + headway * speed`` metres in front of the car.
-        headway: seconds, see ``ahead``.
+        gain: steering angle per lateral error at the point ahead, in rad per metre.
+        ahead: distance in metres; the point ahead is ``ahead + headway * speed`` metres in front of the car.
+        headway: time in seconds, see ``ahead``.
         lag: steering delay in seconds; the curvature is looked up this time ahead of the car.
     """
 

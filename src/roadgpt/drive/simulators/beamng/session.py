@@ -168,7 +168,9 @@ class Session:
         self._forget()
 
     def drop(self) -> None:
-        """Kills BeamNG if RoadGPT started it; otherwise drops the connection to it."""
+        """Kills BeamNG if RoadGPT started it; otherwise closes the connection without waiting for an
+        answer.
+        """
         for each in self._sockets():
             with suppress(OSError):
                 each.close()
@@ -205,7 +207,7 @@ _sessions: dict[BeamngSettings, Session] = {}
 
 
 def session_of(settings: BeamngSettings) -> Session:
-    """Returns the session for these settings; a process has one session for each settings."""
+    """Returns the session for these settings; each process has one session per settings."""
     if settings not in _sessions:
         leave_all()  # one BeamNG at a time is enough for a graphics card
         _sessions[settings] = Session(settings)

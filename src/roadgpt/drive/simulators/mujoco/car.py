@@ -56,7 +56,7 @@ class Tyre:
     camber_friction_loss: float = 0.0
     """Relative loss of lateral friction per rad^2 of camber (p_Dy3)."""
     horizontal_shift: float = 0.0
-    """rad of slip angle that any camber adds, with the sign of the camber (p_Hy1)."""
+    """Slip angle in rad that any camber adds, with the sign of the camber (p_Hy1)."""
     vertical_shift: float = 0.0
     """Lateral force that any camber adds, with its sign, as a share of the load (p_Vy1)."""
     rolling_resistance: float = 0.011
@@ -80,16 +80,17 @@ class Axle:
     unsprung_mass: float = 42.0
     """Unsprung mass in kg per wheel."""
     wheel_rate: float = 30e3
-    """N/m, stiffness of the spring measured at the wheel."""
+    """Stiffness of the spring in N/m, measured at the wheel."""
     damping: float = 3200.0
-    """Ns/m, damping measured at the wheel."""
+    """Damping in Ns/m, measured at the wheel."""
     anti_roll_stiffness: float = 18e3
     """Stiffness of the anti-roll bar in Nm/rad."""
     roll_centre_height: float = 0.06
     """Height of the roll centre in m above the road."""
     camber_gain: float = -0.4
-    """rad of camber per metre of rebound, as CommonRoad's D_f: with a negative value the tops of the wheels
-    move inwards in compression."""
+    """Camber in rad per metre of rebound, as CommonRoad's D_f: with a negative value the tops of the
+    wheels move inwards in compression.
+    """
     drive_torque_share: float = 0.5
     """Share of the engine's torque that goes to this axle, 0 to 1."""
     brake_torque_share: float = 0.5
@@ -161,13 +162,13 @@ class Car:
     """Ackermann fraction: 1 turns the inner wheel as far as geometry requires, 0 keeps both wheels
     parallel."""
     abs_slip_threshold: float = 0.11
-    """Slip beyond which ABS reduces the brake torque; 0: no ABS."""
+    """Slip beyond which ABS reduces the brake torque; 0 for no ABS."""
     tcs_slip_threshold: float = 0.10
-    """Slip beyond which traction control reduces the drive torque; 0: no traction control."""
+    """Slip beyond which traction control reduces the drive torque; 0 for no traction control."""
     esc_gain: float = 9000.0
-    """Nm of braking torque per rad/s of yaw rate beyond the tolerance; 0: no ESC."""
+    """Braking torque in Nm per rad/s of yaw rate beyond the tolerance; 0 for no ESC."""
     esc_understeer_gradient: float = 0.0025
-    """s^2/m, understeer gradient that the ESC expects: yaw rate = v steer / (wheelbase + gradient v^2)."""
+    """Understeer gradient in s^2/m that the ESC expects: yaw rate = v steer / (wheelbase + gradient v^2)."""
 
     @property
     def mass(self) -> float:

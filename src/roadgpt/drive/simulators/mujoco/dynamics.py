@@ -42,7 +42,7 @@ WHEEL_STATE = 8
 
 
 class MujocoHandles(NamedTuple):
-    """What compiled code needs of MuJoCo: functions, model and data, and views of the data's arrays."""
+    """What compiled code needs to use MuJoCo: functions, model and data, and views of the data's arrays."""
 
     first: Any
     second: Any

@@ -41,17 +41,17 @@ def tyre_forces(
     Args:
         axle: record with the tyre's parameters and its nominal load.
         friction: friction of the road.
-        load: N, vertical.
-        camber: rad, positive when the top leans to the right.
-        forward: speed of the contact point along the wheel, m/s.
-        across: speed of the contact point to the left, m/s.
-        rolling: m/s, wheel speed times radius.
+        load: vertical load in N.
+        camber: camber angle in rad, positive if the top leans to the right.
+        forward: speed of the contact point along the wheel in m/s.
+        across: speed of the contact point to the left in m/s.
+        rolling: angular speed of the wheel times its radius, in m/s.
         slip_x: longitudinal slip one step before (positive: the tyre's force points forward).
         slip_y: lateral slip one step before (positive: the tyre's force points to the left).
-        dt: length of the time step, s.
+        dt: length of the time step in s.
 
     Returns:
-        (N forward, N to the left, slip_x, slip_y)
+        The force forward in N, the force to the left in N, and the new ``slip_x`` and ``slip_y``.
     """
     if load <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
