@@ -81,8 +81,8 @@ def perform(
     Raises:
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
-        ChatError: a language model could not be asked, or did not answer as it should.
-        UsageError: a plug-in is not installed, or the driver's file makes no driver.
+        ChatError: a language model could not be asked, or gave no usable answer.
+        UsageError: a plug-in is not installed, or the driver's file does not define a driver.
     """
     check_parts(setup, world)
     begun = time.perf_counter()
@@ -117,7 +117,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
     Raises:
         BriefError: the words cannot be read, or ask for what the world does not allow.
         PartError: there is no such reader.
-        ChatError: a language model could not be asked, or did not answer as it should.
+        ChatError: a language model could not be asked, or gave no usable answer.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
@@ -144,12 +144,12 @@ def prove(
         world: map, limits of the rules, surface.
         setup: the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
-        brief: the requirements that the road has to meet; None: there are no requirements.
+        brief: the requirements that the road has to meet; None if there are no requirements.
         despite_findings: whether to drive a road that breaks rules, as roads of real maps often do, unless it
             is physically impossible to drive. The Run then has both the findings and the verdict.
 
     Raises:
-        UsageError: a plug-in is not installed, or the driver's file makes no driver.
+        UsageError: a plug-in is not installed, or the driver's file does not define a driver.
     """
     check_parts(setup, world)
     begun = time.perf_counter()
@@ -167,8 +167,8 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
     """Checks that the rules, the simulator and the driver can be loaded, before the first road is made.
 
     Raises:
-        UsageError: a plug-in is not installed, the driver's file makes no driver, or the simulator cannot
-            apply a setting of the world.
+        UsageError: a plug-in is not installed, the driver's file does not define a driver, or the simulator
+            cannot apply a setting of the world.
         DriverError: the driver hung while it was created.
     """
     rules_of(setup.rules)

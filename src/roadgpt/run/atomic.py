@@ -54,12 +54,11 @@ def refuse_links(*paths: Path) -> None:
 
 @contextmanager
 def alone_in(folder: Path) -> Iterator[None]:
-    """Makes this process the only one that works in a folder while the block runs; makes the folder if it
-    does not exist.
+    """Locks a folder for this process inside a ``with`` block, and creates the folder if it does not exist.
 
-    It holds the folder's lock file, which the system releases when the process is killed. The file is not
-    deleted afterwards: another process that had just opened it would hold a lock on a deleted file, and
-    Windows cannot delete open files.
+    The lock is a file in the folder; the system releases it if the process is killed. The file is not deleted
+    afterwards: another process that had just opened it would hold a lock on a deleted file, and Windows
+    cannot delete open files.
 
     Raises:
         UsageError: another process works in the folder, or the folder cannot be used.
@@ -101,7 +100,7 @@ def missing(folder: Path) -> tuple[Path, ...]:
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes the files, and then those of the folders that are empty."""
+    """Removes the files, and then those of the folders that are empty afterwards."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()

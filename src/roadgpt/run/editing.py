@@ -111,12 +111,12 @@ def write_edit(
 
     Args:
         run: the Run of the changed road.
-        before: the Run of the original road, not driven.
+        before: the Run of the original road, which has no drive.
         words: the change request in words.
         changes: sentences that describe the changes made.
         source: the path of the original road.
         folder: an empty folder.
-        draw: draws pictures of the original and of the changed road; None: no pictures.
+        draw: draws pictures of the original and of the changed road; None for no pictures.
     """
     card = {
         "request": words,

@@ -35,7 +35,7 @@ class Exporting:
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
-    """Receives a message if a format cannot hold a road; only this one file is then missing."""
+    """Is called with a message if a format cannot hold a road; only this one file is then missing."""
     draw: Draw | None = None
 
     def of_run(self, run: Run, folder: Path) -> None:

@@ -59,9 +59,9 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
     Args:
         run: the Run.
         campaign: the folder of the campaign.
-        draw: draws pictures into the folder; None: no pictures.
-        test: the content of the file ``test.NNNN.json``; None: the content that ``sbft_json.test_text``
-            gives.
+        draw: draws pictures into the folder; None for no pictures.
+        test: the content of the file ``test.NNNN.json``; None for the content that ``sbft_json.test_text``
+            returns.
     """
     folder = write_run_folder(run, campaign, draw)
     write_whole(campaign / test_name(run.index), test_text(run) if test is None else test)

@@ -14,14 +14,14 @@ MOST = 3  # in a row; each may have cost minutes of waiting for the simulator to
 
 
 class LostDrives(Generic[Key]):
-    """The consecutive drives that a simulator has lost."""
+    """Counts how many drives in a row a simulator has lost."""
 
     def __init__(self) -> None:
         self.lost: list[Key] = []
         """Keys of the lost drives."""
 
     def count(self, key: Key, is_lost: bool) -> bool:
-        """Counts a drive; returns True if the last three drives in a row were lost."""
+        """Counts a drive; returns True if the last three drives were all lost."""
         if not is_lost:
             self.lost.clear()
             return False

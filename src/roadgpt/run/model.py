@@ -31,9 +31,11 @@ class Setup(Frozen):
     geometry: Geometry = "arcs"
     keep_driving: bool = False
     drives: bool = True
-    """False: roads are only designed and checked."""
+    """Whether roads are driven; if False, they are only designed and checked."""
     chat: ChatSettings | None = None
-    """The language model for readers and designers that use one; None: the model of the user's settings."""
+    """The language model for readers and designers that use one; None for the model of the user's
+    settings.
+    """
 
     def came_with(self, file: object) -> Self:
         """Returns the Setup, marked as read from a file of unknown origin: its driver and server need the
@@ -106,14 +108,14 @@ class Run:
     designing: DesignReport | None = None
     """The designer's report on its draft, if it used a language model."""
     spent: Spent | None = None
-    """Tokens, seconds and money spent on language models for this road; None if none was asked."""
+    """Tokens, seconds and money spent on language models for this road; None if none were used."""
     versions: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
     """Name of the file that the road was read from, or the change request; used in headings."""
     trace: str = ""
     """The traceback of a simulator or a driver that failed."""
     is_lost: bool = False
-    """True if the simulator itself failed; not written to the disk."""
+    """True if the simulator itself failed; this is not written to disk."""
     seconds: Seconds = Seconds()
 
     def __repr__(self) -> str:
