@@ -29,7 +29,7 @@ class Trees:
     places: Array
     """Position of the foot of each tree in metres, (n, 3)."""
     sizes: Array
-    """Height of each tree in metres, which is also its width, (n,)."""
+    """Height and width of each tree in metres, (n, 2)."""
     looks: NDArray[np.int64]
     """Index of the picture of each tree, (n,)."""
     tints: Array
