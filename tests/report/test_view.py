@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from roadgpt.cli import app
 from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.report import view
 from roadgpt.report.view.scene import DRIVE, MOST_STEPS
 from roadgpt.road import Design, Road, Segment, World
@@ -300,3 +301,12 @@ def test_the_page_has_a_name_of_its_own(folder: Path, monkeypatch: pytest.Monkey
     assert done.exit_code == 0
     assert "no browser could be started" in done.stderr
     assert (folder / "roadgpt-view.html").is_file()
+
+
+def test_the_car_stands_on_the_inclined_surface() -> None:
+    """The page draws the car ``height`` above the road; on a bank that is the height above its own place."""
+    plan = PieceCurve(100.0, 60.0, 0.0, (Piece(90.0, 1 / 60, 1 / 60),))
+    road = Road(plan, GradeProfile(3.0, (0.0, 90.0), (0.0, 0.0)))
+    run = prove(road, 0, World(lanes="3+1", bank=0.08), Setup(driver="reference"))
+    made = view.scene(run)
+    assert made["drive"]["car"]["height"] == pytest.approx(0.56, abs=0.05)

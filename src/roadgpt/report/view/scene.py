@@ -126,7 +126,7 @@ def _drive(run: Run) -> dict[str, Any] | None:
     kept = np.unique(np.r_[np.arange(0, len(drive), every), len(drive) - 1])
     columns = {name: drive[name][kept] for name in DRIVE}
     columns["heading"] = np.unwrap(columns["heading"])
-    height = drive["z"][0] - float(road.elevation.height(drive["s"][0]))
+    height = drive["z"][0] - float(road.at(drive["s"][0], drive["t"][0])[2])
     return {
         "driver": drive.driver,
         "simulator": drive.simulator,

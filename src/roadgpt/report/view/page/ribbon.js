@@ -175,7 +175,7 @@ function drivenLine(scene, origin, fastest) {
       const dy = columns.y[after] - columns.y[before];
       const long = Math.hypot(dx, dy) || 1;
       const [ax, ay] = [(-dy / long) * width / 2, (dx / long) * width / 2];
-      const z = Math.min(read(scene.road.z, placeIn(scene.road.s, columns.s[i])), columns.z[i]) + lift;
+      const z = Math.min(onRoad(scene.road, columns.s[i], columns.t[i]).z, columns.z[i]) + lift;
       const rgb = isCase ? [250, 250, 250] : speedColour(columns.speed[i] / fastest);
       const colour = new THREE.Color().setRGB(...rgb.map((v) => v / 255), THREE.SRGBColorSpace);
       const l = shape.point(columns.x[i] + ax, columns.y[i] + ay, z, colour);
