@@ -80,8 +80,8 @@ class DriveMonitor:
         return "timeout" if time >= self.limit - ROUNDING else None
 
     def is_at_goal(self, x: float, y: float, s: float) -> bool:
-        """Returns whether the car has reached the goal; if the road ends near its start, only after half
-        of the road.
+        """Returns whether the car has reached the goal; never in the first half, because a road may end
+        near its start.
         """
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
