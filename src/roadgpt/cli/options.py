@@ -53,7 +53,7 @@ WORLD = (
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
     _world("--lanes", "Lanes in driving direction + oncoming.", lanes, "1+1"),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
-    _world("--lane-width-end", "Lane width at the end of the road, m; it changes evenly. [default: the same]",
+    _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
     _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
     _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
@@ -64,7 +64,7 @@ WORLD = (
 
 SETUP = (
     _run("--reader", "Reader: model, grammar or chat.", str, "model", guard=reader_guard),
-    _run("--designer", "What designs: planner, chat or thesis.", str, "planner",
+    _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
@@ -159,8 +159,9 @@ NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
 JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 DRIVER_AGAIN = Option(
-    "--driver", "The driver's file. Repeat it here if the run used one: for safety, a driver's file is not "
-    "run just because a folder refers to it.", driver_again, metavar="FILE.py:CLASS", heading=Heading.DRIVE,
+    "--driver", "File of the driver. If the run used one, name it here again: for safety, RoadGPT does not "
+    "run a file just because a run folder refers to it.", driver_again, metavar="FILE.py:CLASS",
+    heading=Heading.DRIVE,
 )
 
 _output = partial(Option, kind=bool, heading=Heading.OUTPUT)

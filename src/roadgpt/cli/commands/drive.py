@@ -53,7 +53,7 @@ def command(
     ctx: click.Context, /, files: tuple[str, ...], seed: int, again: bool, out: Path | None, axes: Any,
     junit: Path | None, as_json: bool, quiet: bool, verbose: bool, **rest: Any,
 ) -> int:  # fmt: skip
-    """Drive roads from files, or drive tests of a campaign again.
+    """Drive roads from files, or run tests of a campaign again.
 
     ROAD is a RoadGPT design, a test of SBFT or SDC-Scissor, a list of points [x, y] or [x, y, z], a table of
     points (.csv) or OpenDRIVE (.xodr). A road that breaks a rule is driven anyway, and the broken rule is
@@ -61,11 +61,11 @@ def command(
     points at the same place, or no room for a car. With --rules sbft (see --help-all), every broken rule
     makes a road INVALID, as in the SBFT competition. The exit status is 0 if every road could be read.
 
-    With --again, give a campaign and test numbers from its results.csv, such as CAMPAIGN 17. You can also
-    name a test of one cell of the campaign, such as CAMPAIGN/c02/17. Road, world, driver and seed are
-    taken from the test, so the drive should be identical byte for byte; the command says so if it is not.
-    Each test is written into a run folder of its own. To look at a test without driving it again, use
-    roadgpt show, view, film or export with CAMPAIGN/c02/17.
+    With --again, give a campaign and test numbers from its results.csv, such as CAMPAIGN 17. If the
+    campaign has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road,
+    world, driver and seed are taken from the test, so the drive should be identical byte for byte; the
+    command says so if it is not. Each test is written into a run folder of its own. To look at a test
+    without driving it again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
 
     \b
     roadgpt drive my_road.json --friction 0.6

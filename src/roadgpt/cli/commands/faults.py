@@ -27,8 +27,8 @@ FAULT_OPTIONS = (
            heading=Heading.FAILURES),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs; implies "
            "--faults.", bool, heading=Heading.FAILURES),
-    Option("--repeat", "Number of drives of each fault with small disturbances; implies --faults. "
-           f"[default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
+    Option("--repeat", "How often to drive the road of each fault again, with small disturbances; implies "
+           f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
 )  # fmt: skip
 
 
@@ -140,7 +140,8 @@ def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
 
 # fmt: off
 OPTIONS = (
-    Option("--repeat", "Number of drives of each fault with small disturbances.", DRIVES, REPEAT),
+    Option("--repeat", "How often to drive the road of each fault again, with small disturbances.",
+           DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
     Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
