@@ -2,7 +2,8 @@
 
 The search's goal decides how valuable a candidate is:
 
-failures   its predicted probability of failing, weighted higher in cells with few failures so far
+failures   the higher its predicted probability of failing, the more valuable; cells with few failures so
+           far have a higher weight
 coverage   the fewer tests its predicted cell has, the more valuable
 hardest    the smaller its predicted margin, minus the spread of the predictions, the more valuable
 """
@@ -39,15 +40,15 @@ def select(
     counts: Counter[int],
     least: float,
 ) -> list[Candidate]:
-    """Returns the candidates to drive, the most valuable first; no two of them are similar roads.
+    """Returns the candidates to drive, the most valuable first. Similar roads are skipped, see ``least``.
 
     Args:
         goal: what the search looks for.
         n: largest number of candidates to return.
-        candidates: the roads to choose from.
+        candidates: the candidate roads to choose from.
         expected: the surrogate's predictions for the candidates.
         counts: number of failures so far in each cell; for the goal "coverage", number of tests.
-        least: smallest distance between two chosen roads, metres RMS.
+        least: smallest allowed distance between the shapes of two chosen roads, metres RMS.
     """
     used, index = np.unique(expected.cells, return_inverse=True)
     cells = index.reshape(expected.cells.shape)
@@ -70,8 +71,8 @@ def select(
 
 
 def far_from(candidates: Sequence[Candidate], shape: PlanShape, least: float) -> NDArray[np.bool_]:
-    """Returns a mask ``(n,)`` of the candidates whose distance to a shape is at least ``least`` metres
-    RMS.
+    """Returns a mask ``(n,)``: True for each candidate whose shape is at least ``least`` metres RMS away from
+    the given shape.
     """
     if not least or not candidates:
         return np.ones(len(candidates), bool)
@@ -79,7 +80,7 @@ def far_from(candidates: Sequence[Candidate], shape: PlanShape, least: float) ->
 
 
 def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], least: float) -> list[Candidate]:
-    """Returns the candidates whose distance to every known road is at least ``least`` metres RMS."""
+    """Returns the candidates whose shape is at least ``least`` metres RMS away from every known shape."""
     if not known or not least:
         return list(candidates)
     others = stacked(known)
@@ -87,12 +88,16 @@ def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], leas
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
-    """Stacks several shapes into one PlanShape; the new first axis of its arrays counts the shapes."""
+    """Stacks several shapes into one PlanShape; each of its arrays gets a new first axis, the index of the
+    shape.
+    """
     return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Chooses candidates without predictions: diverse in their features, from the half that looks hardest.
+    """Chooses candidates while there are no predictions yet.
+
+    Of the half of the candidates that looks hardest, it chooses candidates with diverse features.
 
     Args:
         candidates: the roads to choose from.

@@ -50,7 +50,7 @@ class Archive:
         self.failures: Counter[int] = Counter()
 
     def add(self, number: int, features: Mapping[str, float], quality: float, failed: bool) -> None:
-        """Adds a test, unless it lacks a feature of the map.
+        """Adds a test; ignores a test that lacks one of the map's features.
 
         Args:
             number: number of the test.
@@ -72,12 +72,14 @@ class Archive:
         return self._map.cells(places)
 
     def elites(self) -> list[int]:
-        """Returns the number of the best test of each cell, in order of the cells."""
+        """Returns the test number of the best test in each cell, in order of the cell numbers."""
         return [self._best[cell][1] for cell in sorted(self._best)]
 
 
 class Grid:
-    """A map with equally wide cells along each axis; values out of range belong to the outermost cell."""
+    """A map with equally wide cells along each axis; a value out of range is counted in the outermost
+    cell.
+    """
 
     def __init__(self, bounds: Array, cells: int) -> None:
         """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""
@@ -110,10 +112,10 @@ class Niches:
 
 
 def centroids_of(samples: Array, count: int) -> Array:
-    """Returns ``count`` centroids ``(count, axes)`` of samples ``(n, axes)``, by Lloyd's k-means.
+    """Computes ``count`` centroids ``(count, axes)`` of samples ``(n, axes)`` with Lloyd's k-means algorithm.
 
     Initialisation and stopping rule are those of scikit-learn's ``k_means`` with ``init="random"``, which
-    pyribs uses, so that a map has the same cells as in earlier versions of RoadGPT.
+    pyribs uses. Maps therefore have the same cells as in earlier versions of RoadGPT, which used pyribs.
     """
     middle = samples.mean(axis=0)
     points = samples - middle

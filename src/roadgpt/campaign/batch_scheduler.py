@@ -1,5 +1,5 @@
-"""Decides when the next batch of tests of a cell is requested from the cell's generator, and passes it the
-results.
+"""Decides when to request the next batch of tests from a cell's generator, and passes results to the
+generator.
 """
 
 from bisect import bisect
@@ -22,8 +22,8 @@ class BatchScheduler:
     """Requests batches of tests from the generator of one cell.
 
     Batch k is requested once all tests of batch k - 2 have ended. By then the generator has received the
-    results of batches 0 to k - 2, and no others. In a cell whose tests run one after another, every batch is
-    one test, requested once all earlier tests have ended.
+    results of batches 0 to k - 2, and no others. If the tests of the cell run one after another, every batch
+    consists of one test, and it is requested once all earlier tests have ended.
     """
 
     def __init__(self, cell: Cell, store: Store) -> None:
@@ -82,8 +82,8 @@ class BatchScheduler:
     def ask(self, pool: Pool) -> list[tuple[int, Proposal]]:
         """Requests the next batch, stores it, and returns its tests with their numbers.
 
-        If the generator has nothing left to propose, or no road could be designed, closes the cell and
-        returns an empty list.
+        Closes the cell and returns an empty list if the generator has nothing left to propose, or if no road
+        could be designed.
 
         Raises:
             RoadGPTError: the generator proposes more tests than were requested, or asks for a draft in a cell
@@ -134,7 +134,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of those batches from whose designs a draft in this batch has to differ."""
+        """Returns the numbers of the earlier batches that a road drafted in this batch must differ from."""
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)
@@ -144,10 +144,10 @@ class BatchScheduler:
         return range(begin, last + 1)
 
     def designs(self, batch: int) -> tuple[Design, ...]:
-        """Returns the designs of a batch that has ended."""
+        """Returns the designs of the tests in a batch whose tests have all ended."""
         return tuple(designs_of(self._results(self.batches[batch])))
 
 
 def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Returns the designs of those results that have a design."""
+    """Returns the designs of the results; leaves out results for which no road could be designed."""
     return [result.design for result in results if result.design is not None]

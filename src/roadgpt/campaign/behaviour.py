@@ -56,7 +56,7 @@ def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
 
     Args:
         road: the road.
-        brief: the requirements of the road's description; None: there is no description.
+        brief: the requirements read from the road's description; None if there is no description.
     """
     samples = road.sample()
     widest = outline(brief or Brief()).widest
@@ -101,7 +101,7 @@ def directions(heading: Array) -> float:
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Returns the lower and the upper end of the map along the axis of a feature.
+    """Returns the smallest and the largest value of a feature on the map.
 
     Raises:
         KeyError: there is no feature of that name.
@@ -113,8 +113,9 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of a test on a map with ``cells`` cells along each axis; None if the test lacks a
-    feature.
+    """Returns the cell of a test, as one index per axis, on a map with ``cells`` cells along each axis.
+
+    Returns None if the test lacks one of the features.
     """
     if any(axis not in features for axis in axes):
         return None

@@ -1,7 +1,7 @@
 """Pairs of similar roads at the boundary of failure: the car passed on one of them and failed on the other.
 
-Two roads correspond if they have the same sequence of left turns, right turns and straights. Then a road
-half-way between the two can be made, by averaging each length, angle, radius and slope.
+Two roads correspond if they have the same sequence of left turns, right turns and straights. A road half-way
+between two corresponding roads can be made by averaging each length, angle, radius and slope.
 """
 
 from collections.abc import Sequence
@@ -52,8 +52,8 @@ class BoundaryPair:
 
 
 def distance(one: Elements, other: Elements) -> float:
-    """Returns the distance between two corresponding roads, as in ``BoundaryPair.distance``; infinite if
-    they do not correspond.
+    """Returns the distance between two roads, as defined in ``BoundaryPair.distance``; infinite if the
+    roads do not correspond.
     """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return np.inf
@@ -93,9 +93,9 @@ def _figure(element: Element, measure: Measure) -> str:
 
 
 def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
-    """Returns the pairs among the results of one cell, the closest pair first.
+    """Returns the boundary pairs among the results of one cell, the closest pair first.
 
-    Every failure is paired with the nearest corresponding road that passed; each test is in at most one pair.
+    The closest corresponding roads are paired first; each test is in at most one pair.
     """
     roads = {
         r.number: elements_of(r.design.segments)
@@ -108,7 +108,13 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns the same pairs as ``pairs_of``, from a dictionary of roads by the number of their test."""
+    """Returns the same pairs as ``pairs_of``, from the test numbers of passed and failed tests.
+
+    Args:
+        roads: the elements of each road, by test number.
+        kept: numbers of the tests that passed.
+        lost: numbers of the tests that failed.
+    """
     rows: dict[tuple[float, ...], list[int]] = {}
     for number in kept:
         rows.setdefault(_row(roads[number]), []).append(number)

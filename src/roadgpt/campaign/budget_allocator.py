@@ -1,12 +1,12 @@
-"""Shares a campaign's limits of tokens and money among the tests that are running at once."""
+"""Divides a campaign's limits of tokens and money among the tests that run at the same time."""
 
 from roadgpt.campaign.single_test import Allowance
 from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """Divides a limit of tokens and money among running tests, so that they stay within it even if each
-    spends its whole allowance.
+    """Divides a limit of tokens and money among running tests. The tests stay within the limit even if
+    each one spends its whole allowance.
     """
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:
@@ -21,9 +21,10 @@ class BudgetAllocator:
         return self._limits != Allowance()
 
     def share(self, tests: int) -> Allowance:
-        """Returns the allowance of each of ``tests`` further tests.
+        """Returns the allowance of each of the next ``tests`` tests.
 
-        Together the tests get half of what is left, so that more tests can follow.
+        Together these tests get half of the remaining tokens and money; the other half is left for later
+        tests.
         """
         tokens, cost = self._left()
         return Allowance(
@@ -42,7 +43,9 @@ class BudgetAllocator:
             self._given[key] = allowance
 
     def back(self, key: int, spent: Spent | None) -> None:
-        """Releases the allowance of a test that has ended, and subtracts what the test spent."""
+        """Releases the allowance of a test that has ended, and subtracts what the test spent from the
+        limits.
+        """
         self._given.pop(key, None)
         if spent is not None:
             self._spent[0] += spent.usage.total

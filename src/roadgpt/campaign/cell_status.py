@@ -30,7 +30,7 @@ class CellStatus:
     mostly_outside: int
     """Number of passed tests in which more than half of the car was outside its lane."""
     max_oob: float | None
-    """Largest share, 0 to 1, of the car that was outside its lane in any passed test."""
+    """Largest share of the car that was outside its lane at one time in any passed test, 0 to 1."""
     beyond: float | None
     """Largest distance beyond the lane marking in any passed test, metres.
 
@@ -47,7 +47,9 @@ class CellStatus:
 
     @property
     def remark(self) -> str:
-        """A warning if a search for the boundary found only passing or only failing roads; else empty."""
+        """A warning if a search for the boundary of failure found only passing or only failing roads; else
+        empty.
+        """
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed
         if self.goal != "boundary" or not self.done or (driven and min(kept, failed) >= ONE_SIDED * driven):

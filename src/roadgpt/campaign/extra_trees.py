@@ -1,4 +1,4 @@
-"""Extremely randomised trees for regression (Geurts, Ernst and Wehenkel 2006), on numpy alone.
+"""Extremely randomised trees for regression (Geurts, Ernst and Wehenkel 2006), implemented with numpy only.
 
 Every tree learns from all samples. Each node draws one threshold per feature, uniformly between the smallest
 and the largest value in its samples, and splits at the threshold that gives the smallest sum of squared
@@ -33,7 +33,9 @@ class Forest(NamedTuple):
     trees: int
 
     def predict(self, samples: Array) -> Array:
-        """Returns the prediction of each tree, ``(trees, n, k)``, for samples ``(n, features)``."""
+        """Returns the prediction of every tree, ``(trees, n, k)``, for each of the samples ``(n,
+        features)``.
+        """
         at = np.tile(np.arange(self.trees)[:, None], len(samples))
         every = np.arange(len(samples))
         while (inner := self.feature[at] >= 0).any():

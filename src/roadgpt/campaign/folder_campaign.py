@@ -34,16 +34,17 @@ def work_in(
 ) -> Generator[tuple[str, FinishedRun], None, None]:
     """Runs the missing tests of folders of runs; the work happens while the caller iterates.
 
-    If no road can be designed for a folder, its ``failure`` gives the reason, and nothing is left in it.
+    If no road can be designed for a folder, its ``failure`` gives the reason, and the folder stays without
+    tests.
 
     Args:
         home: the folder that messages refer to, and in which workers write their log.
         folders: the folders, by name.
         draw: draws pictures into the folders; None: no pictures.
         meter: counts the use of language models, if the tests run in this process; None: a new one.
-        workers: number of worker processes, on which the content of the files does not depend; 0: the tests
-            run in this process.
-        with_earlier: whether to yield first the tests that earlier sessions ran.
+        workers: number of worker processes; 0: the tests run in this process. The content of the files is the
+            same for any number.
+        with_earlier: True: yields the tests of earlier sessions first; False: yields only new tests.
 
     Yields:
         The name of the folder and the test, as soon as the files of the test are complete.
@@ -107,13 +108,16 @@ def _worked(
 
 @dataclass(repr=False, eq=False)
 class Campaign(RunFolder):
-    """Makes the Runs of one description; iterate over it to make them. Each Run is on disk when it is
-    yielded."""
+    """The Runs of one description. Iterating over it makes the missing Runs; each Run is on disk when it
+    is yielded.
+    """
 
     draw: Draw | None = None
     """Draws pictures into the folders of Runs; None: no pictures."""
     meter: Meter = field(default_factory=Meter)
-    """Counts the use of language models, for earlier roads of the folder as well."""
+    """Counts the use of language models; it includes the use for roads that earlier sessions made in the
+    folder.
+    """
 
     def __repr__(self) -> str:
         done = f"{len(self.tests)} of {self.roads} roads"
@@ -175,7 +179,7 @@ def campaign(
         words: a description, or the Brief that was read from it.
         n: number of roads.
         seed: seed of the campaign; each road's own seed is derived from this seed and the road's index.
-        world: map, limits of the rules, surface.
+        world: the map, the limits that the rules apply, and the road surface.
         setup: the reader, designer, rules, simulator and driver.
         out: the folder. If it holds an interrupted campaign of the same request, that campaign is continued;
             a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.

@@ -56,8 +56,9 @@ class FolderStore(Store):
         return self._cells[name]
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Writes the files of tests that have ended; a test without a road is held back until another test of
-        its cell has a road.
+        """Writes the files of tests that have ended.
+
+        A test for which no road could be designed is written only once another test of its cell has a road.
         """
         super().keep(ended, *rest)
         for name, one in ended:
@@ -68,6 +69,6 @@ class FolderStore(Store):
             self.written += [(name, each) for each in self._folders[name].add(one)]
 
     def reopen(self, cell: str, number: int, batch: int) -> None:
-        """Removes a test that ended without a drive, so that it is run again."""
+        """Removes a test that ended without a drive, so that it runs again."""
         super().reopen(cell, number, batch)
         self._folders[cell].remove(number)

@@ -1,6 +1,6 @@
 """Begins and runs campaigns: one process schedules tests and writes the store, and workers run the tests.
 
-begin     makes a folder with a store in it: the plan, and its cells with their Briefs
+begin     makes a folder with a store, which holds the plan and its cells with their Briefs
 work      runs the tests that have not ended; interruptions do not change the resulting tables
 """
 
@@ -42,13 +42,13 @@ USER_NAMES = {
 def begin(plan: Plan, folder: Path) -> bool:
     """Prepares a campaign's folder: makes it, or checks that it already holds the same campaign.
 
-    The descriptions of a new campaign are interpreted here.
+    If the campaign is new, its descriptions are read into Briefs.
 
     Returns:
         True if the folder held the campaign already.
 
     Raises:
-        UsageError: the plan cannot be carried out, or the folder holds something else.
+        UsageError: the plan cannot be carried out, or the folder holds something other than this campaign.
         DriverError: a driver did not finish its constructor in time.
         BriefError: a description cannot be read.
         ChatError: the language model that reads the descriptions did not answer.

@@ -50,11 +50,12 @@ class Proposal:
     """A test that a generator asks for."""
 
     design: Design | None
-    """The road's design. None: a worker drafts the road from the cell's Brief, as road ``number`` with
-    this seed, different from the designs in the batches that the generator has received.
+    """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
+    number of the test. The road differs from the designs in the batches whose results the generator has
+    received.
     """
     seed: int
-    """Seed of the draft; if a design is given, seed of the driver."""
+    """If ``design`` is None, seed of the draft; else seed of the driver."""
     origin: str
     """Where the road comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
 
@@ -81,10 +82,10 @@ class Result:
     margin: float | None = None
     """Margin to out of bounds, metres, see ``roadgpt.verdict.margin``; None if the road was not driven."""
     max_oob: float | None = None
-    """Largest share of the car outside its lane, 0 to 1."""
+    """Largest share of the car that was outside its lane at one time, 0 to 1."""
     beyond: float | None = None
-    """Largest distance of the car's body beyond the lane marking, metres; None if not driven or not
-    recorded by an earlier version.
+    """Largest distance of the car's body beyond the lane marking, metres. None if the road was not driven,
+    or if an earlier version of RoadGPT wrote the result.
     """
     at_s: float | None = None
     """Station of the failure, metres along the road; None if the car did not fail."""
@@ -103,8 +104,8 @@ class Result:
 
 @dataclass(frozen=True)
 class Cell:
-    """One combination of a plan's prompts, designers, drivers and so on, with everything that its tests
-    share.
+    """One combination of a plan's prompts, designers, drivers and so on, with all settings that are the
+    same for its tests.
     """
 
     name: str
@@ -116,7 +117,7 @@ class Cell:
     generator: str
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)
-    """The generator's settings, which its own documentation describes."""
+    """The generator's settings; the documentation of each generator describes them."""
     budget: Budget = UNLIMITED
     in_sequence: bool = False
     """True if each test is proposed only after the one before has ended, so that every draft differs from all
@@ -130,8 +131,8 @@ class Pool(Protocol):
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items, in the order of the items.
 
-        The function must be defined at the top level of a module. An error that it raises is raised here
-        again.
+        The function must be defined at the top level of a module. If the function raises an error, ``map``
+        raises the same error.
         """
         ...
 
@@ -144,8 +145,8 @@ class Generator(Protocol):
     random numbers in a batch come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
     campaign's results depend neither on the number of workers nor on interruptions.
 
-    The attribute ``goals`` of a generator that searches lists the goals that it supports. A generator without
-    ``goals`` does not search, and its cells have no goal.
+    A generator that searches has an attribute ``goals``, which lists the goals that it supports. A generator
+    without ``goals`` does not search, and its cells have no goal.
     """
 
     batch_size: int
@@ -156,7 +157,7 @@ class Generator(Protocol):
 
         Args:
             batch: number of the batch, from 0.
-            first: number of its first test, from 1.
+            first: number of the first test in the batch, from 1.
             n: number of tests to return, at most ``batch_size``.
             pool: the workers of the campaign, for long computations.
         """

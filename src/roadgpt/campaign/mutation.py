@@ -1,4 +1,4 @@
-"""Mutations of a road's elements: each is a pure function that draws from a given random generator.
+"""Mutations of a road's elements: each mutation is a pure function of the elements and a random generator.
 
 A mutation may violate the road's requirements; ``variation`` checks every mutated road afterwards.
 """
@@ -32,12 +32,12 @@ Kind = Literal["turn", "straight", "any"]
 
 
 class Mutation(NamedTuple):
-    """A kind of mutation of the elements of a road."""
+    """A type of mutation, such as reversing the direction of a turn."""
 
     make: Make
-    """Returns the mutated elements."""
+    """A function that returns the mutated elements."""
     weight: float
-    """How often the mutation is drawn, relative to the others."""
+    """How often this mutation is chosen, relative to the other mutations."""
     is_numeric: bool
     """True if the mutation keeps the sequence of turns and straights and changes only numbers."""
 
@@ -61,20 +61,21 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the first elements of one road followed by the last elements of another; each road is cut at a
-    random element.
+    """Returns the first elements of one road followed by the last elements of another road.
+
+    The position at which each road is cut is random.
     """
     first, last = int(rng.integers(1, len(one) + 1)), int(rng.integers(len(other)))
     return (one[:first] + other[last:])[:MOST_ELEMENTS]
 
 
 def interpolated(one: Elements, other: Elements, share: float) -> Elements | None:
-    """Returns a road between two roads; None unless their sequences of turns and straights correspond.
+    """Interpolates between two roads; returns None if their sequences of turns and straights differ.
 
     Args:
         one: the road that is returned for share 0.
         other: the road that is returned for share 1.
-        share: position between the two roads: 0 gives ``one``, 1 gives ``other``.
+        share: position between the two roads, from 0 to 1.
     """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return None

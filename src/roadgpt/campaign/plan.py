@@ -39,7 +39,7 @@ class Plan(Frozen):
     seeds: Annotated[tuple[Seed, ...], Field(min_length=1)] = (0,)
     goal: Goal | None = None
     settings: Mapping[str, Any] = Field(default_factory=dict)
-    """Settings of the generators."""
+    """Settings of the generators: the value of each setting, by its name."""
     budget: Budget = UNLIMITED
     """The limits of each cell."""
     reader: str = "model"
@@ -58,8 +58,9 @@ class Plan(Frozen):
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
     def came_with(self, file: object) -> "Plan":
-        """Returns the Plan, marked as read from a file that somebody else may have written; see
-        ``Setup.came_with``.
+        """Returns the Plan, marked as read from a file that another person may have written.
+
+        RoadGPT then asks the user before it uses a driver's file or a server that only this file names.
         """
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)
@@ -104,8 +105,8 @@ class Plan(Frozen):
         """Checks the plan without running a test.
 
         Raises:
-            UsageError: a plug-in is not installed, there are too many cells or two equal ones, there is no
-                limit, a search has no driver, or no generator supports the goal.
+            UsageError: a plug-in is not installed, there are too many cells, two cells are equal, no limit is
+                set, a search has no driver, or no generator supports the goal.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -140,7 +141,7 @@ class Plan(Frozen):
         plugins.find("readers", self.reader.partition(":")[0])
 
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
-        """Returns all cells; ``briefs`` holds the Brief that was read from each prompt."""
+        """Returns all cells; ``briefs`` maps each prompt to the Brief read from it."""
         made = [*self.requests()]
         wide = max(2, len(str(len(made))))
         return [

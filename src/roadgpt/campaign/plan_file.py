@@ -79,7 +79,7 @@ class WorldTable(_Strict):
 
 
 class PlanTable(_Strict):
-    """The keys of a plan file."""
+    """The keys of a plan file at its top level."""
 
     prompts: Texts = ()
     designers: Texts = ("planner",)

@@ -148,7 +148,7 @@ class Record:
             yield row
 
     def meta(self, name: str) -> str:
-        """Returns one value from the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
+        """Returns one value of the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
 
     def names(self) -> list[str]:
@@ -195,9 +195,7 @@ class Record:
     def results_by_cell(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[tuple[str, Result]]:
-        """Yields the name of the cell and the result of each test that ``results`` yields for the same
-        arguments.
-        """
+        """Yields the same tests as ``results``, each as the name of its cell and its result."""
         chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
         sql = (
             f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words

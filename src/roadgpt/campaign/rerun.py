@@ -57,7 +57,7 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
 
 
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
-    """Returns the Run that belongs to a result read from an open Record; see ``kept_run``."""
+    """Returns the Run of a test whose result was read from an open Record; see ``kept_run``."""
     request, brief = cell.request, cell.brief
     design = _design_of(record.folder, cell.name, result)
     road = request.world.lay(build(design, request.setup.geometry))
@@ -113,7 +113,7 @@ def _kept_drive(record: Record, cell: str, number: int) -> Drive | None:
 
 
 def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
-    """Checks and drives a test of a campaign again; returns the new Run and the stored Result.
+    """Checks and drives the road of a campaign's test again; returns the new Run and the stored Result.
 
     The same design, seed and setup give the same Run, bit for bit, on one machine.
 

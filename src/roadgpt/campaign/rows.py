@@ -23,7 +23,7 @@ RESULT = (
 
 
 def design_text(design: Design | None) -> str | None:
-    """Returns a design as JSON, from which ``design_of`` makes the same design again."""
+    """Returns a design as JSON; ``design_of`` restores the same design."""
     return None if design is None else design.model_dump_json(exclude_none=True)
 
 
@@ -68,7 +68,7 @@ def _number(value: float | None) -> float | None:
 
 
 def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
-    """Returns the name of the cell and the result in a row with the columns ``RESULT``."""
+    """Converts a row with the columns ``RESULT`` to the name of the cell and the result."""
     cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
     origin, text, description, features = row[13:]
     values = _features_of(features)

@@ -1,4 +1,5 @@
-"""A folder of runs as the store of one cell: the files in it are the only record of its tests.
+"""Uses a folder of runs as the store of one cell; the files in the folder are the only record of the cell's
+tests.
 
 ``roadgpt run`` and each part of a study write such a folder, with the files of the SBFT competition. A test
 has ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
@@ -30,16 +31,16 @@ class FinishedRun(FinishedTest):
     """A test that has ended and whose Run is stored in a folder of runs."""
 
     test_file: str = ""
-    """Content of ``test.NNNN.json``; empty if the file exists."""
+    """Text to write into ``test.NNNN.json``; empty if this file exists already."""
     entry: TallyEntry | None = None
-    """The values of this test that the folder's tables count."""
+    """The values of this test that are counted in the folder's tables."""
     run: Run | None = None
-    """The Run; None if a worker process made it."""
+    """The Run; None if a worker process or an earlier session ran the test."""
 
 
 @dataclass(frozen=True)
 class RunWriter:
-    """Runs tests and writes their Runs into folders; workers receive it with each test."""
+    """Runs tests and writes their Runs into folders."""
 
     folders: Mapping[str, Path]
     """The folder of each cell."""
@@ -84,13 +85,13 @@ class RunFolder:
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
-    """This folder and its parents, as far as they were created now, innermost first; they are removed if no
-    road can be designed.
+    """The folders that were created for this session, innermost first: this folder and perhaps some of its
+    parents. They are removed if no road can be designed.
     """
     tests: dict[int, FinishedRun] = field(default_factory=dict)
     """The tests that have ended, by number."""
     spent: Spent = field(default_factory=Spent)
-    """What language models cost for the tests of earlier sessions."""
+    """Tokens and money that language models used for the tests of earlier sessions."""
     failure: str = ""
     """Why no road could be designed; empty if a road was designed or none has been tried yet."""
     _tally: Tally = field(default_factory=Tally)
@@ -101,7 +102,7 @@ class RunFolder:
         """Opens a folder: a new one, or one that holds tests of the same request.
 
         Raises:
-            UsageError: the folder holds something else, or cannot be created.
+            UsageError: the folder holds something other than tests of this request, or cannot be created.
         """
         if roads < 1:
             raise UsageError(f"{roads} roads cannot be made; ask for 1 or more")
@@ -125,8 +126,7 @@ class RunFolder:
         return len(self.tests) >= self.roads
 
     def take_up(self) -> Card:
-        """Reads tests in the folder that this object does not know yet; a Run that cannot be read does not
-        count.
+        """Reads tests in the folder that this object does not know yet; ignores Runs that cannot be read.
 
         Raises:
             UsageError: the folder holds Runs of another request, or more than were requested.
@@ -161,7 +161,7 @@ class RunFolder:
             self.spent += run.spent or Spent()
 
     def begin(self) -> bool:
-        """Prepares the folder for a session; returns True, and changes nothing, if all tests have ended.
+        """Prepares the folder for a session. If all tests have ended, changes nothing and returns True.
 
         Another process may have worked in the folder since it was opened.
         """
@@ -179,8 +179,8 @@ class RunFolder:
     def add(self, ended: FinishedRun) -> list[FinishedRun]:
         """Writes the file of a test that has ended, and then the tables; returns the tests that were written.
 
-        Tests without a road are held back until a road could be designed: a description that no road can meet
-        leaves no tests behind.
+        Tests without a road are held back until a road has been designed. The folder therefore stays without
+        tests if no road can satisfy the description.
         """
         self._held_back.append(ended)
         if not (self._tally.with_road or (ended.entry and ended.entry.has_road)):
@@ -216,7 +216,9 @@ class RunFolder:
             self._write_card(is_finished=True)
 
     def drop_held_back(self) -> None:
-        """Removes the tests for which no road could be designed, and the folder if it then holds no test."""
+        """Discards the tests that were held back because they have no road; removes the folder if it holds
+        no other test.
+        """
         with writing(self.folder):
             for one in self._held_back:
                 remove_run(one.result.number, self.folder)

@@ -40,7 +40,7 @@ class Progress:
     """The progress of a campaign."""
 
     total: int | None
-    """Number of tests; None if only the time is limited."""
+    """Number of tests; None if the campaign has a time limit but no limit on tests."""
     outcomes: Counter[str] = field(default_factory=Counter)
     under_way: int = 0
 

@@ -23,8 +23,9 @@ DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
 class SearchSettings(Frozen):
     """Settings of the generators that search.
 
-    A plan has one table of settings for all its generators, so each generator accepts all names and ignores
-    those that it does not use: all generators use ``batch``, only ``quality_diversity`` uses the others.
+    A plan has one table of settings for all its generators. Each generator therefore accepts all settings and
+    ignores those that it does not use. ``random``, ``genetic`` and ``quality_diversity`` use ``batch``; only
+    ``quality_diversity`` uses the others.
     """
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 10
@@ -36,10 +37,10 @@ class SearchSettings(Frozen):
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
     """Number of cells along each axis of a grid, or number of centroids."""
     candidates: Annotated[int, Field(ge=1, le=100)] = 8
-    """Number of candidate roads that are predicted for each road that is driven."""
+    """Number of candidate roads for each road that is driven; the surrogate model predicts all of them."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
-    """Smallest allowed distance to every tested road, metres RMS after the best shift, rotation and
-    reflection.
+    """Smallest allowed distance between the shape of a candidate and that of every tested road, metres RMS
+    after the best shift, rotation and reflection.
     """
 
     @field_validator("axes")

@@ -46,12 +46,14 @@ class Selection:
         return (self.folder / STORE).is_file()
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns the selection of a single test of this selection, with the text that selects it."""
+        """Returns the Selection of one test of this folder, with the text by which a user would name that
+        test.
+        """
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 
     @property
     def stem(self) -> str:
-        """The first part of the names of files made from one selected test, such as 'hard-c01-0017'."""
+        """The beginning of the names of files made from the selected test, such as 'hard-c01-0017'."""
         parts = (self.folder.resolve().name, self.cell, f"{self.number or 0:04d}")
         return "-".join(part for part in parts if part)
 
@@ -66,8 +68,8 @@ class Selection:
 
 
 def selection_of(text: str) -> Selection | None:
-    """Returns the Selection for the text of a command's argument; None if the text is the path of a single
-    run, a road file, or anything else.
+    """Returns the Selection for the text of a command's argument; None if the text is anything else, such as
+    the path of a single run or of a road file.
 
     Raises:
         UsageError: the text names a test or a cell that does not exist.
@@ -148,10 +150,10 @@ def _runs(folder: Path) -> list[int]:
 
 
 def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
-    """Returns the selected tests as selections of one test each, in order.
+    """Splits a Selection into Selections of one test each, in order.
 
     Args:
-        place: the selection.
+        place: the Selection to split.
         choice: which tests of the selection to return; None: all tests that have a road.
 
     Raises:
@@ -196,7 +198,7 @@ def _of_runs(place: Selection, choice: Choice | None) -> list[NumberedTest]:
 
 
 def near(text: str) -> Sequence[str]:
-    """Returns existing paths that resemble a path that does not exist, quoted for the command line."""
+    """Suggests existing paths whose names resemble a path that does not exist."""
     path = Path(text)
     while path.parent != path and not path.parent.exists():
         path = path.parent

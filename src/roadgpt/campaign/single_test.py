@@ -31,7 +31,7 @@ NO_TIME = Seconds()
 
 @dataclass(frozen=True)
 class Task:
-    """A test that a worker is to run."""
+    """A test to be run by a worker."""
 
     number: int
     batch: int
@@ -41,7 +41,9 @@ class Task:
 
 @dataclass(frozen=True)
 class FinishedTest:
-    """A test that has ended: its result, and data such as times, which differ when the test is repeated."""
+    """A test that has ended: its result, and data that may differ when the test is repeated, such as
+    times.
+    """
 
     result: Result
     trace: "Trace | None" = None
@@ -87,7 +89,8 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
     Args:
         task: the test to run.
         cell: the test's cell.
-        earlier: designs from which a drafted road has to differ, as one tuple per block of earlier tests.
+        earlier: the designs of earlier tests, one tuple per batch; a drafted road must differ from all of
+            them.
 
     Raises:
         PartError, UsageError, ChatError: an error that would occur in every other test as well.
@@ -123,7 +126,7 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
 
 
 def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
-    """Returns the Run of a test that ended without a road or a drive, for a reason given in a sentence."""
+    """Returns the Run of a test that ended without a road or a drive; a sentence states the reason."""
     number, proposal = task.number, task.proposal
     seed = seed_of_driver(number, proposal)
     return Run(cell.request, number, seed, "ERROR", sentence, design=proposal.design, trace=trace)
@@ -146,8 +149,8 @@ def run_of(
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the seed of the driver in test ``number``; the road is drafted with the same seed if the test
-    is a draft.
+    """Returns the driver's seed in test ``number``. If a worker drafts the road, the draft has the same
+    seed.
     """
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 

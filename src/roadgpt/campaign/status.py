@@ -32,10 +32,10 @@ class Status:
     is_finished: bool
     is_running: bool
     total: int | None
-    """Number of tests; None if only the time is limited."""
+    """Number of tests; None if the campaign has a time limit but no limit on tests."""
     outcomes: Mapping[str, int]
     seconds: float
-    """Seconds for which the campaign has been worked on, over all sessions."""
+    """Total working time of the campaign, in seconds, summed over all sessions."""
     rate: float
     """Tests per second: over the last minute while the campaign is running, else the average."""
     tokens: int

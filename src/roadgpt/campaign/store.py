@@ -2,23 +2,23 @@
 it.
 
     meta      format, plan, versions, and whether the campaign is finished
-    cells     what their tests share; how long each has taken; why it was closed early
-    batches   which tests were asked for together; written in one transaction with them, so none is asked
-        twice
-    tests     one narrow row each, so that a million are counted in a second; no outcome: the test has not
-        ended
-    details   the long columns of the same tests: designs, sentences, features
-    traces    the files of drives
+    cells     the settings of each cell; how long it has taken; why it was closed early
+    batches   which tests were requested together; a batch and its tests are written in one transaction,
+              so that no test is requested twice
+    tests     one row per test with its short columns, so that a million tests are counted in a second;
+              a test without an outcome has not ended
+    details   one row per test with its long columns: design, sentences, features
+    traces    the names of the files with the drives
     leases    which worker runs which test now; deleted at the start of the next session
-    sittings  the sessions: when each began and was last active; what language models cost outside tests
+    sittings  the sessions: when each began and was last active, and the cost of language models outside tests
     features  names of all features that occur
 
-The tables of results are made of the deterministic columns of tests and details; ``ended`` and all columns
-after it depend on the clock.
+``results.csv`` and ``cells.csv`` are made from the deterministic columns of ``tests`` and ``details``. The
+column ``ended`` and all columns after it depend on the clock.
 
-WAL and synchronous=NORMAL: what was committed survives the death of the process. A power cut may take the
-last transactions, each of them whole. Their tests then count as not done and are run again with the same
-results, since a batch depends only on the results of earlier batches.
+The file uses WAL and synchronous=NORMAL: committed transactions survive if the process is killed. A power cut
+may undo the last transactions, but never only a part of one. Their tests then count as not done and are run
+again with the same results, since a batch depends only on the results of earlier batches.
 """
 
 import json
@@ -221,7 +221,9 @@ class Store(Record):
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
 
     def set_plan(self, plan: str) -> None:
-        """Replaces the plan by one that differs only in its limits."""
+        """Replaces the stored plan by one with different limits; everything else in the plan stays the
+        same.
+        """
         with self._whole() as db:
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
 
@@ -252,7 +254,7 @@ class Store(Record):
             ended: finished tests, each with the name of its cell.
             trace: number and name of the file with the drives of these tests.
             leases: running tests: cell, number, worker, and the latest time at which each must have ended.
-            seconds: seconds that each cell has taken since the last group.
+            seconds: working time of each cell since the last group was stored, in seconds.
         """
         now = time.time()
         left = Counter((cell, one.result.batch) for cell, one in ended)

@@ -1,9 +1,9 @@
 """Checks the tables, columns and values of a store before they are used.
 
 A store from another person or from a bad disk may contain anything: text in place of a number, a number that
-is not finite, or a cell whose name is a path. All narrow tables are checked when a store is opened, which
-takes a second for a million tests. The wide table ``details``, with designs and sentences, is checked as it
-is read.
+is not finite, or a cell whose name is a path. When a store is opened, all tables except ``details`` are
+checked; this takes a second for a million tests. The table ``details`` holds long texts, such as designs, and
+each of its rows is checked when it is read.
 """
 
 import sqlite3

@@ -1,9 +1,9 @@
 """A surrogate model of the simulator: predicts how a drive on a road will end, and how uncertain that is.
 
-It is a forest of extremely randomised trees (``extra_trees``) that learns from the tests so far. The spread
-of the trees' predictions shows the uncertainty. On RoadGPT's own drives it separated failures from passes
-after 50 tests (AUC 0.99); ridge regression on the same features and their squares needed several hundred; see
-docs/explanation/search.md.
+It is a forest of extremely randomised trees (``extra_trees``) that learns from the results of the search so
+far, at most from the last 1500 roads. The spread of the trees' predictions shows the uncertainty. On
+RoadGPT's own drives it separated failures from passes after 50 tests (AUC 0.99); ridge regression on the same
+features and their squares needed several hundred; see docs/explanation/search.md.
 """
 
 from collections.abc import Sequence
@@ -47,7 +47,8 @@ class Surrogate:
 
 
 def target_of(margin: float, failed: bool) -> float:
-    """Returns the margin, in metres, on which the surrogate is trained for a drive; it is the same for all
-    failures.
+    """Returns the margin, in metres, that the surrogate learns to predict for a drive.
+
+    All failures get the same negative margin.
     """
     return FAILED if failed else margin

@@ -1,10 +1,10 @@
 """Features of a road that predict, without a drive, how close a car will come to leaving its lane.
 
-The best predictor of recorded outcomes is the curvature of the middle of the driven lane, k / (1 + 2k) on a
-road with lanes of 4 m, averaged over some metres, outside the first 25 m and the last 8 m: the car starts
-from rest, and the test ends 8 m before the road does. The features are the largest such curvature to either
-side over windows of several lengths, how fast that curvature changes, the length of the straight before the
-tightest place, slopes, and crests.
+The best predictor of recorded outcomes is the curvature of the middle of the driven lane, averaged over some
+metres; with lanes of 4 m it is k / (1 + 2k), where k is the curvature of the centre line. The first 25 m are
+left out, since the car starts from rest, and the last 8 m, since the test ends 8 m before the end of the
+road. The features are the largest such curvature to either side over windows of several lengths, how fast
+that curvature changes, the length of the straight before the tightest place, slopes, and crests.
 """
 
 from collections.abc import Sequence
@@ -73,8 +73,8 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Returns for each road how hard it looks before any test: the largest curvature of its lane, averaged
-    over 13 m.
+    """Estimates how hard each road is, before any test, as the largest curvature of its lane averaged over
+    13 m.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]

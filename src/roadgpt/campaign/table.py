@@ -1,9 +1,8 @@
 """Writes the tables of a campaign; their bytes depend neither on the number of workers nor on interruptions.
 
 results.csv    one row per test: its proposal, its outcome, and its features
-cells.csv      one row per cell: the values that its tests share, the number of tests with each outcome, the
-number of bins of the feature map that contain failures, and how far the car was outside its lane in passed
-tests
+cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
+               the feature map that contain failures, and how far the car left its lane in passed tests
 """
 
 import csv

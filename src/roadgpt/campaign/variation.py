@@ -2,8 +2,8 @@
 
     VariationTask --mutate elements--> place on the map --> fast checks --> build --> every rule --> Candidate
 
-A VariationTask holds all that a worker needs, so ``pool.map(make_candidate, tasks)`` runs anywhere. If a
-mutated road violates a requirement or leaves the map, another mutation is drawn. Every Candidate satisfies
+A VariationTask holds everything that a worker needs to run ``make_candidate``, on any machine. If a
+mutated road violates a requirement or leaves the map, another mutation is tried. Every Candidate satisfies
 all requirements of the Brief and all rules: ``check.inspect`` checks the road that will be driven.
 """
 
@@ -44,7 +44,7 @@ class VariationContext(NamedTuple):
     brief: Brief | None
     """The requirements; None if there are none."""
     world: World
-    """The map and the limits of the rules."""
+    """The map, and the limits that the rules apply."""
     rules: Literal["strict", "sbft"] = "strict"
     """With "sbft", a road must also pass the validator of the competition."""
 
@@ -56,9 +56,7 @@ class VariationTask(NamedTuple):
     """What to make: a new draft ("draft"), a draft after three rounds of mutations ("wild"), a mutated parent
     ("vary"), a crossover of two parents ("cross"), or a road between two parents ("between")."""
     parents: tuple[Design, ...]
-    """The parents: none for a draft, one for a variation, two for a crossover or for a road between two
-    roads.
-    """
+    """The parent roads: none for a draft, one for a mutation, two for a crossover or an interpolation."""
     origin: str
     """Text that is stored with the candidate and says where it comes from."""
     seed: tuple[int, ...]
@@ -79,7 +77,9 @@ class Candidate(NamedTuple):
     surrogate_features: Array
     """Features that the surrogate model predicts from, ``(n,)``."""
     shape: PlanShape
-    """Shape of the plan, by which candidates are compared."""
+    """Shape of the road seen from above; the distance between two candidates is computed from their
+    shapes.
+    """
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
@@ -134,7 +134,7 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
 def placed(
     elements: Elements, setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """Returns the design and the road with these elements, at a random place on the map.
+    """Places a road with these elements at random on the map, and returns its design and the road.
 
     Returns None if the road does not fit on the map or violates a requirement or a rule.
     """
@@ -146,7 +146,9 @@ def placed(
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
-    """Returns a design and its road if the road satisfies all requirements and rules; else None."""
+    """Builds the road of a design; returns both if the road satisfies all requirements and rules, else
+    None.
+    """
     try:
         road = setting.world.lay(build(design))
         if check.inspect(road, setting.brief, setting.world):
@@ -162,7 +164,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
 
 
 def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """Returns a Candidate, including its features, for a road that satisfies all rules."""
+    """Computes the features of a road that satisfies all rules, and returns it as a Candidate."""
     samples = road.sample()
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
@@ -170,7 +172,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Returns a Candidate, including its features, for a design that has already been driven.
+    """Computes the features of a design that has already been driven, and returns it as a Candidate.
 
     Args:
         known: the design, and the requirements, world and rules of its cell.

@@ -4,21 +4,22 @@ An executor is a class whose constructor takes a WorkerConfig. An executor only 
 created it chooses the tests, receives their results, and is the only one that writes the store. An executor
 has these methods:
 
-    share(name, value)      keeps a value that jobs may need; it is sent to each worker at most once
+    share(name, value)      keeps a value for jobs that need it; it is sent to each worker at most once
     forget(name)            drops a shared value that no later job needs
     submit(jobs)            queues jobs, which begin in about this order; returns at once
-    done(seconds) -> list   returns what has ended since the last call; waits up to ``seconds`` for the first
-    map(function, items)    is ``campaign.model.Pool.map``; goes before all jobs that have not begun
+    done(seconds) -> list   returns the jobs that ended since the last call; waits up to ``seconds`` for one
+    map(function, items)    see ``campaign.model.Pool.map``; runs before all jobs that have not begun
     under_way() -> list     returns the jobs that are running, and the worker of each
     stop()                  ends every worker at once
 
-A job runs ``function(item, *values)`` with the shared values that it needs; the function has to stand at the
-top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life, or
-takes longer for one job than ``WorkerConfig.patience``) is replaced, and its job is given to another worker,
-until ``MOST_DEATHS`` workers have died over it. Each job ends with exactly one FinishedJob. A job returns the
-same value wherever and however often it runs, so an executor needs no memory of its own.
+A job runs ``function(item, *values)`` with the shared values that it needs; the function must be defined at
+the top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life,
+or takes longer for one job than ``WorkerConfig.patience``) is replaced, and its job is given to another
+worker, until ``MOST_DEATHS`` workers have died while running it. Each job ends with exactly one FinishedJob.
+A job returns the same value wherever and however often it runs, so an executor keeps no record of past jobs.
 
-``WorkerConfig.prepare`` runs once in each worker before its first job, to import what takes seconds.
+``WorkerConfig.prepare`` runs once in each worker before its first job; it imports the modules that take
+seconds to import.
 """
 
 from collections.abc import Callable, Sequence
@@ -34,7 +35,7 @@ MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
 
 @dataclass(frozen=True)
 class WorkerConfig:
-    """The settings of the workers that a campaign requests from an executor."""
+    """Settings of the workers, which a campaign passes to its executor."""
 
     workers: int
     prepare: Callable[[], object]
@@ -60,8 +61,8 @@ class Job:
 
 @dataclass(frozen=True)
 class FinishedJob:
-    """The result of a job: the value that its function returned, the error that the function raised, or the
-    reason why the job was given up.
+    """The result of a job: the value that its function returned, the error that its function raised, or
+    the reason why the executor gave the job up.
     """
 
     key: int
@@ -87,7 +88,7 @@ class Executor(Protocol):
     def __init__(self, staff: WorkerConfig) -> None: ...
 
     def share(self, name: str, value: Any) -> None:
-        """Keeps a value for the jobs that need it."""
+        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``."""
         ...
 
     def forget(self, name: str) -> None:

@@ -76,8 +76,8 @@ class Ray(JobQueue):
         self._thread.start()
 
     def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that were sent to workers; the time of each job counts from when its message was
-        sent.
+        """Returns the jobs that were sent to workers and have not ended; a job's running time is counted
+        from when its message was sent.
         """
         now = time.monotonic()
         with self._changed:

@@ -1,5 +1,5 @@
 """Groups failures by fault, and analyses each fault: why it occurs, how often it recurs, and the simplest
-road that shows it.
+road on which it occurs.
 """
 
 from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change

@@ -29,7 +29,7 @@ NAMES = {
 
 @dataclass(frozen=True)
 class Difference:
-    """The change of one field of one segment between the road that passed and the road that failed."""
+    """One changed field of one segment: its value on the road that passed and on the road that failed."""
 
     segment: int
     """Index of the segment, from 0."""
@@ -53,7 +53,7 @@ def _value_text(value: Any, unit: str) -> str:
 
 @dataclass(frozen=True)
 class SmallestChange:
-    """The smallest change found, and the failing road that it produces from the road that passed."""
+    """The smallest change found, and the Run of the failing road that results from this change."""
 
     run: Run
     differences: tuple[Difference, ...]
@@ -63,7 +63,7 @@ class SmallestChange:
 def smallest_change(
     kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
 ) -> SmallestChange:
-    """Finds the smallest change between two Runs whose Designs have equally many segments.
+    """Finds the smallest change that makes the car fail, between two Runs with the same number of segments.
 
     Args:
         kept: a Run that passed.

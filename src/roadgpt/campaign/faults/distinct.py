@@ -1,8 +1,9 @@
 """Groups failures into distinct faults by the similarity of the 60 m of road around each lane departure.
 
 Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
-after it, aligned at the departure to within 8 m. Clusters grow by complete linkage, so any two failures of
-one cluster are alike; the number of clusters is the number of distinct faults.
+after it. The lanes are aligned at the departures; the comparison allows a shift of up to 8 m. Clusters grow
+by complete linkage, so any two failures of one cluster are alike; the number of clusters is the number of
+distinct faults.
 """
 
 from collections.abc import Sequence
@@ -35,18 +36,25 @@ class Surroundings:
     """The lane around a departure, sampled every metre; all columns have the same length."""
 
     bends: Array
-    """Smoothed curvature, 1/m, with ``SHIFT`` additional values at each end; NaN beyond the ends of the
-    road.
+    """Smoothed curvature of the lane, 1/m, with ``SHIFT`` additional values at each end; NaN beyond the
+    ends of the road.
     """
     grades: Array
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
-    """Side and cause of the failure; failures with different kinds never belong to the same fault."""
+    """Text that states the side and the cause of the failure. Failures with different texts never belong
+    to the same fault.
+    """
 
 
 def surroundings(road: Road, world: World, station: float, kind: str) -> Surroundings:
-    """Returns the surroundings of a departure at a station in metres; ``kind`` states side and cause of
-    the failure.
+    """Returns the lane around a departure.
+
+    Args:
+        road: the road.
+        world: determines the width of the lane.
+        station: station of the departure, metres along the road.
+        kind: text that states side and cause of the failure, see ``Surroundings.kind``.
     """
     reach = COUNT + SHIFT + SMOOTHING
     s = station + STEP * np.arange(-reach, reach + 1)
@@ -67,16 +75,16 @@ def _smoothed(values: Array) -> Array:
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
     """Returns the distances ``(n,)`` from one failure to n others.
 
-    A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade. Beyond its end, a
-    road counts as straight and level. The distance between failures of different kinds is infinite. Distances
-    are symmetric.
+    A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade. Beyond its ends,
+    a road counts as straight and level. If two failures differ in ``kind``, their distance is infinite.
+    Distances are symmetric.
     """
     return np.asarray(between([one], others)[0])
 
 
 def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
-    """Returns the distances between all pairs of two lists, ``(len(some), len(others))``; see
-    ``distances``.
+    """Returns the distance from each failure of one list to each of the other, ``(len(some),
+    len(others))``; see ``distances``.
     """
     least = np.full((len(some), len(others)), np.inf)
     if not least.size:
@@ -123,9 +131,9 @@ def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int 
     Args:
         failures: all failures to group.
         alike: largest distance between two failures of the same fault.
-        most: number of failures of which all pairs are compared at a time. Each later failure joins the fault
-            with the nearest typical failure, if that is within ``alike``; the remaining failures are then
-            grouped in the same way.
+        most: number of failures that are clustered at a time, since clustering compares every failure with
+            every other. Each later failure joins the fault whose most typical failure is nearest, if the
+            distance is at most ``alike``. The failures that join no fault are clustered next.
     """
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):
@@ -160,8 +168,9 @@ def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
 
 
 def typical(members: Sequence[Surroundings]) -> list[int]:
-    """Returns the indices of the failures of one fault, starting with the failure that is nearest to all
-    others.
+    """Returns the indices of the failures of one fault, the most typical one first.
+
+    The most typical failure has the smallest sum of squared distances to the others.
     """
     some = members[:MOST]
     squares = between(some, some) ** 2

@@ -27,7 +27,7 @@ class Disturbance:
     """One random disturbance of a drive."""
 
     friction: float
-    """Factor by which the world's friction is multiplied."""
+    """Factor by which the friction coefficient of the road is multiplied."""
     offset: float
     """Lateral offset of the start position from the middle of the lane, metres, positive to the left."""
     delay: float
@@ -35,7 +35,9 @@ class Disturbance:
 
 
 def disturbance_of(seed: int, number: int) -> Disturbance:
-    """Returns the disturbance of repetition ``number`` (from 1) of a drive that has this seed."""
+    """Returns the disturbance for repetition ``number`` (from 1) of a drive, derived from the seed of that
+    drive.
+    """
     rng = np.random.default_rng([seed, number, 0xD157])
     return Disturbance(1 + GRIP * _normal(rng), START * _normal(rng), float(rng.uniform(0.0, DELAY)))
 
@@ -52,7 +54,8 @@ class LateDriver:
     Args:
         driver: the driver that receives delayed views.
         delay: delay in seconds, rounded to whole control steps.
-        world: the undisturbed world, which the driver receives even if the friction is disturbed.
+        world: the world without disturbance; the driver receives it even if the simulated friction is
+            disturbed.
     """
 
     def __init__(self, driver: Any, delay: float, world: "World") -> None:
@@ -63,15 +66,16 @@ class LateDriver:
         self._seen: deque[View] = deque()
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
-        """Starts the driver with the undisturbed world."""
+        """Starts the driver, and passes it the world without disturbance instead of ``world``."""
         del world
         self._seen.clear()
         if hasattr(self._driver, "start"):
             self._driver.start(road, self._world, seed)
 
     def steer(self, view: View) -> Command:
-        """Returns the driver's command for the view of ``delay`` seconds ago, or for the first view if none
-        is so old.
+        """Returns the driver's command for the view of ``delay`` seconds ago.
+
+        Until that time has passed, the driver receives the first view.
         """
         self._seen.append(view._replace(world=self._world))
         if len(self._seen) > round(self._delay / view.dt) + 1:

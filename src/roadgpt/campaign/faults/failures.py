@@ -23,7 +23,7 @@ AT_ONCE = 500  # tests that a store is asked for
 
 @dataclass(frozen=True, eq=False)
 class LocatedFailure:
-    """A failure, and the place where it happened."""
+    """A failure, with the place where it happened."""
 
     name: NumberedTest
     around: Surroundings
@@ -31,7 +31,7 @@ class LocatedFailure:
     station: float
     """Station of the failure, metres along the road."""
     outside: float | None
-    """Largest share of the car outside its lane, 0 to 1."""
+    """Largest share of the car that was outside its lane at one time, 0 to 1."""
     beyond: float | None
     """Largest distance of the car's body beyond the lane marking, metres."""
 
@@ -42,7 +42,8 @@ class Failures:
 
     known: tuple[LocatedFailure, ...]
     every: int
-    """Number of all failures in the folder, including failures outside the sample or without a stored road.
+    """Number of all failures in the folder. It includes failures that are not in the sample, and failures
+    whose road is not stored.
     """
 
 
@@ -55,7 +56,7 @@ def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failur
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
-        UsageError: the folder is none of these, or a file cannot be read.
+        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     if (folder / STORE).is_file():
         with Record.opened(folder) as record:
@@ -77,7 +78,7 @@ def drivers_of(folder: Path) -> set[str]:
     """Returns the names of the drivers of a run, a folder of runs or a campaign.
 
     Raises:
-        UsageError: the folder is none of these, or a file cannot be read.
+        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     if is_run(folder):
         return {read_run(folder).request.setup.driver}
@@ -135,8 +136,9 @@ def _of_result(cell: Cell, its: Result, system: str) -> LocatedFailure | None:
 
 
 def system_of(world: World, setup: Setup) -> str:
-    """Returns a text that identifies the driver, simulator and world of a cell; cells with the same text
-    share their faults.
+    """Returns a text that identifies the driver, simulator and world of a cell.
+
+    Failures with different texts never belong to the same fault.
     """
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"
 

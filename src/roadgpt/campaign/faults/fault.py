@@ -37,7 +37,7 @@ class Fault:
 
     @property
     def names(self) -> tuple[NumberedTest, ...]:
-        """Names of the typical failures."""
+        """Names of the tests with the typical failures."""
         return tuple(each.name for each in self.typical)
 
 
@@ -107,7 +107,7 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
-        UsageError: the folder is none of these, or a file cannot be read.
+        UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     failures = failures_of(folder, most, cell)
     return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))

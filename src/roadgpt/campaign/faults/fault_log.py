@@ -2,10 +2,12 @@
 simplified.
 
 DIR/faults/
-  c01/0017.json    why a failure happened, every disturbed drive, the simplest road; if this file exists, the
-  fault is not analysed again c01/0017.png     what happened, from above simplest/c01/    a folder of runs:
-  the simplest roads that fail in the same way, named after the failures faults.csv       one line per fault,
-  the fault with most failures first failures.csv     one line per failure, and the fault that it belongs to
+  c01/0017.json    why a failure happened, the result of every disturbed drive, and the simplest road;
+                   if this file exists, the fault is not analysed again
+  c01/0017.png     the failure, seen from above
+  simplest/c01/    a folder of runs: the simplified road of each failure, under the failure's test number
+  faults.csv       one line per fault; the fault with the most failures comes first
+  failures.csv     one line per failure, with the fault that it belongs to
 
 In a folder of runs there is no c01/.
 """
@@ -39,7 +41,7 @@ HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "ma
 
 
 class FailureDrawing(Protocol):
-    """A function that draws a failure into a file, such as ``report.fault.draw_fault``."""
+    """A function that writes a picture of a failure to a file, such as ``report.fault.draw_fault``."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
         """Writes a picture."""
@@ -53,9 +55,9 @@ class AnalysisTask(NamedTuple):
     fault: int
     """Number of the fault."""
     names: tuple[NumberedTest, ...]
-    """Names of the fault's typical failures, the most typical first."""
+    """Names of the tests with the fault's typical failures, the most typical first."""
     times: int
-    """Number of disturbed drives of each failure's road."""
+    """How often the road of each failure is driven with a disturbance."""
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)
@@ -70,7 +72,9 @@ class FailureAnalysis:
     reason: FailureReason
     stability: Stability
     simplest: str = ""
-    """A sentence about the simplest road that fails in the same way; empty if it was not searched for."""
+    """A sentence about the simplest road that reproduces the failure; empty if no simplification was
+    requested.
+    """
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
@@ -78,11 +82,11 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
     that shows it.
 
     The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
-    disturbed drives; if there is none, the one that fails most often. A stored analysis with the same number
-    of drives of the same road is read instead of being repeated.
+    disturbed drives; if there is none, the one that fails most often. If a stored analysis exists for the
+    same road and the same number of drives, it is read instead.
 
     Returns:
-        The number of the fault, and the analysis.
+        The number of the fault, and the analysis of the chosen failure.
 
     Raises:
         UsageError: the run or a stored analysis cannot be read, or a plug-in is not installed.
@@ -142,7 +146,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
 
 
 def simplest_of(folder: Path, name: NumberedTest) -> Path:
-    """Returns the folder with the run of the simplest road that fails in the same way as a failure."""
+    """Returns the run folder of the simplest road that reproduces the given failure."""
     return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 
@@ -162,7 +166,7 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis],
 
     Args:
         faults: the faults of the folder.
-        looked: the analyses of the faults, by the number of the fault.
+        looked: the analysis of each fault, by fault number.
         folder: the folder of the campaign or of the runs.
 
     Returns:

@@ -1,8 +1,9 @@
-"""Finds the simplest road that still fails in the same way.
+"""Simplifies a road on which the car fails, as far as the car still fails to the same side for the same
+cause.
 
-The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing
-Input, IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: after any single further
-simplification the failure disappears.
+The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
+IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: any single further simplification
+makes the failure disappear.
 """
 
 from collections.abc import Sequence
@@ -23,7 +24,9 @@ class Simplest:
     """A failing road after simplification."""
 
     run: Run
-    """The Run of the simplified road, which fails for the same cause and to the same side."""
+    """The Run on the simplified road; it fails for the same cause and to the same side as the original
+    Run.
+    """
     segments_before: int
     drives: int
     """Number of drives that the search took."""
@@ -59,7 +62,9 @@ class Trial:
         self._known: dict[Design, Run | None] = {}
 
     def fails(self, design: Design | None) -> Run | None:
-        """Returns the Run of a road if it is valid and fails as the original does; else None."""
+        """Drives a road and returns its Run if the road is valid and the car fails on it as in the
+        original failure (same cause and side); else returns None.
+        """
         if design is None:
             return None
         if design not in self._known:
@@ -97,7 +102,7 @@ def _moved(design: Design, failure: Run) -> list[Design]:
 
 
 def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
-    """Finds the simplest valid road that fails for the same cause and to the same side.
+    """Finds the simplest valid road on which the car fails for the same cause and to the same side.
 
     Args:
         failure: a failing Run with a Design.

@@ -65,8 +65,8 @@ class FailureReason:
     grade: float
     """Grade of the road at the bend, as a ratio."""
     hill: float
-    """Vertical acceleration from a crest (negative) or a dip (positive) at the speed driven, as a share of
-    gravity.
+    """Vertical acceleration from a crest (negative) or a dip (positive) at the speed driven, as a fraction
+    of g.
     """
 
 
@@ -104,7 +104,7 @@ def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, fl
 def manner_of(
     road: Road, world: World, station: float, cause: Cause | None, left_to: Literal["left", "right"] | None
 ) -> Manner:
-    """Returns in which way a car failed, from the road and the place of the failure; no drive is needed.
+    """Derives how a car failed from the road and the location of the failure, without the recorded drive.
 
     Args:
         road: the road.

@@ -1,6 +1,7 @@
 """Simplifications of a Design: fewer segments, level ground, straighter segments, rounder numbers.
 
-Each kind is a list of simplifications of single segments; ``minimise`` finds which of them can be combined.
+A Simplifier lists the simplifications of one type, such as removing a segment, for every segment of a Design.
+``minimise`` finds which of them can be combined.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,7 +33,7 @@ Simplifier = Callable[[Design], list[Simplification]]
 
 
 def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None:
-    """Returns the Design after all these simplifications; None if no segment would be left."""
+    """Returns the Design with all the given simplifications applied; None if no segment would be left."""
     segments: list[Segment | None] = list(design.segments)
     for step in steps:
         segment = segments[step.segment]
@@ -43,7 +44,10 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
 
 
 def simplifications() -> list[Simplifier]:
-    """Returns the simplifications of a Design by kind; the kinds that remove most come first."""
+    """Returns a function for each type of simplification, which lists the simplifications of a Design.
+
+    The types that remove most come first.
+    """
     rounding = [
         _rounding(field, unit)
         for unit in (50.0, 30.0, 10.0, 5.0, 1.0)

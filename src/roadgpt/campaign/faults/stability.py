@@ -1,4 +1,8 @@
-"""Measures the share of slightly disturbed drives that fail again, which separates faults from chance."""
+"""Drives a failing road again with small disturbances, and measures the fraction of these drives that fail.
+
+A failure that recurs in at least half of the drives counts as stable; other failures are attributed to
+chance.
+"""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -71,8 +75,9 @@ class Stability:
 
 
 def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = map) -> Stability:
-    """Drives the Run's road several times, each time with another disturbance; the same Run gives the same
-    drives.
+    """Drives the Run's road several times, each time with a different disturbance.
+
+    The disturbances are derived from the Run's seed, so the results can be reproduced.
 
     Args:
         run: the Run of a valid road, with any outcome.

@@ -18,7 +18,7 @@ class InProcess:
         self._jobs: deque[Job] = deque()
 
     def share(self, name: str, value: Any) -> None:
-        """Keeps a value for the jobs that need it."""
+        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``."""
         self._values[name] = value
 
     def forget(self, name: str) -> None:

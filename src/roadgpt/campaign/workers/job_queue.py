@@ -30,7 +30,7 @@ class QueuedJob:
     call: bytes
     needs: tuple[str, ...]
     key: int | None
-    """Identifies the job; None for a part of a ``map``."""
+    """Identifies the job; None for a job that computes some of the items of a ``map``."""
     deaths: int = 0
     end: FinishedJob | None = None
 
@@ -50,7 +50,7 @@ class JobQueue(ABC):
         self._broken: Exception | None = None
 
     def share(self, name: str, value: Any) -> None:
-        """Keeps a value for the jobs that need it."""
+        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``."""
         self._shared[name] = pickled(value)
 
     def forget(self, name: str) -> None:
@@ -69,8 +69,8 @@ class JobQueue(ABC):
         """Returns the jobs that have ended since the last call; waits at most ``seconds`` for the first one.
 
         Raises:
-            RoadGPTError: no worker could be started. If another kind of error prevented that, this error is
-                raised.
+            RoadGPTError: no worker could be started; if an error of another type was the cause, that error is
+                raised instead.
         """
         with self._changed:
             self._changed.wait_for(lambda: self._ended or self._lost or self._broken, seconds)
@@ -82,11 +82,11 @@ class JobQueue(ABC):
         return [_finished_job(work, kind, what) for work, kind, what in ended] + lost
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order; an error that it raises is raised
-        here.
+        """Returns the results of ``function`` for all items, in order; raises any error that ``function``
+        raises.
 
         Raises:
-            RoadGPTError: three workers died while running the same part of the items.
+            RoadGPTError: three workers died while computing the same items.
         """
         size = max(1, -(-len(items) // (CHUNKS * self._size)))
         parts = [items[first : first + size] for first in range(0, len(items), size)]

@@ -1,9 +1,10 @@
 """The main loop of a worker process: runs one job after another, and ends with its parent.
 
-The parent sends the module search paths, the function that prepares the worker, and then jobs. A job has the
-call (function, item, names of shared values), the shared values that the worker does not have yet, and the
-names of those that it can drop. The worker sends a sign of life every second, and the pickled value or error
-of each job. Calls and values are pickled one by one; if one cannot be unpickled, only its own job is lost.
+The parent sends the module search paths, the function that prepares the worker, and then jobs. The message of
+a job holds the call (function, item, names of shared values), the shared values that the worker does not have
+yet, and the names of shared values that the worker can drop. The worker sends a sign of life every second,
+and the pickled value or error of each job. Calls and values are pickled one by one; if one cannot be
+unpickled, only its own job is lost.
 """
 
 import os
@@ -78,7 +79,7 @@ def main() -> None:
 
 
 def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
-    """Runs a job, updates the shared values, and returns how the job ended and its pickled value or error."""
+    """Runs a job and updates the shared values; returns how the job ended, and its pickled value or error."""
     try:
         for name in order.old:
             shared.pop(name, None)
@@ -91,8 +92,8 @@ def answer(order: JobMessage, shared: dict[str, Any]) -> tuple[int, bytes]:
 
 
 def portable(error: Exception) -> bytes:
-    """Returns a pickled error; if the error cannot be pickled, a RuntimeError with its type and text takes
-    its place.
+    """Returns a pickled error. An error that cannot be pickled is replaced by a RuntimeError with its type
+    and text.
     """
     try:
         data = pickled(error)

@@ -21,7 +21,9 @@ class RayActor:
         self._shared: dict[str, Any] = {}
 
     def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
-        """Prepares the worker; returns its node and its location, or the error that prevented it."""
+        """Prepares the worker; returns its Ray node, host name and process id, or the error that prevented
+        it.
+        """
         import ray
 
         from roadgpt import __version__
@@ -42,7 +44,8 @@ class RayActor:
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
         """Runs jobs one after another, and returns how each ended.
 
-        If one job is sent, the sender measures its time; among several jobs, one that hangs ends this worker.
+        If the message holds several jobs, the worker limits the time of each, and ends if a job hangs. If it
+        holds one job, the sender limits the time.
         """
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]

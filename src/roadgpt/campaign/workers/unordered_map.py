@@ -20,8 +20,9 @@ WAIT = 0.25  # s for results, between two looks for Ctrl-C
 
 
 def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, log: Path) -> Iterator[U]:
-    """Yields the result of ``function`` for every item as soon as it is ready; the workers end when the
-    iteration is stopped, by Ctrl-C or otherwise.
+    """Yields the result of ``function`` for every item as soon as it is ready.
+
+    The workers end when the caller stops the iteration, for example with Ctrl-C.
 
     Args:
         function: a function at the top level of a module.

@@ -58,7 +58,9 @@ class Worker:
         return self._process.pid
 
     def begin(self, prepare: bytes) -> None:
-        """Sends the worker what it needs to become ready, and starts receiving its messages."""
+        """Sends the worker the messages that prepare it for jobs, and starts the thread that receives its
+        messages.
+        """
         self._thread.start()
         self._say([*sys.path])
         self._say(prepare)
