@@ -41,7 +41,7 @@ CROWN = 0.055  # m that the roof's middle is higher than its edge
 
 @dataclass(frozen=True, eq=False)
 class CarPart:
-    """A part of the car's surface, with normals."""
+    """A part of the car's surface: triangles, with a normal vector at each point."""
 
     points: Array
     normals: Array
@@ -49,13 +49,13 @@ class CarPart:
     kinds: NDArray[np.int64]
 
     def moved(self, by: Array) -> "CarPart":
-        """Returns the part, moved by a vector in metres."""
+        """Returns a copy of the part that is moved by a vector in metres."""
         return CarPart(self.points + by, self.normals, self.triangles, self.kinds)
 
 
 def surface(net: Array, kind: int) -> CarPart:
-    """Returns a smooth surface through a grid of points ``(rows, columns, 3)``, with normals on the side from
-    which columns run counter-clockwise of rows."""
+    """Returns a smooth surface through a grid of points ``(rows, columns, 3)``. Its normals point along a
+    x b, where a is the direction of increasing row index and b that of increasing column index."""
     along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
     normals = np.cross(along, across)
     size = np.linalg.norm(normals, axis=-1, keepdims=True)

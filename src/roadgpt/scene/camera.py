@@ -17,7 +17,7 @@ NARROWEST, WIDEST = math.radians(5), math.radians(150)
 
 
 class Pose(NamedTuple):
-    """The pose of a car and the visible state of its controls; a Drive has columns with the same names.
+    """The pose of a car, with its steering, speed and braking. The columns of a Drive have the same names.
 
     Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
     counter-clockwise, pitch positive with the nose up, roll positive with the left side up.
@@ -36,7 +36,7 @@ class Pose(NamedTuple):
     brake: float = 0.0
     """Brake pedal, from 0 (released) to 1 (full braking)."""
     wheel: float = 0.0
-    """Angle in rad by which the wheels have rolled."""
+    """Angle in rad by which the wheels have rotated about their axles."""
 
 
 class CameraPlacement(NamedTuple):
@@ -85,7 +85,7 @@ class Camera:
     """Horizontal field of view in rad."""
     mount: Mount = "bonnet"
     placement: CameraPlacement | None = None
-    """Position and tilt on the car; None selects the placement in MOUNTS that has the name of the mount."""
+    """Position and tilt on the car; None: the placement that MOUNTS defines for ``mount``."""
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):
@@ -106,7 +106,7 @@ class Camera:
         return self.width / 2 / math.tan(self.field_of_view / 2)
 
     def eye(self, pose: Pose) -> CameraPose:
-        """Returns the pose of the camera in world coordinates, on a car with the given pose."""
+        """Returns the pose of the camera in world coordinates if its car has the given pose."""
         placement = self.placement or MOUNTS[self.mount]
         if self.mount == "bonnet":
             axes = axes_of(pose.heading, pose.pitch, pose.roll)

@@ -25,16 +25,17 @@ MIRRORED = 0.05  # share of light that paint and glass reflect at normal inciden
 
 @dataclass(frozen=True, eq=False)
 class Saloon:
-    """The surface of the car at rest, its normals, and the points that rotate with each wheel."""
+    """The surface of the car in its rest position, its normals, and the points that rotate with each
+    wheel."""
 
     mesh: Mesh
-    """The triangles of the car; the mesh's attributes are empty, because they depend on the pose."""
+    """The triangles of the car; the attributes in the mesh are zero; ``placed`` computes them, because
+    they depend on the pose."""
     normals: Array
     gloss: Array
     shade: Array
-    """Share of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
-    sills.
-    """
+    """Fraction of the light, 0 to 1, that reaches each point; it is less than 1 near the ground and under the
+    sills."""
     wheels: tuple[tuple[slice, Array, bool], ...]
     """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 
@@ -78,7 +79,7 @@ def _turn(rolled: float, steer: float) -> Array:
 
 @cache
 def saloon() -> Saloon:
-    """Returns the car model, which is built once."""
+    """Returns the car model; it is built at the first call and then reused."""
     parts: list[CarPart] = [*body(), *trim(), *lamps()]
     count = sum(len(part.points) for part in parts)
     wheels = []
@@ -102,8 +103,8 @@ def saloon() -> Saloon:
 
 
 def palette_of(pose: Pose | None) -> NDArray[np.float64]:
-    """Returns the colours of all surfaces without a pattern; the brake lights are on if the car at this pose
-    brakes."""
+    """Returns the colours of all surfaces without a pattern; the brake lights are on if the brake pedal is
+    pressed in ``pose``."""
     colours = PALETTE.copy()
     if pose is not None and pose.brake > BRAKE:
         for row, light in SHINING.items():

@@ -19,11 +19,8 @@ NUMBA = _numba()
 
 
 def compiled(function: Function) -> Function:
-    """Returns the function as machine code, which is cached on disk for later processes if the disk allows
-    it.
-
-    Fast mathematics is off, so that the same image has the same bytes.
-    """
+    """Returns the function as machine code, cached on disk for later processes if the folder is writable.
+    The compiler's fast-math option is off, so that the same inputs always give the same bytes."""
     try:
         made: Function = NUMBA.njit(cache=True, nogil=True, error_model="numpy")(function)
     except RuntimeError:  # there is no writable folder for the cache

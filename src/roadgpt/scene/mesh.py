@@ -1,4 +1,4 @@
-"""Stores triangles in patches; a patch outside the camera's view is skipped as a whole."""
+"""Stores triangles in patches; a patch that lies completely outside the camera's view is not drawn."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ class Patch:
     triangles: NDArray[np.int64]
     """Indices of points, (m, 3), counter-clockwise as seen from the visible side."""
     kinds: NDArray[np.int64]
-    """Kind of surface of each triangle, (m,)."""
+    """Surface type of each triangle, such as grass or paint, as a number, (m,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +61,9 @@ class Mesh:
 
 
 def grid(points: Array, attributes: Array, kind: int) -> Patch:
-    """Returns the surface through a grid of points ``(rows, columns, 3)``, visible from the side where the
-    direction of the columns is counter-clockwise from that of the rows."""
+    """Returns the surface through a grid of points ``(rows, columns, 3)``. It is visible from the side to
+    which a x b points, where a is the direction of increasing row index and b that of increasing column
+    index."""
     rows, columns = points.shape[:2]
     at = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]

@@ -1,5 +1,5 @@
-"""Colours of surfaces without a pattern, such as the car and concrete; the numbers of these surfaces start at
-PLAIN."""
+"""Colours of surfaces without a pattern, such as the car and concrete; the numbers of these surface types
+start at PLAIN."""
 
 import numpy as np
 

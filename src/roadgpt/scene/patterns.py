@@ -1,6 +1,5 @@
-"""Computes noise at the resolution of a pixel, and the share of a pixel that a marking covers, in compiled
-code.
-"""
+"""Computes noise at the resolution of a pixel, and the fraction of a pixel that a marking covers, in compiled
+code."""
 
 import math
 
@@ -50,8 +49,8 @@ def fine_noise(tiles: Tiles, tile: int, u: float, v: float, level: float) -> flo
 
 @inlined
 def share(x: float, low: float, high: float, wide: float) -> float:
-    """Returns the share of the window of width ``wide`` around x that lies between ``low`` and ``high``, from
-    0 to 1."""
+    """Returns the fraction (0 to 1) of an interval of width ``wide`` centred on x that lies between
+    ``low`` and ``high``."""
     return max(min(x + wide / 2, high) - max(x - wide / 2, low), 0.0) / wide
 
 
@@ -64,7 +63,7 @@ def dashed(x: float, dash: float, period: float) -> float:
 
 @inlined
 def bump(x: float, wide: float) -> float:
-    """Returns 1 at x = 0, falling smoothly to 0 at a distance of ``wide``."""
+    """Returns 1 at x = 0, falling smoothly to 0 at |x| = ``wide``."""
     part = max(1.0 - x * x * (1.0 / (wide * wide)), 0.0)
     return part * part
 
@@ -78,6 +77,7 @@ def length_of(x: float, y: float) -> float:
 
 @inlined
 def smooth(low: float, high: float, x: float) -> float:
-    """Returns 0 at ``low``, 1 at ``high``, and a smooth step with a continuous slope between them."""
+    """Returns 0 if x is at most ``low``, 1 if x is at least ``high``, and values on a smooth step in
+    between."""
     part = min(max((x - low) / (high - low), 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)

@@ -131,20 +131,21 @@ def draw(
     """Draws the patches of a `Mesh` into the samples; returns ``count`` plus the number of triangles drawn.
 
     Args:
-        points: see `Mesh`.
-        attributes: see `Mesh`.
-        triangles: see `Mesh`.
-        kinds: see `Mesh`.
-        ranges: see `Mesh`.
-        spheres: see `Mesh`.
+        points: coordinates of the points, as in `Mesh`.
+        attributes: attributes of the points, as in `Mesh`.
+        triangles: indices of the corners, as in `Mesh`.
+        kinds: surface type of each triangle, as in `Mesh`.
+        ranges: index ranges of the patches, as in `Mesh`.
+        spheres: bounding spheres of the patches, as in `Mesh`.
         eye: shape (13,): the camera's position, its axes to the right, downwards and forward, and its focal
             length in pixels.
         depth: inverse depth in 1/m, ``(4 * height, width)``; updated where a triangle is nearer than the
             stored depth.
-        ids: number of the visible triangle, same shape as ``depth``; updated with it.
+        ids: number of the triangle that each sample shows, same shape as ``depth``; updated together with
+            ``depth``.
         planes: (n, PLANE): plane equations of the numbered triangles; filled by this function.
-        seen: working memory for the corners of a patch, (n, 3).
-        seen_kinds: (n,), kinds of surface of the numbered triangles; filled by this function.
+        seen: working memory for the points of a patch, (n, 3).
+        seen_kinds: (n,), surface types of the numbered triangles; filled by this function.
         count: number of triangles that earlier calls have drawn.
     """
     rows, columns = depth.shape

@@ -43,9 +43,8 @@ class RenderBuffers:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """The scene of one road; it is built only once, and renders any number of images, also from several
-    threads.
-    """
+    """The scene of one road. It is built once and can then render any number of images, also in several
+    threads at the same time."""
 
     road: Road
     world: World

@@ -1,7 +1,8 @@
 """Computes the colour of each pixel: surface, light, the car's shadow, and haze.
 
-Surfaces are coloured from their coordinates, not from textures: the share of a pixel that markings cover is
-computed exactly, and noise is filtered to the size of the pixel. Colours are linear until `to_screen`.
+Colours are computed from coordinates on the surface instead of texture images: the fraction of a pixel that
+markings cover is computed exactly, and noise is filtered to the size of the pixel. Colours are linear until
+`to_screen`.
 """
 
 import math
@@ -75,8 +76,7 @@ def _post(side: float, height: float, light: float) -> Colour:
 @inlined
 def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
     """Blends a colour with the colour of haze: ``thin`` (0 to 1) is the weight of the original colour;
-    ``warm`` brightens the haze, its red channel most.
-    """
+    ``warm`` brightens the haze, most of all in the red channel."""
     thick = 1.0 - thin
     r, g = r * thin + (0.60 + warm) * thick, g * thin + (0.71 + 0.9 * warm) * thick
     return r, g, b * thin + (0.79 + 0.7 * warm) * thick
@@ -165,10 +165,11 @@ def shade(
         ids: triangle of each sample, from `raster.draw`.
         depth: depth of each sample, from `raster.draw`.
         planes: plane equations of the triangles, from `raster.draw`.
-        kinds: kind of surface of each triangle.
-        palette: (n, 6): colours, and the light that they emit.
-        tiles: those of `textures.noise`.
-        eye: as for `raster.draw`.
+        kinds: surface type of each triangle.
+        palette: (n, 6): for each surface type without a pattern, its colour and the colour of the light that
+            it emits.
+        tiles: the noise tiles from `textures.noise`.
+        eye: the camera, as in `raster.draw`.
         lanes: boundaries of the road's lanes.
         numbers: data for the shadow: the point on the ground under the car (3 numbers), the car's direction
             (2), its length, its width, the distance from that point forward to the car's middle, and 1 if

@@ -37,18 +37,18 @@ def overlay(
     order: NDArray[np.int64], places: Array, sizes: Array, looks: NDArray[np.int64], tints: Array,
     pictures: NDArray[np.float32], eye: Array, depth: NDArray[np.float32], picture: NDArray[np.float32],
 ) -> None:  # fmt: skip
-    """Draws trees over an image in linear light, in the given order, where nothing nearer hides them.
+    """Draws trees over an image in linear light, in the given order, except where nearer surfaces hide them.
 
     Args:
         order: indices of trees, the farthest first.
-        places: see `Trees`.
-        sizes: see `Trees`.
-        looks: see `Trees`.
-        tints: see `Trees`.
-        pictures: those of `trees.pictures`.
-        eye: as for `raster.draw`.
-        depth: as for `raster.draw`.
-        picture: the image (height, width, 3); changed.
+        places: positions of the trees, as in `Trees`.
+        sizes: heights and widths of the trees, as in `Trees`.
+        looks: indices of the pictures of the trees, as in `Trees`.
+        tints: brightness factors of the trees, as in `Trees`.
+        pictures: the tree pictures from `trees.pictures`.
+        eye: the camera, as in `raster.draw`.
+        depth: inverse depth of each sample, as in `raster.draw`.
+        picture: the image (height, width, 3); the trees are drawn into it.
     """
     rows, columns = picture.shape[0], picture.shape[1]
     foot, top = np.empty(3), np.empty(3)

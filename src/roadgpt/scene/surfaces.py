@@ -1,4 +1,5 @@
-"""Computes linear colours of sky, terrain and road without sunlight, in compiled code."""
+"""Computes the colours of the sky, and of terrain and road before sunlight is applied, in linear light and
+compiled code."""
 
 import math
 from typing import NamedTuple
@@ -24,9 +25,9 @@ class LaneBoundaries(NamedTuple):
     offsets: Array
     """Offsets of the k boundaries in metres at each of n stations, (n, k)."""
     marks: NDArray[np.int64]
-    """Kind of marking of each boundary, (k,)."""
+    """Type of lane marking on each boundary, as a number, (k,)."""
     driven: int
-    """Index of the left boundary of the driven lane."""
+    """Index of the left boundary of the lane in which the car drives."""
     spacing: float
     """Distance between the stations, metres."""
     length: float

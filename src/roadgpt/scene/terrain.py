@@ -1,4 +1,4 @@
-"""The terrain around a road as it is drawn: its brightness, and its surface in patches."""
+"""Computes the brightness of the terrain around a road, and the patches with which the terrain is drawn."""
 
 from dataclasses import dataclass
 from functools import cached_property

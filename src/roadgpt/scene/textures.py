@@ -19,7 +19,7 @@ def noise() -> NDArray[np.float32]:
     """Returns three noise tiles ``(3, n)`` of mean 0 and standard deviation 1; each row holds the tile and
     its successively halved versions, down to 1 texel.
 
-    The tiles are the grain of stones, clouds of all sizes, and tufts of grass.
+    The three tiles look like the grain of stone, like clouds of all sizes, and like tufts of grass.
     """
     rng = np.random.default_rng(SEED)
     grain = _shaped(rng, lambda f: np.exp(-((f / 0.42) ** 2)) + 1.9 * np.exp(-((f / 0.13) ** 2)))

@@ -33,7 +33,7 @@ class Trees:
     looks: NDArray[np.int64]
     """Index of the picture of each tree, (n,)."""
     tints: Array
-    """Factor on the brightness of the picture of each tree, (n,)."""
+    """Factor by which the brightness of each tree's picture is multiplied, (n,)."""
 
 
 def plant(road: Road, world: World, land: Land) -> Trees:

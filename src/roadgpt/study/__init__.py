@@ -1,12 +1,12 @@
-"""Makes and evaluates many roads of many descriptions, as RoadGPT's thesis did, and compares roads.
+"""Makes and evaluates many roads from many descriptions, as RoadGPT's thesis did, and compares roads.
 
-plan, execution   defines a study: descriptions, designers, roads of each; makes its roads
-road_record       reads from each run what reports need
+plan, execution   define a study (descriptions, designers, number of roads); make its roads
+road_record       reads the data for reports from each run
 study_report      writes the report of a study and of a folder of runs, from the sections in ``chapters``
 campaign_report   writes the report of a campaign, from the sections in ``chapters``
-truth, criteria   defines what people wrote down about a description; checks whether a road meets it
+truth, criteria   define the requirements of a description; check which of them a road meets
 similarity        measures how similar two roads are: turns and their order, length, incline, shape
-statistics        computes the tests and intervals of the reports and of the survey
+statistics        computes statistical tests and confidence intervals for reports
 survey            asks people to rate roads
 """
 
@@ -17,7 +17,7 @@ __all__ = ["Similarity", "compare"]
 
 
 def compare(one: Road, other: Road, mirror: bool = False) -> Similarity:
-    """Returns how similar two roads are, in the criteria of the thesis' survey.
+    """Returns how similar two roads are, by the criteria of the survey in RoadGPT's thesis.
 
     Args:
         one: a road.

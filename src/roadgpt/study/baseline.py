@@ -1,5 +1,5 @@
-"""Contains the counts of RoadGPT's thesis, which reports show beside the new ones. Source: its section
-6.1."""
+"""Contains the numbers of valid roads and lane departures from RoadGPT's thesis (section 6.1), which
+reports show beside the new results."""
 
 from typing import NamedTuple
 
@@ -8,9 +8,10 @@ ROADS = 100  # of every prompt
 
 
 class Counted(NamedTuple):
-    """The counts of one prompt, of which the thesis made 100 roads.
+    """The results of the thesis for one prompt, from which it made 100 roads.
 
-    ``valid`` is the number of valid roads, and ``left`` the number of these on which the car left its lane.
+    ``valid`` is the number of valid roads, and ``left`` the number of valid roads on which the car left its
+    lane.
     """
 
     valid: int

@@ -1,5 +1,5 @@
-"""Writes the report of a campaign. The store counts the tests, so that a million of them need little
-memory."""
+"""Writes the report of a campaign. SQL queries count the tests in the campaign's database, so that a
+report on a million tests needs little memory."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -40,7 +40,7 @@ def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) 
 
     Args:
         folder: the campaign's folder.
-        command: the command that runs the campaign again, which the report shows; empty: none is shown.
+        command: the command that repeats the campaign, as shown in the report; empty: none is shown.
         next_steps: what to try if no test failed: pairs of a description and a command.
 
     Raises:

@@ -1,14 +1,14 @@
-"""Checks which criteria of its description a road keeps. The criteria are those of the thesis' survey and
-extent.
+"""Checks which criteria of its description a road meets: the criteria of the thesis' survey, and ``extent``.
 
-    turns     the number of turns, in all and to each side
+    turns     the number of all turns, of left turns and of right turns
     incline   the grade of the whole road, and of each turn and straight
-    order     the sides of the turns, the positions of the straights, the first and the last element
+    order     the directions (left or right) of the turns, the positions of the straights, the first and the
+              last element
     extent    angles, radii and lengths
     general   all of the description at once
 
-A criterion that the description does not mention is left out. A road with a wrong number of turns keeps
-neither the order nor the inclines of single turns.
+A criterion that the description does not mention is left out. A road with a wrong number of turns meets
+neither the criterion ``order`` nor requirements on the incline of single turns.
 """
 
 from collections.abc import Callable, Mapping
@@ -60,7 +60,8 @@ Part = Callable[[Feature], Feature]
 
 
 def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
-    """Returns for each criterion of a truth, which people wrote down, whether a measured road keeps it."""
+    """Returns, for each criterion of a Truth (requirements that people wrote down), whether a measured
+    road meets it."""
     kept = holds(found, truth)
     out: dict[Criterion, bool] = {}
     for key, criterion in KEYS.items():
@@ -78,7 +79,8 @@ def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
 
 
 def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns for each criterion of an Outline, which a reader found, whether a measured road keeps it."""
+    """Returns, for each criterion of an Outline (requirements that a reader found in a description),
+    whether a measured road meets it."""
     out: dict[Criterion, bool] = {}
     for criterion, fields in FIELDS.items():
         own = {name: getattr(asked, name) for name in fields}

@@ -1,7 +1,7 @@
-"""Makes the roads of a study: each part is a folder of runs, in which the engine of campaigns works.
+"""Makes the roads of a study: each study part is a folder of runs, filled by the campaign engine.
 
-Every part draws its own seeds, so the files are the same for any number of workers. After an interruption,
-``work`` makes the roads that are missing.
+Every part has its own sequence of seeds, so the files do not depend on the number of worker processes. After
+an interruption, ``work`` makes the roads that are missing.
 """
 
 from collections.abc import Callable, Iterable
@@ -25,10 +25,10 @@ Tell = Callable[[int], object]
 
 
 class Problem(NamedTuple):
-    """The reason why roads of a part are missing."""
+    """The reason why roads of one study part are missing."""
 
     part: str
-    """Name of the part's folder."""
+    """Name of the folder of the study part."""
     sentence: str
     is_of_chat: bool = False
     """True if the reason is that a language model could not be asked."""
@@ -37,21 +37,22 @@ class Problem(NamedTuple):
 def work(
     plan: StudyPlan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell = lambda _: None
 ) -> list[Problem]:
-    """Makes all roads of a study, or those that are missing.
+    """Makes all roads of a study that do not exist yet.
 
     Args:
         plan: the study.
         folder: the study's folder, which exists.
         workers: number of worker processes; 1: the roads are made in this process. Parts whose designer or
             reader asks a language model are always made in this process, one after another.
-        draw: draws pictures into the folders of runs; None: no pictures.
+        draw: function that draws pictures of a run into its folder; None: no pictures.
         tell: called after each road with the number of finished roads.
 
     Returns:
-        One Problem for each part that lacks roads; empty if all roads were made.
+        One Problem for each study part that lacks roads; empty if all roads were made.
 
     Raises:
-        GivenUpError: the simulator failed three times in a row; the same command makes these roads again.
+        GivenUpError: the simulator failed three times in a row; repeating the command makes the missing
+            roads.
         UsageError: a plug-in is not installed, or another process works in the folder.
         RoadGPTError: a file cannot be written, or there are no workers.
     """

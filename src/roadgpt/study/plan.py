@@ -23,7 +23,7 @@ Kind = Literal["thesis", "alignment"]
 
 
 class StudyPart(NamedTuple):
-    """One description with one designer."""
+    """One part of a study: the roads that one designer makes from one description."""
 
     designer: str
     number: int
@@ -32,12 +32,12 @@ class StudyPart(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The path of the part's folder, relative to the study's folder, with forward slashes."""
+        """The path of the folder of this part, relative to the study's folder, with forward slashes."""
         return f"{slug(self.designer)}/{self.number:02d}-{slug(self.prompt.prompt)[:LETTERS].strip('-')}"
 
 
 class StudyPlan(Frozen):
-    """The definition of a study; the same plan gives the same files."""
+    """The definition of a study; two studies with the same plan have the same files."""
 
     format: Literal[1] = 1
     kind: Kind
@@ -48,12 +48,12 @@ class StudyPlan(Frozen):
     seed: int = 0
     world: World = World()
     setup: Setup = Setup()
-    """Reader, driver, simulator and language model. ``setup_of`` replaces its designer and sets the
+    """Reader, driver, simulator and language model. ``setup_of`` fills in the designer and selects the
     strict rules."""
     source: str = ""
     """Name of the file with the prompts; empty for the thesis' prompts."""
     command: str = ""
-    """The command that makes the study again."""
+    """The command with which users can repeat the study."""
 
     def parts(self) -> tuple[StudyPart, ...]:
         """Returns all parts, one for each designer and prompt, ordered by designer and then by prompt."""
@@ -64,8 +64,8 @@ class StudyPlan(Frozen):
         )
 
     def setup_of(self, designer: str) -> Setup:
-        """Returns the setup for one designer, with settings of a language model only if designer or
-        reader asks one."""
+        """Returns the setup for one designer. It contains settings of a language model only if the
+        designer or the reader uses a language model."""
         asks = asks_a_model(plugins.find("designers", designer)) or asks_a_model(
             plugins.find("readers", self.setup.reader.partition(":")[0])
         )
@@ -85,7 +85,7 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
     A study that is resumed may have more roads and more designers.
 
     Raises:
-        UsageError: the folder contains something else, or it cannot be created.
+        UsageError: the folder contains another study or other files, or it cannot be created.
     """
     with explained(UsageError, f"cannot use {folder}", "name another folder"):
         folder.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,5 @@
-"""Reads files of descriptions and their truths: JSON lines with the keys ``id``, ``prompt`` and ``truth``."""
+"""Reads files of descriptions, with the requirements (``truth``) that people wrote down for each: JSON
+lines with the keys ``id``, ``prompt`` and ``truth``."""
 
 from importlib.resources import files
 from pathlib import Path
@@ -14,12 +15,13 @@ MOST = 10_000  # prompts of a file
 
 
 class Prompt(Frozen):
-    """A description, and what it asks for if somebody wrote that down."""
+    """A description of a road, with the requirements that people wrote down for it, if any."""
 
     id: str = Field(min_length=1, max_length=80)
     prompt: str = Field(min_length=1, max_length=10_000)
     truth: Truth | None = None
-    """What the description asks for; None: roads are compared with the requirements that the reader finds."""
+    """The requirements that people wrote down; None: roads are checked against the requirements that the
+    reader finds."""
 
 
 def read_prompts(path: Path) -> tuple[Prompt, ...]:

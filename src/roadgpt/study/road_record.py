@@ -1,4 +1,4 @@
-"""Reads from each run what a report needs: validity by each set of rules, the drive, the measured
+"""Reads the data for reports from each run: validity by each rule set, results of the drive, measured
 geometry."""
 
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ STRAIGHT = np.stack([np.linspace(0.0, 30.0, 31), np.zeros(31)], axis=1)
 
 @dataclass(frozen=True, eq=False)
 class RoadRecord:
-    """The properties of one road that reports use."""
+    """The properties of one road, as used in reports."""
 
     index: int
     folder: str
@@ -46,53 +46,57 @@ class RoadRecord:
     is_valid: bool
     """True if the road breaks no strict rule."""
     is_sound: bool
-    """True if the road breaks no strict rule, except that it may miss requirements of the description."""
+    """True if the road breaks no strict rule other than the one that checks the requirements of the
+    description."""
     is_sbft: bool
     """True if the road passes the SBFT competition's validator."""
     sbft_says: str
-    """The first objection of the competition's validator; empty if there is none."""
+    """The first reason for which the SBFT competition's validator rejects the road; empty if it accepts
+    the road."""
     has_left: bool
     """True if the car left its lane or fell."""
     margin: float | None
-    """Smallest distance of the car to out of bounds, metres, negative if it failed; None if it was not
-    driven."""
+    """Smallest distance of the car to out of bounds, metres; negative if the car failed, None if it did
+    not drive."""
     points: Array
     """Points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road."""
     failed_at: tuple[float, float] | None
     """Position ``(x, y)`` where the car failed, metres; None if it did not fail."""
     kept: Mapping[Criterion, bool]
-    """For each criterion that the description mentions, True if the road keeps it."""
+    """For each criterion that the description mentions, True if the road meets it."""
     likeness: Likeness | None
-    """The properties that are compared with those of other roads; None if there is no road to compare."""
+    """The properties by which the road is compared with other roads; None if no road was made or it cannot
+    be compared."""
     features: Mapping[str, float] = field(default_factory=dict)
     """Features of the SBFT competition's feature maps, by name; empty if they are not known."""
     versions: Mapping[str, str] = field(default_factory=dict)
     """Versions of RoadGPT and of the libraries that made the run, by name."""
     max_oob: float | None = None
-    """Largest share of the car's bounding box outside its lane, 0 to 1; None if the road was not driven."""
+    """Largest fraction of the car's bounding box outside its lane, 0 to 1; None if the road was not
+    driven."""
     beyond: float | None = None
     """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
 
     @property
     def is_driven(self) -> bool:
-        """True if the road was driven and the drive was judged."""
+        """True if the road was driven and the drive was evaluated."""
         return self.outcome in ("PASS", "FAIL")
 
 
 @dataclass(frozen=True, eq=False)
 class StudyPartRecord:
-    """All roads of one description by one designer."""
+    """All roads that one designer made from one description."""
 
     part: StudyPart
     roads: tuple[RoadRecord, ...]
     home: str = ""
     """The part's folder, relative to the report's folder; empty if they are the same."""
     problem: str = ""
-    """Why roads are missing; empty if none is missing."""
+    """The reason why roads are missing; empty if none is missing."""
     picture_format: str = ""
     """Format of the roads' pictures, such as "png"; empty if there are no pictures."""
     wanted: int = 1
-    """Number of roads that were asked for."""
+    """Number of roads that the user requested."""
 
     @property
     def words(self) -> str:
@@ -109,36 +113,38 @@ class StudyPartRecord:
         return sum(getattr(road, which) for road in self.roads)
 
     def kept(self, criterion: Criterion) -> list[bool]:
-        """Returns for each road whether it keeps a criterion; empty if the description does not mention
-        the criterion.
+        """Returns, for each road, whether it meets a criterion; empty if the description does not mention the
+        criterion.
 
-        If no road could be made, the list for "general" contains False for each road that was asked for.
+        If no road could be made, the list for "general" contains False for each road that the user requested.
         """
         found = [road.kept[criterion] for road in self.roads if criterion in road.kept]
         return found if self.roads or criterion != "general" else [False] * self.wanted
 
     @cached_property
     def compared(self) -> tuple[RoadRecord, ...]:
-        """The roads that are compared with each other: the first 150 of those that can be."""
+        """The roads that are compared with each other: the first 150 roads that can be compared."""
         return tuple(road for road in self.roads if road.likeness is not None)[:MOST_COMPARED]
 
     def likenesses(self, most: int = MOST_COMPARED) -> list[Likeness]:
-        """Returns the compared properties of the first roads, ``most`` at most."""
+        """Returns the properties by which roads are compared, of at most ``most`` roads in ``compared``."""
         return [road.likeness for road in self.compared if road.likeness is not None][:most]
 
     @cached_property
     def spread(self) -> Spread:
-        """How different the compared roads are; its indices are those of ``compared``."""
+        """How different the compared roads are; indices in the Spread refer to roads in ``compared``."""
         return spread(self.likenesses())
 
     def href(self, road: RoadRecord) -> str:
-        """Returns the address of the road's bird's-eye view, or of its run if no picture was drawn."""
+        """Returns the address of the road's bird's-eye view, or of its file run.json if no picture was
+        drawn."""
         is_drawn = self.picture_format and len(road.points)
         return f"{road.folder}/{f'birds_eye.{self.picture_format}' if is_drawn else 'run.json'}"
 
     @property
     def overview(self) -> str:
-        """The address of the picture of all roads, or of their table if no picture was drawn."""
+        """The address of the picture of all roads in this part, or of the table of roads if no picture was
+        drawn."""
         name = f"overview.{self.picture_format}" if self.picture_format else "generation_stats.csv"
         return f"{self.home}/{name}".lstrip("/")
 
@@ -150,10 +156,10 @@ def read_part(
 
     Args:
         place: the folder of runs.
-        part: the description and the designer.
+        part: the study part, which names the description and the designer.
         home: path of the folder, relative to the report's folder; empty if they are the same.
-        problem: why roads are missing; empty if none is missing.
-        wanted: number of roads that were asked for.
+        problem: the reason why roads are missing; empty if none is missing.
+        wanted: number of roads that the user requested.
 
     Raises:
         UsageError: a run cannot be read.
@@ -194,13 +200,13 @@ def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, floa
 def kept_of(
     road: Road | None, brief: Brief | None, world: World, truth: Truth | None = None
 ) -> dict[Criterion, bool]:
-    """Returns for each criterion of a description whether a road keeps it.
+    """Returns, for each criterion of a description, whether a road meets it.
 
     Args:
-        road: the road; None: all criteria are False.
+        road: the road; None if no road was made: all criteria are then False.
         brief: the requirements that the reader found; None if the description was not read.
         world: the world of the road; the size of its map affects some requirements.
-        truth: what people wrote down; if it is given, the road is compared with it and not with the brief.
+        truth: requirements that people wrote down; if given, they are checked instead of those in ``brief``.
     """
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1

@@ -5,15 +5,15 @@
                 and straights, and n is the length of the longer sequence
     direction   the same as sequence, with left and right turns only
     length      the shorter length in plan divided by the longer one
-    incline     1 for equal grades; halves for every 2 percentage points of mean difference in grade, compared
-                at equal fractions of each road's length
-    shape       1 for equal plans; halves for every 5.5 m of distance (root mean square) between the plans,
-                compared at equal fractions of each road's length after the best shift and rotation
+    incline     1 for equal grades; each 2 percentage points of mean difference in grade halve the value;
+                compared at equal fractions of each road's length
+    shape       1 for equal plans; each 5.5 m of distance (root mean square) between the plans halve the
+                value; compared at equal fractions of each road's length after the best shift and rotation
     general     the mean of these six
 
 Two roads are near duplicates if their numbers of turns are equal and shape and incline are both at least 0.5:
-nobody who sees both would take them for two tests. Mirror images count as similar only if the caller asks for
-it.
+a person who sees both would consider them to be the same test. Mirror images count as similar only if the
+caller asks for it.
 """
 
 from collections.abc import Sequence
@@ -40,8 +40,8 @@ STEP = 5.0  # m between the points of a whole road's steps; the competition's ar
 
 @dataclass(frozen=True)
 class Similarity:
-    """How similar two roads are: six criteria from 0 to 1, and the distances from which two of them
-    follow."""
+    """How similar two roads are: six criteria from 0 to 1, and the two distances from which ``shape`` and
+    ``incline`` are computed."""
 
     turns: float
     sequence: float
@@ -52,7 +52,7 @@ class Similarity:
     metres: float
     """Distance between the plans after the best shift and rotation, root mean square in metres."""
     points: float
-    """Mean difference between the grades, percentage points."""
+    """Mean absolute difference between the grades of the two roads, percentage points."""
 
     @property
     def general(self) -> float:
@@ -68,7 +68,7 @@ class Similarity:
 
 @dataclass(frozen=True, eq=False)
 class Likeness:
-    """The properties of one road that are compared with those of another."""
+    """The properties of a road by which it is compared with other roads."""
 
     length: float
     """Length in plan, metres."""
@@ -87,7 +87,7 @@ class Likeness:
 
 
 def likeness(road: Road) -> Likeness:
-    """Returns the properties of a road that are compared.
+    """Returns the properties of a road by which it is compared with other roads.
 
     Raises:
         UsageError: the road has fewer than two different points.
@@ -135,9 +135,9 @@ def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
     """Returns the distance between two plans after the best shift and rotation, root mean square in metres.
 
     Args:
-        one: a plan.
-        other: another plan.
-        mirror: True if a plan and its mirror image count as the same.
+        one: the shape of a road in plan view.
+        other: the shape of another road.
+        mirror: True if a road and its mirror image count as the same.
     """
     turned = float(abs(np.vdot(one.shares, other.shares)))
     if mirror:
@@ -163,8 +163,8 @@ def _alike(one: str, other: str, mirror: bool) -> float:
 
 
 def edits(one: str, other: str) -> int:
-    """Returns the Levenshtein distance of two words: the least number of letters to add, remove or
-    replace."""
+    """Returns the Levenshtein distance of two words: the smallest number of letters to add, remove or
+    replace to turn one word into the other."""
     row = list(range(len(other) + 1))
     for i, letter in enumerate(one, 1):
         before, row[0] = row[0], i
@@ -182,13 +182,14 @@ class Spread:
     duplicates: tuple[tuple[int, int], ...]
     """Pairs of indices of roads that are near duplicates."""
     sparseness: float
-    """Mean over all roads of the distance to the most different road, by the SBFT measure in steps of 5 m."""
+    """Sparseness as in the SBFT competition: for each road the distance to the most different road,
+    averaged over all roads. The roads are compared in steps of 5 m."""
     general: float
-    """Mean similarity of all pairs of roads; NaN for fewer than two roads."""
+    """Mean of ``Similarity.general`` over all pairs of roads; NaN for fewer than two roads."""
 
     @property
     def nearest(self) -> Array:
-        """Distance of each road to the road most similar to it, metres ``(n,)``; NaN if there is only one
+        """For each road the smallest distance to another road, metres ``(n,)``; NaN if there is only one
         road."""
         if len(self.metres) < 2:
             return np.full(len(self.metres), np.nan)

@@ -1,11 +1,13 @@
-"""Computes the tests and intervals of the reports of studies and surveys: those of scipy, and what it lacks.
+"""Computes the statistical tests and confidence intervals for reports of studies and surveys, with scipy
+where it provides them.
 
-scipy has neither Cochran and Armitage's trend, Conover's and Holm's comparisons of pairs, nor Krippendorff's
-alpha; it has Fisher's exact test of larger tables and Wilcoxon's of tied ratings only as approximations. The
-tests in ``tests/authorities`` compare each function with other libraries, published examples or enumerations.
+scipy lacks Cochran and Armitage's trend test, Conover's pairwise comparisons with Holm's correction, and
+Krippendorff's alpha. For Fisher's exact test of large tables and Wilcoxon's test of tied ratings, it only
+offers approximations. The tests in ``tests/authorities`` compare each function with other libraries,
+published examples or enumerations.
 
 Ratings are arrays ``(people, columns)`` of numbers; NaN marks a missing rating, and tests that need complete
-rows leave incomplete ones out. If the data cannot answer the question (one column, no variation, no people),
+rows leave out incomplete rows. If the data cannot answer the question (one column, no variation, no people),
 a test returns p = 1 and an effect of 0 or NaN; it never raises an error.
 """
 
@@ -58,7 +60,7 @@ class ChiSquared:
     """(observed - expected)^2 / expected of each cell; 0 where the expected count is 0."""
     statistic: float
     freedom: int
-    """Degrees of freedom; empty rows and columns do not count."""
+    """Degrees of freedom, computed without empty rows and columns."""
     critical: float
     """Critical value of the statistic at the 5 % level; NaN without a degree of freedom."""
     p: float
@@ -66,7 +68,8 @@ class ChiSquared:
 
     @property
     def is_sound(self) -> bool:
-        """Whether Cochran's rule holds: no expected count is below 1, and at most a fifth are below 5.
+        """Whether Cochran's rule holds: no expected count is below 1, and at most 20 % of the expected counts
+        are below 5.
 
         Empty rows and columns are left out, as in the test.
         """
@@ -75,17 +78,17 @@ class ChiSquared:
 
 
 class Exact(NamedTuple):
-    """Result of the exact test of a table."""
+    """Result of Fisher's exact test of a contingency table."""
 
     p: float
     tables: int
-    """Number of tables that were enumerated or drawn."""
+    """Number of tables that were enumerated or sampled."""
     is_drawn: bool
-    """Whether tables were drawn at random, because there were too many to enumerate."""
+    """True if tables were sampled at random, False if all tables were enumerated."""
 
 
 class Trend(NamedTuple):
-    """Result of the trend test; z is positive if the shares rise from group to group."""
+    """Result of the trend test; z is positive if the success rate rises from group to group."""
 
     z: float
     p: float
@@ -93,27 +96,27 @@ class Trend(NamedTuple):
 
 
 class Friedman(NamedTuple):
-    """Result of Friedman's test, which asks whether columns that the same people rated differ."""
+    """Result of Friedman's test of whether ratings by the same people differ between columns."""
 
     statistic: float
     freedom: int
     p: float
     kendalls_w: float
-    """Kendall's W: 0 if people do not agree on the order of the columns, 1 if all agree."""
+    """Kendall's W: 0 if the people do not agree on the ranking of the columns, 1 if they agree completely."""
     people: int
     """Number of people who rated all columns."""
 
 
 class Paired(NamedTuple):
-    """Result of Wilcoxon's test, which asks whether two columns that the same people rated differ."""
+    """Result of Wilcoxon's test of whether two columns of ratings by the same people differ."""
 
     statistic: float
-    """The smaller sum of signed ranks."""
+    """The smaller of two rank sums: that of the positive and that of the negative differences."""
     p: float
     effect: float
     """Matched-pairs rank-biserial correlation; positive if the first column is larger."""
     pairs: int
-    """Number of people who rated both columns, including those who rated them alike."""
+    """Number of people who rated both columns, including people who gave both the same rating."""
 
 
 class Correlation(NamedTuple):
@@ -125,20 +128,21 @@ class Correlation(NamedTuple):
 
 
 def wilson(k: int, n: int) -> Interval:
-    """Returns Wilson's 95 % score interval of the share k of n; 0 to 1 if n is 0."""
+    """Returns Wilson's 95 % score interval of the proportion k / n; 0 to 1 if n is 0."""
     return Interval(*stats.binomtest(k, n).proportion_ci(CONFIDENCE, "wilson")) if n else Interval(0.0, 1.0)
 
 
 def clopper_pearson(k: int, n: int) -> Interval:
-    """Returns Clopper and Pearson's exact 95 % interval of the share k of n; 0 to 1 if n is 0."""
+    """Returns Clopper and Pearson's exact 95 % interval of the proportion k / n; 0 to 1 if n is 0."""
     return Interval(*stats.binomtest(k, n).proportion_ci(CONFIDENCE, "exact")) if n else Interval(0.0, 1.0)
 
 
 def bootstrap(groups: Sequence[Sequence[float]]) -> Estimate:
-    """Returns the mean of all values with the 95 % percentile interval of resampling whole groups.
+    """Returns the mean of all values, with its 95 % percentile interval from a bootstrap that resamples
+    groups.
 
-    Roads of one prompt are alike, so prompts are resampled and not roads. The same groups always give the
-    same interval.
+    Roads of one prompt are alike, so whole prompts are resampled instead of single roads. The random seed is
+    fixed: the same groups always give the same interval.
 
     Args:
         groups: the values of each group, such as the roads of one prompt; empty groups are left out.
@@ -163,8 +167,8 @@ def bootstrap(groups: Sequence[Sequence[float]]) -> Estimate:
 def chi_squared(table: ArrayLike) -> ChiSquared:
     """Returns Pearson's chi-squared test of a table of counts ``(rows, columns)``.
 
-    Empty rows and columns are left out of the test. If fewer than two of either are left, the statistic is 0
-    and p is 1.
+    Empty rows and columns are left out of the test. If fewer than two rows or fewer than two columns are
+    left, the statistic is 0 and p is 1.
     """
     observed = np.asarray(table, int)
     expected = stats.contingency.expected_freq(observed) if observed.any() else observed.astype(float)
@@ -181,11 +185,14 @@ def chi_squared(table: ArrayLike) -> ChiSquared:
 
 
 def exact(table: ArrayLike) -> Exact:
-    """Returns Fisher's exact test of a table of counts ``(rows, columns)``, as Freeman and Halton extend it.
+    """Returns Fisher's exact test of a table of counts ``(rows, columns)``, as extended by Freeman and
+    Halton.
 
-    p is the share of the tables with the same sums that are as improbable as this one or more so. Tables of
-    two columns are enumerated; if there are too many, and for more columns, tables are drawn, always the same
-    ones. ``scipy.stats.fisher_exact`` draws them too, but takes rounding errors for differences.
+    p is the probability, among all tables with the same row and column totals, of a table that is at most as
+    probable as the given one. All tables are enumerated if the table has two rows or two columns and the
+    number of tables is small enough. Otherwise, tables are sampled at random with a fixed seed.
+    ``scipy.stats.fisher_exact`` samples tables too, but treats probabilities that differ only by rounding
+    errors as different.
     """
     observed = np.asarray(table, int)
     observed = observed[observed.any(axis=1)][:, observed.any(axis=0)]
@@ -229,9 +236,11 @@ def _log_weight(tables: NDArray[Any]) -> Array:
 
 
 def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
-    """Returns Cochran and Armitage's test for a trend from group to group, with the variance for fixed sums.
+    """Returns Cochran and Armitage's test for a trend in the success rate from group to group.
 
-    z is the correlation of success and group number over all trials, times the root of their number less 1.
+    z is r * sqrt(n - 1), where n is the number of all trials, and r is the correlation between the success of
+    a trial (0 or 1) and the number of its group. The variance is computed for fixed totals: the numbers of
+    all successes and of trials in each group.
 
     Args:
         successes: number of successes in each group.
@@ -262,7 +271,8 @@ def friedman(ratings: ArrayLike) -> Friedman:
 
 
 def conover(ratings: ArrayLike) -> Array:
-    """Returns p ``(k, k)`` of every pair of columns of ratings ``(people, k)``, by Conover's test after Holm.
+    """Returns p-values ``(k, k)`` of Conover's test for each pair of the k rated columns, with Holm's
+    correction.
 
     Sources: Conover, Practical nonparametric statistics, 3rd edition (1999), 5.8; Holm (1979).
     """
@@ -291,9 +301,9 @@ def conover(ratings: ArrayLike) -> Array:
 def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
     """Returns Wilcoxon's two-sided signed-rank test of two columns ``(people,)``.
 
-    It is exact for up to 50 differing pairs, ties included, since ratings have many ties: with five raters
-    the normal approximation finds a difference where five cannot show one. Beyond 50, scipy's approximation
-    is used. Equal pairs are left out of the ranks.
+    People who gave both columns the same rating are left out. For up to 50 remaining people, p is exact, also
+    if differences are tied: with only five raters, the normal approximation can report a significant
+    difference where the exact test cannot. For more than 50 people, scipy's approximation is used.
     """
     x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
     moved = (x - y)[x != y]
@@ -319,8 +329,8 @@ def _signed(ranks: Array, smaller: float) -> float:
 def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
     """Returns Spearman's rank correlation of two columns, two-sided; rho is NaN if a column is constant.
 
-    It is exact for up to 8 pairs, ties included, by every order of the second column. Beyond 8, scipy's
-    approximation by Student's t is used.
+    For up to 8 pairs, p is exact, also if values are tied: all permutations of the second column are
+    enumerated. For more than 8 pairs, scipy's approximation by Student's t is used.
     """
     x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
     if len(x) < 3 or not np.ptp(x) or not np.ptp(y):
@@ -338,14 +348,15 @@ def _ordered(x: Array, y: Array) -> float:
 
 
 def krippendorff(ratings: ArrayLike) -> float:
-    """Returns Krippendorff's alpha of ordinal ratings ``(people, units)``, in which people may have gaps.
+    """Returns Krippendorff's alpha of ordinal ratings ``(people, units)``; NaN marks missing ratings.
 
-    Only units that two or more people rated count. Two values are as far apart as there are ratings from one
-    to the other. Source: Krippendorff, Computing Krippendorff's alpha-reliability (2011).
+    Only units with ratings by two or more people are used. The distance between two values is ordinal: the
+    number of ratings that lie between the two values, plus half of the ratings that equal one of them.
+    Source: Krippendorff, Computing Krippendorff's alpha-reliability (2011).
 
     Returns:
-        Alpha: 1 is full agreement, 0 agreement by chance; NaN if no unit has two ratings, or if all ratings
-        are equal, so that nobody can disagree.
+        Alpha: 1 is full agreement, 0 is agreement by chance. NaN if no unit has two ratings, or if all
+        ratings are equal, so that no disagreement is possible.
     """
     x = np.asarray(ratings, float)
     x = x[:, np.isfinite(x).sum(axis=0) >= 2]

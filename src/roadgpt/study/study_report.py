@@ -39,7 +39,7 @@ PROBLEMS = "problems.json"
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
-    """Writes why roads are missing into the study's folder, so that later reports can show it."""
+    """Writes the reasons for missing roads into the study's folder, so that later reports can show them."""
     sentences = {problem.part: problem.sentence for problem in problems}
     write_whole(folder / PROBLEMS, json_text(sentences))
 
@@ -73,7 +73,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
 
     Args:
         plan: the study.
-        parts: the roads of each part.
+        parts: the roads of each study part.
     """
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
@@ -162,7 +162,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
 
     Args:
         folder: the folder of runs.
-        command: the command that makes the runs again, which the report shows; empty: none is shown.
+        command: the command that repeats the runs, as shown in the report; empty: none is shown.
         next_steps: what to try if no road failed: pairs of a description and a command.
 
     Raises:

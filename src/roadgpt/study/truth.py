@@ -1,4 +1,4 @@
-"""Defines a truth: what a description asks for, as people wrote it down before they saw a road.
+"""Defines a truth: the requirements of a description, which people wrote down before they saw a road.
 
 The keys and their meaning are those of the project's referee, an independent judge of roads; tests compare
 ``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys.
@@ -69,7 +69,7 @@ class ExpectedElement(Frozen):
 
 
 class Truth(Frozen):
-    """What a road must keep; each key that is not None is checked separately."""
+    """The requirements that a road must meet; each key that is not None is checked separately."""
 
     turns: Bounds | None = None
     left: Bounds | None = None
@@ -81,11 +81,11 @@ class Truth(Frozen):
     starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
     max_grade: Bounds | None = None
-    """Grade of the steepest 10 m, percent, uphill or downhill."""
+    """Grade of the steepest 10 m of the road, uphill or downhill, in percent."""
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
-    """Number of changes between climbing and falling; a single number is a lower bound."""
+    """Number of changes between uphill and downhill; a single number is a lower bound."""
     min_radius: Bounds | None = None
     """Smallest radius of the road, metres."""
     turning: Bounds | None = None
@@ -97,7 +97,7 @@ class Truth(Frozen):
 
 
 def feature_of(wish: ExpectedElement | None) -> Feature | None:
-    """Returns an expected element as a Feature of an Outline; None for None."""
+    """Converts an expected element to a Feature of an Outline; returns None if the element is None."""
     if wish is None:
         return None
     return Feature(
@@ -112,13 +112,13 @@ def feature_of(wish: ExpectedElement | None) -> Feature | None:
 
 
 def groups_of(truth: Truth) -> tuple[Group, ...]:
-    """Returns the key ``sequence`` as the groups of an Outline; empty if the key is None."""
+    """Converts the key ``sequence`` of a truth to the groups of an Outline; empty if the key is None."""
     return tuple(Group(feature) for wish in truth.sequence or () if (feature := feature_of(wish)))
 
 
 def holds(found: Measures, truth: Truth) -> dict[str, bool]:
-    """Returns for each key of a truth whether a measured road keeps it; a road shorter than 20 m keeps no
-    key."""
+    """Returns, for each key of a truth, whether a measured road meets it. A road shorter than 20 m meets
+    no key."""
     return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
 
 
@@ -141,7 +141,8 @@ def _holds(found: Measures, truth: Truth, key: str) -> bool:
 
 
 def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Returns whether a road has the turns of the groups in their order, and the straights between them.
+    """Returns whether a road has the turns of the groups in the given order, with the required straights
+    between them.
 
     If every group names exactly one element, the road must not have more turns.
     """

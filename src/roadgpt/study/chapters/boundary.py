@@ -1,4 +1,5 @@
-"""Makes the section on the boundary: pairs of similar roads, on only one of which the car kept its lane."""
+"""Makes the section on the boundary between passing and failing: pairs of similar roads of which one
+passed its test and one failed."""
 
 import shlex
 from collections.abc import Sequence
@@ -28,8 +29,8 @@ EXPLAINED = (
 
 
 class Side(NamedTuple):
-    """A pair of similar roads of one cell, with the results of both tests: ``kept`` passed, and ``lost``
-    failed."""
+    """A pair of similar roads from one campaign cell, with the results of their tests: the test ``kept``
+    passed, and the test ``lost`` failed."""
 
     cell: str
     pair: BoundaryPair
@@ -38,8 +39,8 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns the pairs with the smallest distances of every cell; ``campaign.boundary_pairs`` defines
-    the distance."""
+    """Returns the road pairs of every campaign cell that have the smallest distances. A pair is a road
+    that passed and a road that failed; ``campaign.boundary_pairs`` defines their distance."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))
@@ -50,7 +51,7 @@ def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
 
 
 def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """Returns a sentence on the pair with the smallest distance, for the summary; empty if there is no
+    """Returns a sentence for the summary on the two roads with the smallest distance; empty if there is no
     pair."""
     if not pairs:
         return []
@@ -63,8 +64,8 @@ def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
 
 
 def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
-    """Returns a table of the pairs that shows what differs most between their roads; empty if there is no
-    pair."""
+    """Returns a table with one row per pair of roads, which names the largest difference between the two
+    roads; empty if there is no pair."""
     if not pairs:
         return []
     rows = [_row(folder, *side) for side in pairs]

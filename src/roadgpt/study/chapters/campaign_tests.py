@@ -1,5 +1,5 @@
-"""Makes the sections on the tests of a campaign: failures, margins and feature maps. The store counts
-them."""
+"""Makes the sections on the tests of a campaign: failures, margins and feature maps. SQL queries count the
+tests in the campaign's database."""
 
 import shlex
 from collections.abc import Mapping, Sequence
@@ -33,7 +33,7 @@ def failures(
     Args:
         folder: the campaign's folder.
         record: the campaign's tests.
-        cells: the cells whose failures are drawn in the chart.
+        cells: the campaign cells that the chart shows, one line per cell.
         drives_on: True if cars drive on after they have left their lane.
     """
     blocks: list[Block] = [_curves(record, cells), _causes(record, drives_on)]
@@ -78,8 +78,8 @@ def _caption(shown: int, every: int, drives_on: bool) -> str:
 
 
 def again(folder: Path, name: str, number: int) -> str:
-    """Returns the address of the picture of a test that was driven again; empty if there is no such
-    picture."""
+    """Returns the path of the picture of a test that was driven a second time with ``roadgpt drive
+    --again``; empty if there is no such picture."""
     place = f"again/{name}/runs/{number:04d}/birds_eye.png"
     return place if (folder / place).is_file() else ""
 
@@ -152,7 +152,8 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Returns feature maps of an even sample of the tests; empty if the tests have no features."""
+    """Returns feature maps of tests that are sampled evenly over the campaign; empty if the tests have no
+    features."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     part = f" of every {every:,}th test" if every > 1 else ""

@@ -1,5 +1,5 @@
-"""Makes the list of what is needed to repeat a report: command, seed, versions, hashes of the reader's
-network."""
+"""Makes the list of information that is needed to reproduce a report: command, seed, versions, hashes of
+the reader's network."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -25,8 +25,8 @@ WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 def card_of(
     command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
 ) -> dict[str, str]:
-    """Returns what is needed to repeat a report: names and texts, in the order in which the page shows
-    them."""
+    """Returns the information needed to reproduce a report, as labels with their texts in the order shown
+    on the page."""
     out = {"command": command} if command else {}
     out |= {
         "seed": str(seed),

@@ -18,8 +18,8 @@ MOST_DRAWN = 30  # parts whose distances are drawn
 
 
 def diversity(parts: Sequence[StudyPartRecord]) -> Section:
-    """Returns the section: differences within every part, near duplicates, and differences between
-    descriptions."""
+    """Returns the section: how much the roads of one description differ, which roads are near duplicates,
+    and how much the roads of different descriptions differ."""
     blocks: list[Block] = [
         "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
         "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "

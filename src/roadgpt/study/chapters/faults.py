@@ -1,4 +1,5 @@
-"""Makes the sections on distinct faults and, if no road failed, on what to try next. It simulates nothing."""
+"""Makes the section on distinct faults and, if no road failed, a section on what to try next. It runs no
+simulations."""
 
 import shlex
 from collections.abc import Sequence
@@ -49,8 +50,8 @@ Steps = Sequence[tuple[str, str]]
 
 
 class FaultSummary(NamedTuple):
-    """One fault, with a typical failure and the analysis that ``roadgpt faults`` made of it; None if it
-    made none."""
+    """One fault with the run of a typical failure. ``looked`` is the analysis that ``roadgpt faults``
+    stored for this fault; None if there is none."""
 
     fault: Fault
     run: Run
@@ -67,7 +68,7 @@ class FaultSummary(NamedTuple):
 
 
 def fault_summaries(folder: Path, found: Faults) -> list[FaultSummary]:
-    """Returns a summary of each fault of a folder, for 300 faults at most.
+    """Returns a summary of each fault in a folder; only the first 300 faults are included.
 
     Raises:
         UsageError: a run, or a file that ``roadgpt faults`` has written, cannot be read.
@@ -92,8 +93,8 @@ def _run_of(folder: Path, name: NumberedTest) -> Run:
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
-    """Returns the first sentences of a report: the number of faults, and how many of them fail again when
-    repeated."""
+    """Returns the first sentences of a report: the number of faults, and how many of these faults occur
+    again when their tests are repeated."""
     if not found.failures:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]

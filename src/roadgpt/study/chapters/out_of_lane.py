@@ -1,4 +1,4 @@
-"""Reports how far the car was outside its lane in tests that it passed because of the tolerance."""
+"""Reports how far the car left its lane in tests that still count as passed because of the tolerance."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,20 +15,20 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """The passed tests of one severity: how many there are, and how far outside its lane the car was at
-    most."""
+    """The passed tests of one severity: their number, and the largest extent to which the car was outside
+    its lane."""
 
     severity: Severity
     tests: int
     share: float
-    """Largest share of the car's bounding box outside its lane, 0 to 1."""
+    """Largest fraction of the car's bounding box outside its lane, 0 to 1."""
     beyond: float | None
     """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Counts the passed roads of a study by severity; returns one ``Passed`` for each severity, the
-    mildest first."""
+    """Counts the passed roads of a study by severity, and returns one ``Passed`` per severity, the mildest
+    severity first."""
     kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
     found = []
     for name in SEVERITIES:
@@ -40,8 +40,8 @@ def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
 
 
 def passed_tests(record: Record) -> list[Passed]:
-    """Counts the passed tests of a campaign by severity in its store; returns the same as
-    ``passed_roads``."""
+    """Counts the passed tests in a campaign's database by severity, and returns one ``Passed`` per
+    severity, the mildest severity first."""
     rows = record.query(
         "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
         "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",

@@ -30,11 +30,12 @@ BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0)
 
 
 def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
-    """Returns pictures of roads of three parts and a table row for every part; None if there are no roads.
+    """Returns pictures of the roads of three study parts and a table row for every part; None if there are no
+    roads.
 
     Args:
         parts: the parts of the study.
-        size: side of the map, metres.
+        size: side length of the square map, metres.
     """
     made = [part for part in parts if part.roads]
     if not made:
@@ -83,8 +84,8 @@ def _thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
 
 
 def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
-    """Returns a section with a thumbnail of every road, which links to its run; ``size``: side of the
-    map, metres."""
+    """Returns a section with a thumbnail of every road, which links to its run; ``size`` is the side
+    length of the square map, metres."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "
@@ -130,12 +131,12 @@ def feature_map(
     """Returns a map of two features as a figure; empty if the map would show nothing.
 
     Args:
-        name: first part of the name of its file.
+        name: first part of the name of the figure's file.
         counts: number of roads or tests in each map cell, ``(CELLS, CELLS)``; rows are the second feature.
         pair: the features along the horizontal and the vertical axis.
         bounds: smallest and largest value of each feature on the map.
         what: what is counted, such as "roads".
-        caption: its caption, in which {} stands for the number of filled cells.
+        caption: caption of the figure, in which {} stands for the number of filled cells.
     """
     if not is_map(counts):
         return []

@@ -1,4 +1,5 @@
-"""Tests whether a count depends on the description, with a contingency table as in the thesis."""
+"""Tests with a contingency table, as in the thesis, whether a count of roads (such as valid roads) depends
+on the description."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -15,7 +16,7 @@ class Count(NamedTuple):
     hits: int
     """Number of roads with the property."""
     total: int
-    """Number of roads with or without the property."""
+    """Number of all roads of the prompt, with and without the property."""
     href: str = ""
     """Address of the picture or table of these roads; empty for no link."""
 
@@ -26,30 +27,32 @@ class Source(NamedTuple):
     name: str
     counts: tuple[Count, ...]
     slug: str
-    """The source's name in the names of files."""
+    """The name of the designer or of the thesis, as it is used in file names."""
 
     @property
     def hits(self) -> int:
-        """Number of roads of all prompts that have the property."""
+        """Number of roads that have the property, summed over all prompts."""
         return sum(count.hits for count in self.counts)
 
     @property
     def total(self) -> int:
-        """Number of roads of all prompts."""
+        """Number of all roads, summed over all prompts."""
         return sum(count.total for count in self.counts)
 
     def table(self) -> list[list[int]]:
-        """Returns the counts as rows ``(prompts, 2)``: roads with the property, roads without it."""
+        """Returns the contingency table ``(prompts, 2)``: the number of roads with the property, and the
+        number without it."""
         return [[count.hits, count.total - count.hits] for count in self.counts]
 
 
 def chi_squared_blocks(source: Source, hit: str, miss: str, name: str) -> list[Block]:
-    """Returns the contingency table with expected counts and terms, and a paragraph with the test results.
+    """Returns the contingency table with expected counts and the chi-squared terms of its cells, and a
+    paragraph with the test results.
 
     Args:
-        source: the counts.
-        hit: heading of the roads that have the property.
-        miss: heading of the roads that do not have it.
+        source: the counts of one designer or of the thesis.
+        hit: column heading for roads that have the property.
+        miss: column heading for roads that do not have the property.
         name: name of the table's files.
     """
     found = chi_squared(source.table())

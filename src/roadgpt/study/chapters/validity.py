@@ -1,4 +1,5 @@
-"""Makes the sections that count roads by prompt: valid roads, and roads on which the car left its lane."""
+"""Makes the sections that count, for each prompt, the valid roads and the roads on which the car left its
+lane."""
 
 import textwrap
 from collections.abc import Callable, Sequence
@@ -29,13 +30,13 @@ Parts = Sequence[StudyPartRecord]
 
 
 class Kind(NamedTuple):
-    """A set of rules by which roads are counted as valid: its names in files and in reports, and its
-    property."""
+    """A rule set by which roads are counted as valid: its name in files, its name in reports, and the
+    RoadRecord property that holds its result."""
 
     slug: str
     name: str
     which: str
-    """Name of the boolean property of a RoadRecord."""
+    """Name of the boolean property of RoadRecord that is True for valid roads, such as "is_valid"."""
 
 
 STRICT = Kind("strict", "strict rules", "is_valid")
@@ -45,7 +46,7 @@ KINDS = (STRICT, SOUND, SBFT)
 
 
 def of_thesis(parts: Parts) -> list[StudyPartRecord]:
-    """Returns the parts whose prompts are in the thesis' table."""
+    """Returns the study parts whose prompts are in the thesis' table."""
     return [part for part in parts if part.words in THESIS]
 
 
@@ -60,12 +61,12 @@ def _source(parts: Parts, designer: str, which: str, of: str, name: str, slug: s
 
 
 def valid_source(designer: str, parts: Parts, kind: Kind) -> Source:
-    """Counts the roads of one designer that are valid by one set of rules, for each prompt."""
+    """Returns, for each prompt, how many roads of one designer are valid by one rule set."""
     return _source(parts, designer, kind.which, "", f"{designer}, {kind.name}", f"{designer}-{kind.slug}")
 
 
 def left_source(designer: str, parts: Parts) -> Source:
-    """Counts the drives of one designer's valid roads in which the car left its lane, for each prompt."""
+    """Returns, for each prompt, on how many driven roads of one designer the car left its lane."""
     return _source(parts, designer, "has_left", "is_driven", designer, designer)
 
 
@@ -82,8 +83,7 @@ THESIS_LEFT = Source(
 
 
 def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on validity by each set of rules; ``has_baseline`` adds the counts of the
-    thesis."""
+    """Returns the section on validity by each rule set; ``has_baseline`` adds the numbers of the thesis."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
@@ -109,7 +109,7 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
 
 
 def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on lane departures on valid roads; ``has_baseline`` adds the counts of the
+    """Returns the section on lane departures on valid roads; ``has_baseline`` adds the numbers of the
     thesis."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]

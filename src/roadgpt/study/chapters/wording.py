@@ -36,7 +36,8 @@ def plural(n: int, word: str) -> str:
 
 
 def row(*values: Raw | TableCell) -> list[TableCell]:
-    """Returns the values as cells of a table row; a value that is a cell already stays as it is."""
+    """Returns a table row in which each value is a TableCell; values that already are a TableCell stay
+    unchanged."""
     return [value if isinstance(value, TableCell) else cell(value) for value in values]
 
 
@@ -48,19 +49,21 @@ def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
 
 
 def share_cell(share: float, text: str = "") -> TableCell:
-    """Returns a share (0 to 1) as a table cell: a number in CSV files; on the page the text, or per cent."""
+    """Returns a share (0 to 1) as a table cell: a number in CSV files; on the page the given text, or a
+    percentage if there is no text."""
     return cell(round(share, 6), text or percent(share))
 
 
 def interval_cell(interval: Interval) -> TableCell:
-    """Returns an interval of shares as a table cell: numbers from 0 to 1 in CSV files, per cent on the
-    page."""
+    """Returns a confidence interval of a proportion as a table cell: numbers from 0 to 1 in CSV files,
+    percentages on the page."""
     low, high = interval
     return cell(f"{low:.4f} to {high:.4f}", f"{100 * low:.1f} to {100 * high:.1f} %")
 
 
 def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
-    """Returns five table cells: k, n, k / n, Clopper and Pearson's interval, and Wilson's interval."""
+    """Returns five table cells for a proportion: k, n, k / n, Clopper and Pearson's interval, and Wilson's
+    interval."""
     if not n:
         return [cell(k, href=href), *row(n, None, None, None)]
     exact, score = interval_cell(clopper_pearson(k, n)), interval_cell(wilson(k, n))
@@ -68,15 +71,16 @@ def share_cells(k: int, n: int, href: str = "") -> list[TableCell]:
 
 
 def drawn_share(series: int, k: int, n: int, text: str = "") -> Share:
-    """Returns the share k of n for a forest plot, with Wilson's interval and a text, 'k of n' by default."""
+    """Returns a row of a forest plot: the proportion k / n with Wilson's interval, and a text ('k of n' by
+    default)."""
     return Share(series, k / n, *wilson(k, n), text or f"{k} of {n}")
 
 
 def folded(title: str, lines: Sequence[Block]) -> list[Block]:
-    """Returns lines about roads as one folded block, 100 lines at most; empty if there are none.
+    """Returns a collapsible block with one line per road, at most 100 lines; empty if there are no lines.
 
     Args:
-        title: title of the block, to which the number of lines is added.
+        title: title of the block; the number of lines is appended to it.
         lines: the lines, one for each road.
     """
     if not lines:
@@ -86,8 +90,8 @@ def folded(title: str, lines: Sequence[Block]) -> list[Block]:
 
 
 def near_and_far(near: tuple[float, str] | None, far: tuple[float, str] | None) -> list[str]:
-    """Returns sentences on the passed drive nearest to failing and on the failed drive that went farthest
-    out.
+    """Returns a sentence on the passed drive that came closest to failing, and one on the failed drive in
+    which the car went farthest out of its lane.
 
     Args:
         near: smallest margin of the drives that kept their lane, metres, and the drive's name; None if there

@@ -2,15 +2,15 @@
 
     SURVEY.toml or a study --new--> a folder --serve--> answers.sqlite --analyse--> report, tables, figures
 
-plan, sampling    say which roads are rated: ``read_plan`` reads a file, ``plan_from_runs`` draws them
-item_criteria     finds the criteria in which a road is rated, and measures the road in them
+plan, sampling    select the roads: ``read_plan`` reads SURVEY.toml, ``plan_from_runs`` selects at random
+item_criteria     finds the criteria by which a road is rated, and computes its scores for them
 build, media      make the survey's folder: plots, films, 3-D views, ``survey.json``
-survey, questions define the survey as raters see it
+survey, questions define the texts, roads and questions that raters see
 serving           makes the links and runs the server until Ctrl-C; needs the extra ``survey``
 server, limits    limit connections and requests
 app, pages        the Starlette application, and its Jinja2 pages from ``templates``
-store, answers    keep the answers on disk, and turn them into rows
-synthetic         makes up raters, to try out the analysis
+store, answers    keep the answers on disk, and convert them to table rows
+synthetic         simulates raters, to try out the analysis
 analysis, tally   analyse the answers; ``report_blocks`` and ``rating_charts`` make tables and figures
 
 Import each function from its own module, so that serving does not load the modules that draw.

@@ -1,4 +1,4 @@
-"""Analyses a survey: makes figures, tables and a report from the answers of people or of made-up raters."""
+"""Analyses a survey: makes figures, tables and a report from the answers of people or of simulated raters."""
 
 from pathlib import Path
 
@@ -22,14 +22,15 @@ MADE_UP = "SYNTHETIC: made-up raters. Nobody was asked; this tries out the analy
 def load_answers(
     folder: Path | str, number: int | None = None, seed: int = 0, agreement: float = 0.8
 ) -> Answers:
-    """Returns the answers to a survey, or answers of made-up raters, for which the file of answers is not
-    opened.
+    """Returns the answers that people gave to a survey, or answers of simulated raters.
+
+    If raters are simulated, the file with people's answers is not opened.
 
     Args:
         folder: the survey's folder.
-        number: number of made-up raters; None: the answers of people are returned.
-        seed: seed of the made-up raters.
-        agreement: how often made-up raters agree, 0 to 1; see ``synthetic``.
+        number: number of simulated raters; None: the answers of people are returned.
+        seed: seed of the simulated raters.
+        agreement: how often simulated raters agree, 0 to 1; see ``synthetic``.
 
     Raises:
         UsageError: there is no survey, or nobody has answered yet.
@@ -58,15 +59,15 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
 
     Args:
         answers: the answers.
-        out: the folder, which is made if it does not exist.
-        command: the command that repeats the analysis, which the report shows; empty: none is shown.
+        out: the folder for the analysis, which is created if it does not exist.
+        command: the command that repeats the analysis, as shown in the report; empty: none is shown.
 
     Returns:
         The path of the HTML page.
 
     Raises:
-        UsageError: the folder contains an analysis of made-up raters and the answers are those of people, or
-            the other way round.
+        UsageError: the folder contains an analysis of simulated raters and the answers are those of people,
+            or the other way round.
         RoadGPTError: a file cannot be written.
     """
     out = Path(out)
@@ -84,7 +85,7 @@ def analyse(answers: Answers, out: Path | str, command: str = "") -> Path:
 
 
 def page_of(answers: Answers, figures: Path, command: str = "") -> Page:
-    """Returns the page with the report, and draws its figures into the existing folder ``figures``."""
+    """Returns the report as a page, and writes its figures into the folder ``figures``, which must exist."""
     is_synthetic = answers.source == "synthetic"
     match, alike = tally(answers, "alignment"), tally(answers, "similarity")
     counts = about_counts(answers)

@@ -1,4 +1,4 @@
-"""Turns the answers to a survey into rows, one for each answer, which are exported and analysed."""
+"""Converts the answers to a survey into table rows, one row per answer, for export and analysis."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -30,7 +30,8 @@ class AnswerRow(NamedTuple):
     score: int | None
     """The score of a rating, 1 to 5; None if the question is not a rating."""
     page_of_rater: int
-    """Number of the page on which this rater saw the question, from 1."""
+    """Number of the page, counted from 1, on which this rater saw the question; raters see pages in
+    different orders."""
 
 
 @dataclass(frozen=True)
@@ -82,12 +83,12 @@ def answers_in(store: AnswerStore, survey: Survey) -> Answers:
 def answers_of_raters(
     survey: Survey, given: Mapping[str, Mapping[str, str]], source: Source, invited: int, withdrawn: int = 0
 ) -> Answers:
-    """Returns the given answers as rows.
+    """Returns the answers of several raters as table rows.
 
     Args:
         survey: the survey.
-        given: the answers of each rater, by the digest of the rater's token and by question.
-        source: whether the raters are people or made up.
+        given: for each rater, identified by the digest of the token, the answers by question.
+        source: whether the raters are people or simulated.
         invited: number of invited raters.
         withdrawn: number of raters who withdrew.
     """
@@ -126,5 +127,6 @@ def _attention(survey: Survey, given: Mapping[str, str]) -> Attention:
 
 
 def csv_of(rows: Sequence[AnswerRow]) -> str:
-    """Returns the rows as CSV; text that a spreadsheet would run as a formula gets an apostrophe in front."""
+    """Returns the rows as CSV; text that a spreadsheet would evaluate as a formula is prefixed with an
+    apostrophe."""
     return csv_text(AnswerRow._fields, ([unformulated(value) for value in row] for row in rows))

@@ -1,14 +1,14 @@
 """Answers requests about one survey, as a Starlette application.
 
 /static/NAME                                    the style sheet and the script
-/join/SHARED                                    adds whoever agrees as a rater, if the survey is open to all
+/join/SHARED                                    adds a rater who agrees, if the survey is open to all
 /r/TOKEN                                        consent, or the first page with an unanswered question
 /r/TOKEN/N             GET, POST a form         page N of this rater
 /r/TOKEN/answer        POST JSON                saves one answer and confirms it when it is on the disk
 /r/TOKEN/media/NAME                             a picture, a film or a 3-D view
 /r/TOKEN/done                                   thanks
 /r/TOKEN/mine                                   lists everything that is stored about this rater
-/r/TOKEN/withdraw      POST a form              deletes it
+/r/TOKEN/withdraw      POST a form              deletes all of this rater's answers
 """
 
 import hmac
@@ -62,7 +62,7 @@ def _in_thread(answer: Answer) -> Callable[[Request], Awaitable[Response]]:
 
 
 class SurveyApp:
-    """An ASGI application that serves one survey. Its endpoints run in several threads at once.
+    """An ASGI application that serves one survey. Several threads may handle requests at the same time.
 
     Args:
         folder: the survey's folder.

@@ -27,11 +27,12 @@ CAMERAS = {"chase": "film from behind the car", "bonnet": "film from the hood ca
 
 
 def make_survey(plan: SurveyPlan, base: Path, out: Path | str, tell: Tell = lambda _: None) -> Survey:
-    """Makes the folder of a survey. Films that exist are kept, so a stopped call can be repeated.
+    """Makes the folder of a survey. Existing films are kept, so that an interrupted call can be repeated
+    without filming again.
 
     Args:
         plan: the contents of SURVEY.toml.
-        base: the folder to which the paths of runs are relative.
+        base: the folder to which the paths of runs in the plan are relative.
         out: the survey's folder; a survey in it is replaced if nobody has been invited to it yet.
         tell: called with a sentence before every step.
 

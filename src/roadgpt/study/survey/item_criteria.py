@@ -1,4 +1,4 @@
-"""Finds the criteria in which people rate a road, and measures the road in them for comparison."""
+"""Finds the criteria by which people rate a road, and computes scores of the road for the same criteria."""
 
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.errors import UsageError
@@ -19,7 +19,8 @@ ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
 def criteria_of(brief: Brief | None) -> tuple[str, ...]:
     """Returns the criteria that a description mentions: "turns", "incline", "order".
 
-    A general description such as "a road" mentions none, and is rated only as a whole, as in the thesis.
+    A general description such as "a road" mentions no criterion: its roads are rated only as a whole, as in
+    the thesis.
     """
     if brief is None:
         return ()
@@ -44,10 +45,10 @@ def _has_a_number(clause: Clause) -> bool:
 
 
 def match_scores(run: Run, prompt: str) -> dict[str, float]:
-    """Returns 1 for each criterion that a road keeps and 0 for each other one.
+    """Returns, for each criterion, 1 if a road meets it and 0 if not.
 
-    Criteria that a survey adds are not measured. The result is empty if the road was not made from this
-    description.
+    Criteria that only this survey defines are not measured. The result is empty if the road was not made from
+    this description.
     """
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}
@@ -56,7 +57,8 @@ def match_scores(run: Run, prompt: str) -> dict[str, float]:
 
 
 def similarity_scores(one: Run, other: Run) -> dict[str, float]:
-    """Returns how similar two roads are, 0 to 1, by criterion; empty if one of them cannot be compared."""
+    """Returns, for each criterion, how similar two roads are (0 to 1); empty if one of them cannot be
+    compared."""
     if one.road is None or other.road is None:
         return {}
     try:

@@ -77,12 +77,14 @@ def _refused_with(scope: Scope) -> int:
 
 
 def refusal(path: str, status: int, sentence: str = "") -> Response:
-    """Returns a response of one sentence, after which the connection is closed.
+    """Returns a response that consists of one sentence and closes the connection.
 
     Args:
-        path: path of the request; requests to ``/answer``, sent by the pages' script, are answered in JSON.
+        path: path of the request. Requests to ``/answer`` come from the pages' script and are answered in
+            JSON.
         status: HTTP status.
-        sentence: what is wrong; if empty, the standard phrase of the status. It must not quote the request.
+        sentence: what is wrong with the request; if empty, the standard phrase of the HTTP status is sent. It
+            must not quote the request.
     """
     sentence = sentence or f"{HTTPStatus(status).phrase}."
     if path.endswith("/answer"):

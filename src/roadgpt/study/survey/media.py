@@ -1,8 +1,8 @@
 """Makes the pictures, films and 3-D views that raters see; they contain no verdict and no measurements.
 
-The plots of all roads of a survey have the same axes, as in RoadGPT's thesis, so that no road fills its plot
-more than another. If all roads fit, these are the thesis' axes: x and y from 0 to 220 m, 200 m along the
-road, 20 m of height.
+The plots of all roads of a survey have the same axes, as in RoadGPT's thesis, so that roads can be compared
+by size. If all roads fit, the axes are those of the thesis: x and y from 0 to 220 m, 200 m along the road,
+and 20 m of height.
 """
 
 from collections.abc import Sequence
@@ -127,7 +127,8 @@ def can_film() -> bool:
 
 
 def make_film(runs: Sequence[Run], path: Path, view: str) -> None:
-    """Writes a film of one drive, or of two drives in a split screen. It ends before the outcome is shown.
+    """Writes a film of one drive, or of two drives in a split screen. The film ends before the outcome is
+    visible.
 
     Args:
         runs: one run or two, with their drives.

@@ -29,20 +29,20 @@ class RoadPlan(Frozen):
     """A road that people compare with its description."""
 
     run: Words
-    """Folder of a run, or its file test.NNNN.json, relative to SURVEY.toml."""
+    """Path of a run's folder or of its file test.NNNN.json, relative to SURVEY.toml."""
     prompt: str = ""
-    """The description; empty: the description from which the road was made."""
+    """The description that raters see; empty: the description from which the road was made."""
     criteria: tuple[Words, ...] | None = None
     """The criteria that are rated; None: those that the description mentions."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The paths of its runs, of which there is one."""
+        """The path of the road's run, as a tuple of one element."""
         return (self.run,)
 
 
 class PairPlan(Frozen):
-    """Two roads of one description that people compare with each other."""
+    """Two roads made from one description, which people compare with each other."""
 
     runs: tuple[Words, Words]
     prompt: str = ""
@@ -79,7 +79,7 @@ class SurveyPlan(Frozen):
 
     @property
     def said_purpose(self) -> str:
-        """The purpose of the survey as raters read it."""
+        """The text on the purpose of the survey that raters read."""
         if self.purpose:
             return self.purpose
         minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)
@@ -123,7 +123,7 @@ def read_plan(path: Path | str) -> SurveyPlan:
 
 
 def plan_text(plan: SurveyPlan) -> str:
-    """Returns a plan as the text of a SURVEY.toml, which users can edit."""
+    """Returns the text of a SURVEY.toml file for a plan, so that users can edit it."""
     own: dict[str, Any] = plan.model_dump(mode="json", exclude={"about", "alignment", "similarity"})
     own["purpose"] = plan.said_purpose
     lines = ["# The survey. Change it and say: roadgpt study survey new SURVEY.toml --out DIR"]

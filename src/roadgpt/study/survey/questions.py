@@ -1,7 +1,8 @@
 """Defines the questions of the three parts of the thesis' survey, with its answers and criteria.
 
-Source: RoadGPT's thesis, section 6.2. It names all five answers about a road and its description. Of the
-five answers about two roads it names the first, the second and the last; the third and the fourth are ours.
+Source: RoadGPT's thesis, section 6.2. The thesis gives all five answers to questions about a road and its
+description. For questions about two roads, it gives only the first, the second and the last of five answers;
+the third and the fourth are our additions.
 """
 
 from typing import Literal
@@ -54,16 +55,16 @@ class Question(Frozen):
 
     @property
     def is_rating(self) -> bool:
-        """True if the question is a rating of a road."""
+        """True if the answer is a rating of a road or of two roads."""
         return bool(self.criterion)
 
     def takes(self, value: str) -> bool:
-        """Returns whether a value is a possible answer; an empty value, which deletes an answer, always
-        is."""
+        """Returns whether a value is a valid answer. An empty value, which deletes an earlier answer, is
+        always valid."""
         return value in self.answers or not value if self.answers else len(value) <= MOST_LETTERS
 
     def score(self, value: str) -> int:
-        """Returns the position of an answer on its scale, from 1."""
+        """Returns the position of an answer on the scale of answers, counted from 1."""
         return self.answers.index(value) + 1
 
 
@@ -109,9 +110,9 @@ def rating_questions(item: str, part: Rated, criteria: tuple[str, ...]) -> tuple
     one asks for remarks.
 
     Args:
-        item: id of the road or of the pair.
+        item: id of the road or of the two roads in the survey.
         part: "alignment" for a road and its description, "similarity" for two roads.
-        criteria: the criteria as raters read them.
+        criteria: the names of the criteria that raters read.
     """
     if part == "alignment":
         overall, each = (

@@ -34,12 +34,13 @@ MADE_UP = "SYNTHETIC: made-up raters, no data of people"
 
 @in_our_style
 def rating_bars(found: RatingTally, folder: Path, is_synthetic: bool) -> Figure:
-    """Draws all ratings of one part, a bar for each item and criterion.
+    """Draws all ratings in one part of the survey, one bar for each criterion of each item (a road or a pair
+    of roads).
 
     Args:
-        found: the ratings.
+        found: the ratings in one part of the survey.
         folder: the folder into which the figure is written as PNG, PDF and SVG.
-        is_synthetic: True if the raters are made up; the figure then says so.
+        is_synthetic: True if the raters are simulated; the figure then says so.
     """
     items = list(dict.fromkeys(unit.item.id for unit in found.units))
     high = TOP + BOTTOM + len(items) * (HEAD + GAP) + len(found.units) * ROW
@@ -112,9 +113,9 @@ def about_bars(
     """Draws how often each answer was given to each question about the raters.
 
     Args:
-        counts: the text of each question, and each answer with the number of raters who gave it.
+        counts: for each question its text, and each answer with the number of raters who gave it.
         folder: the folder into which the figure is written as PNG, PDF and SVG.
-        is_synthetic: True if the raters are made up; the figure then says so.
+        is_synthetic: True if the raters are simulated; the figure then says so.
     """
     rows = -(-len(counts) // 2)
     heights = [

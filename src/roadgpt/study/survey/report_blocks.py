@@ -17,7 +17,7 @@ Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
 
 
 def marked(block: Block) -> Block:
-    """Returns a block of a report on made-up raters with captions and file names that say "synthetic"."""
+    """Returns a block of a report with "synthetic" added to captions and file names, for simulated raters."""
     if isinstance(block, Details):
         return replace(block, blocks=[*map(marked, block.blocks)])
     if not isinstance(block, Table | Figure):
@@ -31,8 +31,8 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
 
     Args:
         answers: all answers.
-        match: the ratings of roads and descriptions.
-        alike: the ratings of two roads.
+        match: the ratings of how well roads match their descriptions.
+        alike: the ratings of how similar two roads are.
     """
     used = len({row.rater for row in answers.used})
     lines = [
@@ -69,14 +69,14 @@ def raters(answers: Answers) -> Table:
 
 
 def about(counts: Counts) -> Details:
-    """Returns a folded table of the answers about the raters."""
+    """Returns a collapsible table of the answers to questions about the raters."""
     rows = [row(text, answer, count) for text, answers in counts for answer, count in answers if count]
     table = Table("about", "Who answered", ("question", "answer", "raters"), rows)
     return Details("The same as a table", [table])
 
 
 def ratings(found: RatingTally) -> Table:
-    """Returns a table with the ratings of every item in every criterion."""
+    """Returns a table with the ratings of every item (a road or a pair of roads), by criterion."""
     answers = found.units[0].question.answers
     firsts = {unit.item.id: unit.question.id for unit in reversed(found.units)}
     rows = [_rating(unit, firsts[unit.item.id] == unit.question.id) for unit in found.units]
@@ -103,9 +103,10 @@ def _rating(unit: Unit, is_first: bool) -> list[TableCell]:
 
 
 def differences(found: RatingTally) -> list[Block]:
-    """Returns a sentence on whether the items differ, by Wilcoxon's test of two items or Friedman's of more.
+    """Returns a sentence on whether the overall ratings differ between items (roads, or pairs of roads).
 
-    If three or more items differ, a table with Conover's test of every pair follows.
+    Two items are compared by Wilcoxon's test, and three or more by Friedman's test. If Friedman's test finds
+    a significant difference, a table follows with the p-values of Conover's test for every two items.
     """
     units = found.overall
     if len(units) < 2 or not found.raters:
@@ -136,7 +137,7 @@ def differences(found: RatingTally) -> list[Block]:
 
 
 def agreements(tallies: Sequence[RatingTally]) -> Table:
-    """Returns a table of Krippendorff's alpha by part and criterion."""
+    """Returns a table of Krippendorff's alpha by part of the survey and criterion."""
     rows = []
     for found in tallies:
         groups = [(criterion, found.of(criterion)) for criterion in found.criteria]
@@ -155,7 +156,8 @@ def agreements(tallies: Sequence[RatingTally]) -> Table:
 
 
 def measurements(tallies: Sequence[RatingTally]) -> list[Block]:
-    """Returns tables with the mean scores of people beside the measured ones, and their rank correlations."""
+    """Returns tables that compare the mean scores given by people with measured scores, with their rank
+    correlations."""
     blocks: list[Block] = []
     heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
     for found in tallies:

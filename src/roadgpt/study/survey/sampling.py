@@ -1,4 +1,5 @@
-"""Draws roads for a survey from a study's folder: one road of each description, and pairs of roads."""
+"""Selects roads for a survey at random from a study's folder: one road per description to be compared with
+the description, and pairs of roads to be compared with each other."""
 
 from pathlib import Path
 
@@ -16,14 +17,15 @@ DEEPEST = 4  # folders below the study's in which campaigns are looked for
 
 
 def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pairs: int = 2) -> SurveyPlan:
-    """Returns a plan with valid roads that are drawn at random from every folder of runs inside a folder.
+    """Returns the plan of a survey, with valid roads selected at random from each folder of runs.
 
     Args:
         study: a folder of runs, or a folder that contains several folders of runs.
         asks: who conducts the survey.
         contact: where raters can send questions.
-        seed: seed of the draw; the same seed draws the same roads.
-        pairs: number of descriptions of which two more roads are drawn, to be compared with each other.
+        seed: seed of the random selection; the same seed selects the same roads.
+        pairs: number of descriptions for which raters also compare two roads with each other. These are two
+            additional roads if the description has at least three valid roads.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.

@@ -1,4 +1,4 @@
-"""Serves a survey by uvicorn, with limits on connections that uvicorn does not have."""
+"""Serves a survey with uvicorn, and adds limits on connections that uvicorn lacks."""
 
 import logging
 import socket
@@ -24,7 +24,8 @@ WAITS_FOR_CLIENT = (h11.IDLE, h11.SEND_BODY)
 
 
 class LimitedConnection(H11Protocol):
-    """One connection of a rater. It is closed if the rater's side takes too long to send or to receive."""
+    """One connection of a rater. It is closed if the rater's browser takes too long to send or to receive
+    data."""
 
     def __init__(self, *args: Any, **more: Any) -> None:
         super().__init__(*args, **more)
@@ -47,7 +48,7 @@ class LimitedConnection(H11Protocol):
         self._watch()
 
     def on_response_complete(self) -> None:
-        """Limits the time until the next request has arrived, after an answer is complete."""
+        """Starts the time limit for the next request after a response is complete."""
         self._stop("request")
         super().on_response_complete()
         self._watch()
@@ -86,7 +87,8 @@ class LimitedConnection(H11Protocol):
 
 
 class Server:
-    """Serves one survey. It listens when it is made, and answers requests while ``serve_forever`` runs.
+    """Serves one survey. The constructor starts listening; requests are answered while ``serve_forever``
+    runs.
 
     Raises:
         UsageError: the server cannot listen on this host and port.
@@ -127,7 +129,7 @@ class Server:
     def serve_forever(self) -> None:
         """Answers requests until ``stop`` is called or a KeyboardInterrupt is raised in this thread.
 
-        uvicorn runs in a thread of its own, because it would treat a KeyboardInterrupt that is raised within
+        uvicorn runs in a separate thread. Otherwise, it would treat a KeyboardInterrupt that is raised during
         a request as an error of the application, and continue.
         """
         thread = Thread(target=self._run, daemon=True)

@@ -25,7 +25,8 @@ Tell = Callable[[str], None]
 
 
 def open_server(folder: Path | str, host: str, port: int, is_open: bool = False) -> "Server":
-    """Returns a server for the survey in a folder. It listens; ``serve_forever`` makes it answer requests.
+    """Returns a server for the survey in a folder. It already listens; call ``serve_forever`` to answer
+    requests.
 
     Args:
         folder: the survey's folder.
@@ -34,7 +35,8 @@ def open_server(folder: Path | str, host: str, port: int, is_open: bool = False)
         is_open: True if anyone may join by a shared link.
 
     Raises:
-        UsageError: there is no survey, the server cannot listen there, or the extra ``survey`` is missing.
+        UsageError: there is no survey, the server cannot listen on this host and port, or the extra
+            ``survey`` is missing.
         RoadGPTError: the file of answers cannot be opened.
     """
     try:
@@ -68,7 +70,7 @@ def serve(
         tell: called with each line of output.
         host: address to listen on.
         port: port to listen on; 0: a free port.
-        raters: number of raters who have a link of their own, including those who were invited earlier.
+        raters: number of raters with a personal link, including raters who were invited earlier.
         is_open: True if anyone may join by a shared link.
         url: address at which raters reach the server; empty: host and port.
 

@@ -40,7 +40,7 @@ CREATE TABLE IF NOT EXISTS answers (
 
 @dataclass(frozen=True)
 class Rater:
-    """An invited person, who is known only by the digest of a token."""
+    """An invited person, who is identified only by the digest of a random token."""
 
     digest: str
     state: State
@@ -99,7 +99,7 @@ class AnswerStore:
         return token
 
     def rater_of(self, token: str) -> Rater | None:
-        """Returns the rater with a token; None if there is none. The time it takes does not depend on the
+        """Returns the rater with a token; None if there is none. The search takes equally long for every
         token."""
         digest = digest_of(token)
         found = self._read("SELECT digest, state, agreed_on FROM raters WHERE digest = ?", digest)
@@ -107,7 +107,8 @@ class AnswerStore:
         return rater if hmac.compare_digest(rater.digest, digest) else None
 
     def shared(self) -> str:
-        """Returns the token of the shared link, which is made at the first call and then stays the same."""
+        """Returns the token of the shared link. The first call creates the token; later calls return the
+        same one."""
         with self._writing() as file:
             row = file.execute("SELECT token FROM doors").fetchone()
             token = str(row[0]) if row else new_token()
@@ -116,7 +117,7 @@ class AnswerStore:
         return token
 
     def links(self) -> int:
-        """Returns the number of raters who have a link of their own."""
+        """Returns the number of raters who have a personal link."""
         return int(self._read("SELECT count(*) FROM raters WHERE NOT joined")[0][0])
 
     def raters(self) -> list[Rater]:
@@ -133,7 +134,7 @@ class AnswerStore:
             )
 
     def save(self, rater: Rater, answers: Mapping[str, str]) -> bool:
-        """Saves either all answers or none; they are on disk when this returns.
+        """Saves either all answers or none; saved answers are on disk when the method returns.
 
         Args:
             rater: the rater.
@@ -156,7 +157,7 @@ class AnswerStore:
         return dict(self._read("SELECT question, value FROM answers WHERE rater = ?", rater.digest))
 
     def withdraw(self, rater: Rater) -> None:
-        """Deletes all answers of a rater for good: their bytes in the file and in its journal are
+        """Deletes all answers of a rater permanently: their bytes in the file and in its journal are
         overwritten."""
         with self._writing() as file:
             file.execute("DELETE FROM answers WHERE rater = ?", (rater.digest,))
@@ -188,8 +189,8 @@ def new_token() -> str:
 
 
 def code_of(digest: str) -> str:
-    """Returns a short name for a digest. In one of five million surveys, two of 10,000 raters share a
-    name."""
+    """Returns a short name for a digest. With 10,000 raters, the probability that two get the same name is
+    less than one in five million."""
     return digest[:12]
 
 

@@ -1,4 +1,4 @@
-"""Defines a survey as it is served: its texts, roads and questions, which ``survey.json`` contains."""
+"""Defines a survey that can be served: its texts, roads and questions, as stored in ``survey.json``."""
 
 from collections.abc import Mapping
 from functools import cached_property
@@ -29,13 +29,13 @@ class Medium(Frozen):
     """A picture, a film or a 3-D view for raters."""
 
     name: str
-    """Name of its file in the folder ``media``."""
+    """Name of the file in the folder ``media``."""
     kind: Literal["picture", "film", "view"]
     title: str
 
 
 class Item(Frozen):
-    """A road and its description, or two roads of one description."""
+    """What raters judge: one road with its description, or two roads made from one description."""
 
     id: str
     part: Rated
@@ -45,11 +45,11 @@ class Item(Frozen):
     roads: tuple[str, ...] = ()
     """Paths of the roads' runs; raters do not see them."""
     machine: Mapping[str, float] = {}
-    """Measured scores, 0 to 1, by criterion; raters do not see them."""
+    """Measured score (0 to 1) for each criterion; raters do not see these scores."""
 
     @property
     def questions(self) -> tuple[Question, ...]:
-        """The questions about the road or the pair."""
+        """The questions about the road or the pair of roads."""
         return rating_questions(self.id, self.part, self.criteria)
 
 
@@ -76,15 +76,16 @@ class Survey(Frozen):
     about: tuple[Question, ...] = ABOUT
     items: tuple[Item, ...]
     lacks: str = ""
-    """A sentence on the media that are missing; empty if none is missing."""
+    """A sentence that names missing films or other media; empty if no media are missing."""
 
     def of_part(self, part: Part) -> tuple[Item, ...]:
-        """Returns the items of one part, in the order of the file."""
+        """Returns the items in one part of the survey, in the order of ``survey.json``."""
         return tuple(item for item in self.items if item.part == part)
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """All pages in the order of the file; ``pages_for`` returns them in the order of a rater."""
+        """All pages in the order of ``survey.json``; ``pages_for`` returns them in the order in which one
+        rater sees them."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         pages += [
             QuestionPage(part=item.part, questions=item.questions, item=item)
@@ -95,11 +96,12 @@ class Survey(Frozen):
         return (*pages, QuestionPage(part="end", questions=(END,)))
 
     def pages_for(self, digest: str) -> tuple[QuestionPage, ...]:
-        """Returns all pages in the order of one rater, which is always the same for this rater.
+        """Returns all pages in the order in which one rater sees them; the order is always the same for this
+        rater.
 
-        The page about the rater comes first, then the roads in random order, then the pairs in random order,
-        then the last page. The attention check is among the roads; if there are two or more, it is neither
-        first nor last.
+        The page about the rater comes first, then the roads in random order, then the pairs of roads in
+        random order, then the last page. The attention check is one of the pages about roads; if there are
+        two or more roads, it is neither first nor last.
 
         Args:
             digest: digest of the rater's token, hexadecimal.

@@ -1,5 +1,5 @@
-"""Makes up raters, to try out the analysis before people answer. Their answers are never mixed with
-people's."""
+"""Simulates raters, to try out the analysis before people answer. Simulated answers are never mixed with
+answers of people."""
 
 import hashlib
 from collections.abc import Mapping
@@ -19,21 +19,21 @@ REMARK = "synthetic remark of a made-up rater"
 def synthetic(
     survey: Survey, number: int, seed: int = 0, agreement: float = 0.8, failing: float = FAILING
 ) -> Answers:
-    """Returns the answers of made-up raters.
+    """Returns the answers of simulated raters.
 
     Every rating has a hidden true answer, which differs from road to road. A rater gives the true answer with
-    the probability ``agreement`` and otherwise a random answer: Krippendorff's alpha is 1 with ``agreement``
-    1, and near 0 with 0.
+    the probability ``agreement`` and otherwise a random answer. Krippendorff's alpha is therefore 1 if
+    ``agreement`` is 1, and near 0 if ``agreement`` is 0.
 
     Args:
         survey: the survey.
-        number: number of raters.
+        number: number of simulated raters.
         seed: seed of the answers.
         agreement: probability of the true answer, 0 to 1.
-        failing: share of raters who fail the attention check and answer at random, 0 to 1.
+        failing: fraction of raters who fail the attention check and answer at random, 0 to 1.
 
     Raises:
-        UsageError: the number or a share is out of range.
+        UsageError: ``number``, ``agreement`` or ``failing`` is out of range.
     """
     if not 1 <= number <= MOST or not 0 <= agreement <= 1 or not 0 <= failing <= 1:
         raise UsageError(f"made-up raters are 1 to {MOST:,}, and shares lie between 0 and 1")

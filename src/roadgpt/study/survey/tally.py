@@ -1,4 +1,4 @@
-"""Counts ratings: how raters rated each road in each criterion."""
+"""Counts how raters rated each road by each criterion."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ FAVOURABLE = 4  # a score from which an answer speaks for the road, or for liken
 
 @dataclass(frozen=True, eq=False)
 class Unit:
-    """The ratings of one item (a road or a pair) in one criterion by all raters."""
+    """The ratings that all raters gave to one item (a road or a pair of roads) for one criterion."""
 
     item: Item
     question: Question
@@ -34,7 +34,7 @@ class Unit:
 
     @property
     def given(self) -> Array:
-        """The scores without gaps."""
+        """The scores of the raters who answered."""
         return self.scores[np.isfinite(self.scores)]
 
     @property
@@ -57,19 +57,19 @@ class Unit:
 
     @property
     def favourable(self) -> tuple[int, Interval]:
-        """Number of scores 4 and 5, and Wilson's interval of their share."""
+        """Number of scores 4 and 5, and Wilson's interval of their proportion among all scores."""
         count = int((self.given >= FAVOURABLE).sum())
         return count, wilson(count, self.number) if self.number else Interval(float("nan"), float("nan"))
 
     @property
     def measured(self) -> float | None:
-        """The measured score of the item in the criterion, 0 to 1; None if it was not measured."""
+        """The measured score (0 to 1) of the item for this criterion; None if it was not measured."""
         return self.item.machine.get(self.criterion)
 
 
 @dataclass(frozen=True, eq=False)
 class RatingTally:
-    """All ratings of one part of the survey."""
+    """All ratings in one part of the survey: "alignment" or "similarity"."""
 
     part: Rated
     raters: tuple[str, ...]
@@ -77,7 +77,7 @@ class RatingTally:
 
     @property
     def overall(self) -> tuple[Unit, ...]:
-        """The units of the overall question, one for each item."""
+        """The ratings for the overall question, one Unit per item."""
         return self.of(OVERALL)
 
     @property
@@ -86,12 +86,12 @@ class RatingTally:
         return tuple(dict.fromkeys(unit.criterion for unit in self.units))
 
     def of(self, criterion: str) -> tuple[Unit, ...]:
-        """Returns the units of one criterion."""
+        """Returns the ratings for one criterion, one Unit per item."""
         return tuple(unit for unit in self.units if unit.criterion == criterion)
 
 
 def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
-    """Returns the text of each question about the raters, and each answer with the number of raters who
+    """Returns, for each question about the raters, its text, and each answer with the number of raters who
     gave it."""
     given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
     return [
@@ -102,7 +102,7 @@ def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
 
 
 def tally(answers: Answers, part: Rated) -> RatingTally:
-    """Returns the ratings of one part by all raters whose answers are analysed."""
+    """Returns the ratings in one part of the survey by all raters whose answers are analysed."""
     scores = {
         (row.rater, row.question): row.score
         for row in answers.used
