@@ -48,11 +48,12 @@ class Rule(Protocol):
 def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict") -> tuple[Finding, ...]:
     """Returns the findings of all rules of a set, in the order of the rules.
 
-    A road without findings is valid. Otherwise the first finding is the reason for which it is invalid.
+    A road without findings is valid. If there are findings, the first one is given as the reason why the road
+    is invalid.
 
     Args:
         road: The road to check.
-        brief: The requirements that the road should meet; None where there are none.
+        brief: The requirements that the road should meet; None if there are none.
         world: The map and the limits, such as the least radius and the steepest grade.
         rules: Name of the rule set, "strict" or "sbft".
 

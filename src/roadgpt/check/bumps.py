@@ -20,7 +20,8 @@ def asks_for_bumps(brief: Brief | None) -> bool:
 
 
 def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
-    """Returns start and end stations in metres of the parts between turns where a crest or dip is requested.
+    """Returns the start and end stations, in metres, of the parts between turns where a crest or dip is
+    requested.
 
     If the description does not fix the number of turns before the crest or dip, all parts between turns are
     returned. Each part extends 30 m into the neighbouring turns.

@@ -1,4 +1,4 @@
-"""Describes a finished road by a Brief, the form in which descriptions are represented."""
+"""Describes a finished road as a Brief, the data structure for descriptions."""
 
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.check.measures import LEVEL, MeasuredFeature, Measures, measure

@@ -40,10 +40,10 @@ def steepest(road: Road) -> tuple[float, float]:
 
 
 def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
-    """Returns start and end stations (m) of the parts where the grade changes, and its change per metre.
+    """Returns the start and end stations (m) of each part where the grade changes, and the change per metre.
 
-    The change is negative on a crest. Each parabola is one part. Other profiles are divided into parts of
-    about ``KINK`` metres, and the change of grade at a kink is distributed over its part.
+    The change of grade is negative on a crest. Each parabola is one part. Other profiles are divided into
+    parts of about ``KINK`` metres, and the change of grade at a kink is distributed over its part.
     """
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)

@@ -1,4 +1,4 @@
-"""Matches the turns and straights of a measured road with the requested ones of an Outline.
+"""Matches the turns and straights of a measured road with those that an Outline requests.
 
 Turns are matched one to one and in order. A requested straight matches either the whole straight between two
 turns of the road, or a piece of that straight with a uniform class of grade (up, flat or down). If several
@@ -41,7 +41,7 @@ IMPOSSIBLE = _Cost(inf, ())
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
-    """Returns whether a measured turn or straight meets all requirements of a requested one."""
+    """Returns whether a measured turn or straight meets all requirements for the requested one."""
     return (
         stretch.kind == feature.kind
         and feature.side in (None, stretch.side)
@@ -69,7 +69,8 @@ def turn_complaints(
         number: Number of the turn, from 1.
         turn: The measured turn.
         feature: The requested turn.
-        side: "left" or "right" where turns must alternate; None to use the side of ``feature``.
+        side: the required side ("left" or "right") if turns must alternate; None to require the side that
+            ``feature`` states.
     """
     if side is None and fits(turn, feature):
         return ()

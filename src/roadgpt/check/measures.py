@@ -13,8 +13,8 @@ and grades in percent, uphill positive. The centre line is resampled about every
   into pieces where its grade, over 10 m windows, changes between up (1 % or more), flat and down (-1 % or
   less). Pieces shorter than 6 m are ignored.
 
-Source: the definitions of an independent program that checks roads; ``tests/authorities`` compares the
-measurements of the two.
+Source: the definitions of an independent road checker. ``tests/authorities`` compares its measurements with
+those of this module.
 """
 
 from collections.abc import Sequence
@@ -94,7 +94,7 @@ class Measures:
     steepest: float
     """Greatest absolute grade over any 10 m in percent."""
     hills: int
-    """Number of changes between climbing and falling, by the grade over 20 m."""
+    """How often the road changes between climbing and falling; grades are averaged over 20 m."""
     radius: float
     """Radius in metres at the tightest place of the road."""
     turning: float
@@ -124,7 +124,7 @@ class Measures:
         return tuple(out)
 
     def count(self, side: Literal["left", "right"]) -> int:
-        """Returns the number of turns to the left or to the right."""
+        """Returns the number of turns to the given side, left or right."""
         return sum(turn.side == side for turn in self.turns)
 
 

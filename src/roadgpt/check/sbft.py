@@ -10,7 +10,7 @@ reproduced on purpose:
 * the radius is that of the circle through nodes i, i+2, i+4, and the last such triple of nodes is left out.
 
 The competition's validator compares every pair of quads with the library shapely. Here numpy decides all
-pairs that are clear by more than any rounding error, and shapely, imported only if needed, decides the rest.
+pairs for which rounding errors cannot matter. Shapely, imported only if needed, decides the rest.
 """
 
 import math
@@ -87,8 +87,8 @@ def splines(points: Array) -> tuple[Array, Array]:
 def edges(nodes: Array, road_width: float = ROAD_WIDTH) -> tuple[Array, Array]:
     """Returns the left and the right edge points ``(n, 2)`` of a road with nodes ``(n, 2)``.
 
-    Each edge point is perpendicular to the direction from its node to the next one; the last node uses the
-    direction from the previous node.
+    Each edge point is offset from its node at a right angle to the direction to the next node. At the last
+    node, the direction from the previous node is used.
     """
     ahead = np.diff(nodes, axis=0, append=nodes[-2:-1])
     with np.errstate(
@@ -128,7 +128,9 @@ def _doubt(points: Array) -> float:
 
 
 def keeps_clear(quads: Array) -> bool:
-    """Returns whether all quads are valid, neighbours share exactly one side, and all others are disjoint."""
+    """Returns whether all quads are valid, neighbouring quads share exactly one edge, and all other pairs
+    of quads are disjoint.
+    """
     plain = is_convex(quads)
     odd = np.flatnonzero(~plain)
     if odd.size and not _are_valid(quads[odd]):
@@ -191,10 +193,10 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the smallest radius in metres among the ``radii`` of nodes ``(n, 2)``, and a node index.
+    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of a node.
 
-    The index is that of the middle node of the smallest circle. The radius is infinite where no three nodes
-    form a circle: on a straight road, or with fewer than six nodes.
+    The node is the middle one of the three nodes that define the smallest circle. The radius is infinite
+    where no three nodes form a circle: on a straight road, or with fewer than six nodes.
     """
     found = radii(nodes)
     if not found.size:

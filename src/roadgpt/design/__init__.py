@@ -4,13 +4,14 @@ A designer is a class that takes no arguments, or ChatSettings as ``settings``. 
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
-``notes`` are the sentences of rules that objected to the draft before. ``earlier`` are the designs of the
-campaign so far; the new one should differ from all of them. The same arguments give the same Design. If no
-road can meet all requirements on this map, the method raises DesignError with one sentence of advice.
+``notes`` are the objections of the rules to the previous draft, one sentence each. ``earlier`` are the
+designs of the campaign so far; the new one should differ from all of them. The same arguments give the same
+Design. If no road can meet all requirements on this map, the method raises DesignError with one sentence of
+advice.
 
 A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts = False``
-if it must not be called again when rules object; ``geometry``, if its segments must be built in a certain way
-("spline" for RoadGPT's original splines), whatever the user chose.
+if it must not be called again when rules object; ``geometry``, the kind of geometry with which its segments
+must be built, whatever the user chose ("spline" for RoadGPT's original splines).
 """
 
 from collections.abc import Sequence
@@ -32,9 +33,9 @@ class Designer(Protocol):
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
         Args:
-            brief: the requirements.
-            world: the map and the limits of the rules.
-            notes: sentences of the rules that objected to the draft before.
+            brief: the requirements for the road.
+            world: size of the map, and limits that the rules check, such as the steepest grade.
+            notes: objections of the rules to the previous draft, one sentence each.
             earlier: designs of the campaign so far, which are not repeated.
             seed: seed of the random number generator.
 
@@ -56,12 +57,12 @@ def draft(
     """Returns a Design for a Brief, made by the designer of the given name.
 
     Args:
-        brief: the requirements.
-        world: the map and the limits of the rules.
-        notes: sentences of the rules that objected to the draft before.
+        brief: the requirements for the road.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
+        notes: objections of the rules to the previous draft, one sentence each.
         earlier: designs of the campaign so far, which are not repeated.
         seed: seed of the random number generator.
-        designer: name of a plug-in of the kind ``designers``.
+        designer: name of an installed designer.
         chat: settings of the language model, for designers that use one; None for the user's settings.
 
     Raises:
@@ -76,7 +77,7 @@ def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
     """Returns the designer of the given name.
 
     Args:
-        name: name of a plug-in of the kind ``designers``.
+        name: name of an installed designer.
         chat: settings of the language model, for designers that use one; None for the user's settings.
 
     Raises:

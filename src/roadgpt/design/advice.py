@@ -1,6 +1,6 @@
-"""Writes the sentence of a refusal: which requirement no road can meet, and what to ask for instead.
+"""Writes the message for requirements that no road can meet: which one fails, and what to ask for instead.
 
-A length or a map is suggested only if a road could be drafted with it.
+A road length or a map size is suggested only after a road has been drafted with it.
 """
 
 from collections import Counter
@@ -37,9 +37,9 @@ def advice(
     """Returns one sentence that says which requirement could not be met, and what to do.
 
     Args:
-        brief: the requirements.
+        brief: the requirements for the road.
         outline: the same requirements as ranges.
-        world: the map.
+        world: the World, for the size of its map.
         failed: the reasons why drafts failed, with the number of times that each occurred.
         boxes: side in metres of the smallest square around each draft that was too large for the map.
         fits: tests whether roads can be drafted for another Brief, or on another map.
@@ -65,7 +65,7 @@ def too_fast(world: World, slower: float | None) -> str:
     """Returns one sentence, which says that crests and dips would be too abrupt for the speed limit.
 
     Args:
-        world: the speed limit.
+        world: the World, for its speed limit.
         slower: a speed limit in km/h at which the road is possible; None if none is known.
     """
     limit = f"a speed limit of {3.6 * world.speed_limit:.3g} km/h"
@@ -116,8 +116,8 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
 
 
 def no_room(error: NoRoomError, world: World) -> str:
-    """Returns the sentence of a refusal by ``map_fit``, with a suggestion that was verified by drafting a
-    road.
+    """Returns the message for a road that does not fit on the map, with a suggestion that was verified by
+    drafting a road.
     """
     from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
 

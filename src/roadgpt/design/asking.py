@@ -1,4 +1,4 @@
-"""Writes the prompt of a language model: rules of the map, requirements, and earlier roads to differ from."""
+"""Writes the prompt for a language model: rules of the map, requirements, and earlier roads to avoid."""
 
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
@@ -22,7 +22,7 @@ USUAL_HEIGHT = 0.0  # m, height of a drawn start
 
 
 def rules(name: str, world: World) -> str:
-    """Returns the text of a prompt file of the package, with the numbers of this World filled in."""
+    """Returns the text of a prompt file of the package, with the limits of ``world`` filled in as numbers."""
     text = files("roadgpt.design.designers").joinpath(name).read_text(encoding="utf-8")
     half = world.road_width / 2
     numbers = {
@@ -42,16 +42,18 @@ def rules(name: str, world: World) -> str:
 
 
 def words_of(brief: Brief) -> str:
-    """Returns the description, at most 2000 characters; without one, the sentence that states the Brief."""
+    """Returns the first 2000 characters of the description; without a description, a sentence for the
+    Brief.
+    """
     return brief.words.strip()[:MOST_WORDS] or sentence(brief)
 
 
 def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[Design], seed: int) -> str:
-    """Returns the request for a road.
+    """Returns the prompt that asks a language model for a road.
 
     Args:
         brief: the requirements, and the description that they were read from.
-        world: the map and the limits of the rules.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
         notes: objections to an earlier attempt.
         earlier: designs of the campaign so far; the last six are listed.
         seed: determines the start that is suggested.
@@ -72,13 +74,15 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
 
 
 def start_for(world: World, seed: int) -> str:
-    """Returns a start drawn from the seed, in words, so that roads differ whatever the model."""
+    """Returns a random start in words; suggesting it to the model makes the roads of different seeds
+    differ.
+    """
     x, y, theta = drawn_start(world, seed)
     return f"a start near ({x:g}, {y:g}) with theta {theta:g}"
 
 
 def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
-    """Draws x and y of a start in metres, and a heading in degrees within 50 degrees of the map's centre."""
+    """Returns a random x and y in metres, and a heading in degrees roughly towards the map's centre."""
     rng = np.random.default_rng(seed)
     x, y = (round(float(v)) for v in world.map_size * (0.12 + 0.76 * rng.random(2)))
     to_middle = np.degrees(np.arctan2(world.map_size / 2 - y, world.map_size / 2 - x))

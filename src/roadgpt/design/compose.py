@@ -1,4 +1,4 @@
-"""Composes a draft from turns, the required straights between them, and straights that only join the others.
+"""Composes a draft from turns, the required straights between them, and straights that only join these.
 
 lead-in | turn | joining straight | turn | required straight | turn | lead-out
 """
@@ -64,11 +64,11 @@ def composed(
 
     Args:
         order: the turns with their sides, and the required straights between them.
-        outline: the requirements.
+        outline: the requirements for the road.
         windows: the grades that the requirements allow.
-        world: the map and the limits of the rules.
-        rng: source of randomness.
-        haste: from 0 (drawn from the whole range) to 1 (as small as the requirements allow).
+        world: size of the map, and limits that the rules check, such as the steepest grade.
+        rng: random number generator.
+        haste: 0 draws values from their whole ranges, 1 draws values close to the smallest ones allowed.
     """
     narrowed = narrowed_turns(order.turns, outline, windows, world)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
@@ -126,10 +126,10 @@ def gap_between(
         before: the turn before; None at the start.
         wishes: the straights that are required here, in order.
         after: the turn after; None at the end.
-        outline: the requirements.
+        outline: the requirements for the road.
         windows: the grades that the requirements allow.
-        rng: source of randomness.
-        haste: from 0 (drawn from the whole range) to 1 (as short as the requirements allow).
+        rng: random number generator.
+        haste: 0 draws lengths from their whole ranges, 1 draws lengths close to the shortest ones allowed.
     """
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1

@@ -1,7 +1,7 @@
-"""Conversations in which a language model designs one road, all of it at once or segment by segment.
+"""Holds the dialogue in which a language model designs a road, either as a whole or segment by segment.
 
-Every proposal is repaired as far as the settings allow, and then checked. What is still wrong goes back to
-the model in sentences. Every request to the model is counted.
+Every proposal is repaired as far as the settings allow, and then checked. Sentences that say what is still
+wrong are sent back to the model. Every request to the model is counted.
 """
 
 import json
@@ -55,7 +55,7 @@ class Outcome(NamedTuple):
     remarks: tuple[str, ...] = ()
     """Sentences that say what was corrected in the answers, and what was omitted."""
     model: str = ""
-    """Name of the model as its server gives it."""
+    """Name of the model as reported by its server."""
 
 
 def whole(chat: Chat, task: DesignTask) -> Outcome:
@@ -122,8 +122,8 @@ def _compact(answer: BaseModel) -> str:
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
     """Asks for one segment at a time and checks each before it asks for the next.
 
-    A segment with objections is asked for again, at most ``rounds`` times as the settings say, and then
-    omitted. So the road is finished whatever the model answers.
+    A segment with objections is asked for again, at most as often as the setting ``rounds`` allows, and then
+    omitted. The dialogue therefore always ends, whatever the model answers.
 
     Args:
         chat: the language model.

@@ -1,4 +1,6 @@
-"""Draws what a description leaves open: angle, radius and transitions of turns, and lengths of straights."""
+"""Draws at random what a description leaves open: angle, radius and transitions of turns, and lengths of
+straights.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -98,10 +100,10 @@ def drawn_turns(
 
     Args:
         turns: the turns with the ranges to draw from, as ``narrowed_turns`` returns them.
-        outline: the requirements.
-        world: limits the length of a turn by the size of its map.
-        rng: source of randomness.
-        haste: from 0 (drawn from the whole range) to 1 (turns as small as the requirements allow).
+        outline: the requirements for the road.
+        world: the World; the size of its map limits the length of a turn.
+        rng: random number generator.
+        haste: 0 draws turns from their whole ranges, 1 draws turns close to the smallest ones allowed.
     """
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
@@ -175,9 +177,9 @@ def drawn_turn(
         turn: the turn with the ranges to draw from, as ``narrowed_turns`` returns it.
         angle: change of heading in degrees; it may be changed within its range so that the turn fits.
         longest: greatest length of the turn in metres.
-        hard: True for a turn of a hard road, whose radius is near the least.
-        rng: source of randomness.
-        haste: from 0 (drawn from the whole range) to 1 (as small as the requirements allow).
+        hard: True if a hard road was requested; the radius is then near the smallest one allowed.
+        rng: random number generator.
+        haste: 0 draws values from their whole ranges, 1 draws values close to the smallest ones allowed.
     """
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
@@ -222,10 +224,10 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
     Args:
         wish: the required straight.
-        rng: source of randomness.
-        haste: from 0 (drawn from the whole range) to 1 (as short as the requirements allow).
-        least: metres that the straight should have at least, as far as its required range allows.
-        mean: metres by which a straight without an upper limit is longer than its least length, on average.
+        rng: random number generator.
+        haste: 0 draws lengths from their whole ranges, 1 draws lengths close to the shortest ones allowed.
+        least: least length in metres; ignored as far as the required range excludes it.
+        mean: average number of metres by which a straight without an upper limit exceeds its least length.
     """
     span = wish.length or Range(10, inf)
     low, high = span.lo, span.hi
@@ -239,10 +241,15 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the length in metres to design, so that a straight is measured as at least ``least`` metres."""
+    """Returns the design length in metres of a straight that must be measured as at least ``least``
+    metres.
+    """
     return 1.05 * least + 3.0
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Draws the length of a free straight: ``least`` metres, and about ``mean`` metres more on average."""
+    """Draws the length in metres of a straight without requirements.
+
+    The length is at least ``least``, and on average about ``mean`` metres more.
+    """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

@@ -49,8 +49,8 @@ def turn_element(
 
 
 def least_radius(world: World) -> float:
-    """Returns the smallest radius in metres with which a turn is written, slightly above the smallest that
-    the rules allow.
+    """Returns the smallest radius in metres that a designed turn may have. It is slightly larger than the
+    smallest radius that the rules allow.
     """
     return world.min_radius * OVER_LEAST_RADIUS
 

@@ -1,8 +1,8 @@
 """Corrects straights whose measured lengths or grades differ from the required ones.
 
-The parabola that joins two grades belongs to both straights. A level straight is measured only where the road
-is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls. The planner
-therefore measures a draft, corrects joints and grades by the errors, and measures again.
+The parabola that joins the grades of two straights takes up a part of both. A level straight is measured only
+where the road is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls.
+The planner therefore measures a draft, corrects joints and grades by the errors, and measures again.
 """
 
 from collections.abc import Sequence
@@ -24,13 +24,15 @@ TENTH = 10.0  # per percent
 def with_vertical_radii(
     elements: Sequence[Element], pace: Pace, ease: float, bumps: bool = False
 ) -> list[Element]:
-    """Returns the elements with vertical radii in rows of straights of which at least one has a fixed length.
+    """Returns the elements with vertical radii for consecutive straights.
+
+    Radii are set only if at least one of the consecutive straights has a fixed length.
 
     Args:
         elements: the elements of a draft, in driving order.
         pace: the vertical radii that the expected speeds require.
         ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
-        bumps: True if radii may be as small as the wheels can follow.
+        bumps: True if a crest or a dip was requested, so that the vertical acceleration may reach gravity.
     """
     out, ends = list(elements), np.cumsum([element.length for element in elements])
     for row in _rows(elements):
@@ -41,9 +43,9 @@ def with_vertical_radii(
 
 
 def corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
-    """Returns the elements with joints and grades of straights moved by the errors that were measured.
+    """Returns the elements with joints and grades of straights corrected by the measured errors.
 
-    Between two turns, nothing is moved if the measured straights do not correspond to those of the draft.
+    Between two turns, nothing is corrected if the measured straights do not correspond to those of the draft.
 
     Args:
         elements: the elements of the draft that was measured, in driving order.

@@ -1,9 +1,10 @@
 """Drafts long roads turn by turn, directly on the map.
 
 A draft that is composed as a whole and then placed hardly ever fits if the road is much longer than the side
-of the map. A long road therefore starts at a random place on the map. For every turn, several sides, angles
-and straights before it are tried, and the first one is taken that stays on the map, keeps clear of the road
-so far and leaves room ahead. If the number of turns is open, a longer road has more of them.
+of the map. A long road therefore starts at a random place on the map. For every turn, several combinations of
+side, angle and preceding straight are tried. The first one that stays on the map, keeps clear of the road so
+far and leaves room ahead is used. If the description leaves the number of turns open, a longer road has more
+turns.
 """
 
 from collections.abc import Sequence
@@ -72,10 +73,10 @@ def grown(
 
     Args:
         order: the turns with their sides, and the required straights between them.
-        outline: the requirements.
+        outline: the requirements for the road.
         windows: the grades that the requirements allow.
-        world: the map and the limits of the rules.
-        rng: source of randomness.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
+        rng: random number generator.
     """
     asked = asked_length(outline, windows)
     if asked is None or asked.lo <= 0 or not order.turns or outline.turning:

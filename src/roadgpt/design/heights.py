@@ -71,12 +71,12 @@ class Windows:
                 )
 
     def of(self, feature: Feature) -> Range | None:
-        """Returns the grades that a feature may be designed with, a little inside its required range.
+        """Returns the range of grades for the design of a feature, a little inside its required range.
 
-        Without a requirement of its own, these are the grades required of the whole road.
+        If no grade is required of the feature, the range for the whole road is returned.
 
         Raises:
-            DesignError: the required grade is steeper than allowed, or contradicts that of the road.
+            DesignError: the required grade is steeper than allowed, or contradicts that of the whole road.
         """
         if feature.grade is None:
             return self.base
@@ -97,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns the grades of consecutive straights; one without a requirement differs from the others."""
+        """Returns a range of grades per straight; where none is required, it differs from the neighbour's."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -106,7 +106,7 @@ class Windows:
         return out
 
     def other(self, grade: Range | None) -> Range:
-        """Returns grades that a measurement tells apart from the given ones."""
+        """Returns a range of grades that measurements can distinguish from the range ``grade``."""
         if self.base and not (self.base.lo <= 0 <= self.base.hi):
             return Range(0, 0)
         return Range(0, 0) if grade is None or grade.lo > 1 or grade.hi < -1 else Range(3.5, 6)
@@ -117,11 +117,11 @@ class Windows:
         return max(one.lo - other.hi, other.lo - one.hi, 0.0) if one and other else 0.0
 
     def part(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether the grade must change between features with these grades."""
+        """Returns whether the grade must change between two features with these ranges of grade."""
         return self.between(one, other) > 0
 
     def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether consecutive straights with these grades would be measured as one straight."""
+        """Returns whether straights with these ranges of grade, one after the other, are measured as one."""
         if not one or not other or not self.part(one, other):
             return True
         return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL
@@ -142,13 +142,13 @@ def drawn_heights(
 
     Args:
         plan: the elements of a draft, in driving order.
-        outline: the requirements.
+        outline: the requirements for the road.
         windows: the grades that the requirements allow.
-        rng: source of randomness.
+        rng: random number generator.
         pace: the vertical radii that the expected speeds on this plan require.
         ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule
             requires) to 1 (fully comfortable).
-        bumps: True if a crest or a dip was requested, so that radii may be as small as wheels can follow.
+        bumps: True if a crest or a dip was requested, so that the vertical acceleration may reach gravity.
     """
     is_hilly = bool(outline.hills and outline.hills.lo > 0)
     if is_hilly:
@@ -382,7 +382,7 @@ def _softened(
 
 
 def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
-    """Returns grades shifted alike, each as far as its limits allow, until the road climbs by ``metres``.
+    """Returns the grades, clipped to their limits after a common shift that makes the road climb ``metres``.
 
     Args:
         grades: grades in percent, ``(n,)``.

@@ -1,8 +1,8 @@
-"""Walks the plan of a draft, checks that it keeps clear of itself, and places it on the map.
+"""Computes the centre line of a draft, checks that it keeps clear of itself, and places it on the map.
 
-The planner lays out hundreds of drafts for one road. The curve is therefore walked in steps of about 1 m
-instead of being solved; points are off by a few centimetres at most. The road that is built from the chosen
-draft is exact, and every rule checks it again.
+The planner lays out hundreds of drafts for one road. The curve is therefore approximated in steps of about 1
+m; points are off by a few centimetres at most. The road that is built from the chosen draft is exact, and
+every rule checks it again.
 """
 
 from collections.abc import Sequence
@@ -38,7 +38,7 @@ Indices = NDArray[np.intp]
 
 
 class PlanLine(NamedTuple):
-    """The walked centre line of a draft; it starts at the origin and heads along +x."""
+    """The approximate centre line of a draft; it starts at the origin and heads along +x."""
 
     s: Array
     """Stations in metres, about 1 m apart, ``(n,)``."""
@@ -112,7 +112,7 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
 def meeting(
     z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float
 ) -> tuple[Indices, Indices]:
-    """Returns the pairs of points, on a road and on its earlier part, that are closer than ``apart``.
+    """Returns the pairs of points, one on a road and one on its earlier part, that are closer than ``apart``.
 
     Points at most 26 m apart along the road do not count.
 
@@ -136,7 +136,7 @@ def meeting(
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
-    """Draws a start and a heading at which the road lies on the map; None if none was found."""
+    """Draws a start and a heading at which the road lies on the map; returns None if none was found."""
     room = world.map_size - world.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
     chosen = _first_that_fits(line.z, turns[:1], room)
@@ -181,7 +181,7 @@ def _first_that_fits(
 
 
 def smallest_box(line: PlanLine) -> float:
-    """Returns the side in metres of the smallest square that holds the line at some heading."""
+    """Returns the side in metres of the smallest square that contains the line at some heading."""
     _, _, width, height = boxes(line.z[:: max(1, len(line.z) // MOST_POINTS)], np.arange(0.0, 90.0, 5.0))
     return float(np.maximum(width, height).min())
 

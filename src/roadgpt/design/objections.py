@@ -26,7 +26,7 @@ def objections(design: Design, brief: Brief | None, world: World, partly: bool =
     Args:
         design: the design to check.
         brief: the requirements; None to check only the rules.
-        world: the map and the limits of the rules.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
         partly: True if segments will be added, so that the road may still be too short.
     """
     try:

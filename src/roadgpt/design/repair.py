@@ -45,7 +45,7 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
     Args:
         design: The design as proposed.
         brief: The requirements; None if there are none.
-        world: The map and the limits of the rules.
+        world: Size of the map, and limits that the rules check, such as the steepest grade.
         how: "none", "place" or "full", as described at the top of this module.
     """
     if how == "none":
@@ -118,7 +118,7 @@ def _metres(value: float | None) -> str:
 def with_wishes(elements: Sequence[RoadElement], outline: Outline) -> RoadElements | None:
     """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
-    Returns None if the proposal does not have the number of turns, or their sides, that the Outline requires.
+    Returns None if the number of turns, or of turns to one side, is not what the Outline requires.
     """
     turns = [i for i, element in enumerate(elements) if element.is_turn]
     left = sum(elements[i].side == "left" for i in turns)

@@ -20,6 +20,6 @@ class DesignReport(Frozen):
     cost: float | None = None
     """Cost in USD; None if the price is not known."""
     model: str = ""
-    """Name of the model as its server gives it."""
+    """Name of the model as reported by its server."""
     proposed: dict[str, Any] | None = None
     """The model's proposal before any change, in RoadGPT's segment format; None if there was none."""

@@ -2,11 +2,11 @@
 
     gap 0 | turn 1 | gap 1 | turn 2 | ... | turn n | gap n
 
-There are two ways. ``elements_on_road`` uses the turns that are measured on the finished geometry
-(``check.measures``): segments to one side that run into each other are one turn, and a bend that is too
-slight to be measured as a turn belongs to a gap. ``elements_as_proposed`` uses the list of segments alone:
-successive segments to one side are one turn, as RoadGPT's prompt demands for turns of more than 70 degrees,
-and successive straight segments are one element as long as all of them go up, down or level.
+The segments can be grouped in two ways. ``elements_on_road`` uses the turns that are measured on the finished
+geometry (``check.measures``): segments to one side that run into each other are one turn, and a bend that is
+too slight to be measured as a turn belongs to a gap. ``elements_as_proposed`` uses the list of segments
+alone: successive segments to one side are one turn, as RoadGPT's prompt demands for turns of more than 70
+degrees, and successive straight segments are one element as long as all of them go up, down or level.
 """
 
 from collections.abc import Iterable, Sequence
@@ -83,9 +83,7 @@ def measured(design: Design, geometry: Geometry) -> Measures:
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the elements of a design, divided at the turns that are measured on its road, and the
-    measurement.
-    """
+    """Returns the elements of a design, divided at the turns measured on its road, and the measurements."""
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (
@@ -174,8 +172,8 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
 def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
     """Returns the measured feature of an element; None if it is not measured as a feature of its own.
 
-    The road must have the turns of the elements. If there are several elements between two turns, the longest
-    one counts as measured.
+    The road must have the turns of the elements. If there are several elements between two turns, the
+    straight measured there is assigned to the longest one.
     """
     turns = [element.name for element in elements if element.is_turn]
     if name in turns:
@@ -194,13 +192,13 @@ def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeatu
 
 
 def numbered(elements: RoadElements) -> RoadElements:
-    """Returns the elements with the indices that their segments have when they are joined."""
+    """Returns the elements, each with ``first`` set to the index of its first segment among all segments."""
     firsts = accumulate((len(element.segments) for element in elements), initial=0)
     return tuple(replace(element, first=first) for element, first in zip(elements, firsts, strict=False))
 
 
 def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadElements:
-    """Returns numbered elements with other segments, of which there must be as many as before."""
+    """Returns numbered elements with other segments; the number of segments must be the same as before."""
     return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
 
 
@@ -210,5 +208,5 @@ def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
 
 
 def is_turn(degrees: float) -> bool:
-    """Returns whether a change of heading by ``degrees`` is large enough to be seen as a turn."""
+    """Returns whether a change of heading by ``degrees`` is large enough to count as a turn."""
     return abs(degrees) >= LEAST_TURN

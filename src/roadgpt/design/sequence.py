@@ -43,8 +43,8 @@ def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> T
     """Draws the turns, their sides and their order, as far as the Outline leaves them open.
 
     Args:
-        outline: the requirements.
-        rng: source of randomness.
+        outline: the requirements for the road.
+        rng: random number generator.
         plain: True to take as few turns as the requirements allow.
 
     Raises:
@@ -165,7 +165,9 @@ def _shares(one: Feature, other: Feature) -> bool:
 
 
 def both(one: Feature, other: Feature) -> Feature:
-    """Returns one feature with the requirements of two; ranges are intersected and may become empty."""
+    """Returns a feature with the requirements of two features; ranges are intersected and may become
+    empty.
+    """
     return replace(
         one,
         side=one.side or other.side,

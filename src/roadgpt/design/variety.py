@@ -2,8 +2,8 @@
 
 The distance of two roads is the root mean square distance of their points after one road is shifted, rotated
 and, if that helps, mirrored so that it is as small as possible. Points are compared in two ways: at equal
-shares of both lengths, and at equal distances from the start as far as the shorter road goes. With points as
-complex numbers, the best rotation is the phase of an inner product, so one matrix product compares a road
+fractions of both lengths, and at equal distances from the start as far as the shorter road goes. With points
+as complex numbers, the best rotation is the phase of an inner product, so one matrix product compares a road
 with a thousand others.
 """
 
@@ -28,10 +28,12 @@ Complex = NDArray[np.complex128]
 
 
 class PlanShape(NamedTuple):
-    """The shape of one plan, or of ``m`` stacked plans: points as x + iy, and what speeds up comparisons."""
+    """The shape of one plan, or of ``m`` stacked plans: points as x + iy, and values that speed up
+    comparisons.
+    """
 
     shares: Complex
-    """Points at equal shares of the length, relative to their mean; ``(POINTS,)`` or ``(m, POINTS)``."""
+    """Points at equal fractions of the length, relative to their mean; ``(POINTS,)`` or ``(m, POINTS)``."""
     spread: Array
     """Root mean square of the distances in metres of ``shares`` from their mean; ``()`` or ``(m,)``."""
     metres: Complex
@@ -84,7 +86,7 @@ def nearest(shape: PlanShape, others: PlanShape, by_metres: bool) -> float:
 
 
 def apart(shape: PlanShape, others: PlanShape) -> Array:
-    """Returns the RMS distances in metres to other roads at equal shares of the length, ``(m,)``."""
+    """Returns the RMS distances in metres to other roads at equal fractions of the length, ``(m,)``."""
     own, many = shape.shares, others.shares
     sizes = others.spread**2 + shape.spread**2
     # einsum, not @: sums in one order on every machine, and no threads for so small a product

@@ -1,13 +1,14 @@
-"""Chooses vertical radii so that crests and dips suit the expected speed, and moves grades to make room.
+"""Chooses vertical radii that suit the expected speed, and adjusts grades where the curves would not fit.
 
 A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint. On a slope
 of length L, the two parabolas at its ends need
 
     L   >=   (R1 * |change at its start| + R2 * |change at its end|) / 2
 
-A comfortable radius is v^2 / (0.5 m/s^2), the least that the rule ``too_abrupt`` allows is v^2 / (3 m/s^2),
-where v is the expected speed. If there is no room for comfort, the grades are first moved towards each other
-as far as the requirements allow. Then radii become smaller, but never smaller than the rule allows.
+A comfortable radius is v^2 / (0.5 m/s^2); the smallest radius that the rule ``too_abrupt`` allows is v^2 / (3
+m/s^2). Here v is the expected speed. If comfortable parabolas do not fit, neighbouring grades are first made
+more similar, as far as the requirements allow. Then radii become smaller, but never smaller than the rule
+allows.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -103,9 +104,9 @@ def softened(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> list[float]:
-    """Returns grades, moved within their bounds as little as needed until the parabolas between them fit.
+    """Returns grades, changed within their bounds as little as needed for the parabolas between them to fit.
 
-    Slopes with too little room are corrected one after another by moving their grades and those of their
+    Slopes with too little room are corrected one after another by changing their grades and those of their
     neighbours. These are projections onto convex sets, which converge if a solution exists.
 
     Args:
@@ -134,7 +135,7 @@ def made_to_fit(
     pace: Pace,
     roomier: float = 1.0,
 ) -> list[float]:
-    """Returns grades, moved until the parabolas that the rule requires fit between them.
+    """Returns grades, changed so that the parabolas that the rule ``too_abrupt`` requires fit between them.
 
     Args:
         grades: grade of each segment in percent.
@@ -215,7 +216,8 @@ def joined(
         segments: the segments of a design, in driving order.
         pace: the vertical radii that the expected speeds require.
         ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
-        opened: indices of the segments whose radius is chosen anew; None for those without a radius.
+        opened: indices of the segments whose radius is chosen anew; None to choose a radius for every segment
+            without one.
     """
     out, at, own = [], 0.0, set[int]()
     for i, segment in enumerate(segments):
@@ -237,7 +239,7 @@ def joined(
 
 
 def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
-    """Returns indices of segments at whose start two slopes meet that did not meet anywhere before.
+    """Returns the indices of segments at whose start two slopes meet that met nowhere before the change.
 
     Args:
         before: the segments of a design before a change.

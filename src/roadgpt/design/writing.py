@@ -22,7 +22,7 @@ CENTIMETRE = 100.0  # per metre: heights are written in centimetres
 def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...]:
     """Returns the segments of elements, with grades rounded so that each is clearly up, down or flat.
 
-    Grades between which the road would be too abrupt for the expected speed are moved towards each other.
+    Grades between which the road would be too abrupt for the expected speed are made more similar.
     """
     written = [as_written(element) for element in elements]
     pace = Pace.along(written, world)
@@ -46,12 +46,16 @@ def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
 
 
 def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
-    """Returns a design of these elements that starts at ``place``, its lowest point 1 m above the ground."""
+    """Returns a design of these elements that starts at ``place``, with its lowest point 1 m above the
+    ground.
+    """
     return design_at(place, segments_of(elements, world), max(0.0, world.z_floor) + ABOVE_GROUND)
 
 
 def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:
-    """Returns a design of these segments that starts at ``place``, its lowest point at height ``ground``."""
+    """Returns a design of these segments that starts at ``place``, with its lowest point at height
+    ``ground``.
+    """
     return Design(
         starting_point=(place.x, place.y, start_height(segments, ground)),
         theta=place.theta,
@@ -60,7 +64,7 @@ def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> D
 
 
 def start_height(segments: Sequence[Segment], ground: float) -> float:
-    """Returns the height of the start in metres with which the lowest point is at height ``ground``."""
+    """Returns the start height in metres for which the lowest point is at height ``ground``."""
     profile = elevation_of(segments, 0.0)
     _, sag = lowest(profile, profile.stations[-1])
     return ceil((ground - sag) * CENTIMETRE) / CENTIMETRE

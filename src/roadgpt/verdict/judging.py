@@ -46,9 +46,9 @@ def judge(
     Args:
         road: The road.
         drive: The drive on this road.
-        world: Supplies the tolerance and the other criteria.
-        known: The step that decides the verdict and the cause of failure (None for no failure), if they are
-            already known.
+        world: The World, which sets the tolerance and the other failure criteria.
+        known: Index of the step that decides the verdict, and the cause of failure (None if the car did not
+            fail). None if they are not known yet.
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.oob_tolerance``.

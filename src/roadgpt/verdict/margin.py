@@ -42,9 +42,13 @@ class LateralExtent(NamedTuple):
     It is corrected for the curvature of the lane under the box.
     """
     long: FloatArray
-    """Half the extent in metres across the lane of the pair of sides that extends farther; ``(n,)``."""
+    """Projections of the box's length and width across the lane: half of the larger one in metres;
+    ``(n,)``.
+    """
     short: FloatArray
-    """Half the extent in metres across the lane of the other pair of sides; ``(n,)``."""
+    """Projections of the box's length and width across the lane: half of the smaller one in metres;
+    ``(n,)``.
+    """
 
 
 def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:

@@ -20,7 +20,7 @@ class Oracle(NamedTuple):
     """The out-of-bounds values of a drive, as arrays of shape ``(n,)`` with one value per step."""
 
     is_oob: NDArray[np.bool_]
-    """Whether the car is out of its lane: too large a share is outside, or a lane departure counts.
+    """Whether the car is out of its lane, as ``is_outside`` defines it.
 
     The value is False at the step at which the car reaches the goal or is stuck, because the competition
     does not check the lane at this step.
@@ -30,7 +30,8 @@ class Oracle(NamedTuple):
     max_oob_percentage: NDArray[np.float64]
     """Largest share of the car outside its lane, 0 to 1, since it last went out of its lane.
 
-    It is 0 before the first time, and earlier times are forgotten, as in the competition's code.
+    It is 0 until the car first goes out of its lane, and restarts each time it goes out again, as in the
+    competition's code.
     """
     oob_distance: NDArray[np.float64]
     """Half the width of the lane minus the distance of the car's centre from the lane's middle, in metres."""
@@ -58,8 +59,8 @@ def consult(road: "Road", drive: "Drive", world: "World") -> Oracle:
 def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
     """Returns for each step whether the car is out of its lane.
 
-    The car is out of its lane if the share outside exceeds the tolerance, or at a lane departure if these
-    count.
+    The car is out of its lane if the share of its bounding box outside the lane exceeds the tolerance. If
+    ``World.lane_departure`` is set, it is also out of its lane while a front tyre is beyond a lane marking.
     """
     out: NDArray[np.bool_] = drive["outside"] > world.oob_tolerance
     out |= has_departed(road, drive, world)
@@ -68,7 +69,8 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
 
 
 def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_]:
-    """Returns for each step whether the outer edge of a front tyre is beyond that of a lane marking.
+    """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a lane
+    marking.
 
     All values are False if ``world.lane_departure`` is not set.
     """

@@ -26,7 +26,7 @@ def severity(share: float) -> Severity:
 def graded(outcome: str, share: float | None) -> str:
     """Returns the outcome as displayed, for example "PASS (partly outside)".
 
-    Only a PASS is extended by the grade, and only if the share is known and not 0.
+    The grade is appended only to PASS, and only if the share is known and not 0.
 
     Args:
         outcome: PASS, FAIL or any other outcome.

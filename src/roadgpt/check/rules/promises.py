@@ -1,9 +1,9 @@
 """Requires the road to meet its Brief: the turns in order, the straights between them, and the grades.
 
-The requirements are the ranges of an Outline. They are compared with what ``check.measures`` measures on the
-centre line of the road. Additional straights are allowed. If the description leaves a count open ("at least
-three right turns, then a hairpin"), the turns of the road are assigned to the requested groups so that as few
-turns as possible violate a requirement.
+The requirements are given as ranges in an Outline. They are compared with what ``check.measures`` measures on
+the centre line of the road. Additional straights are allowed. If the description leaves a count open ("at
+least three right turns, then a hairpin"), the turns of the road are assigned to the requested groups so that
+as few turns as possible violate a requirement.
 """
 
 from collections.abc import Iterator

@@ -36,8 +36,8 @@ class ChatDesigner:
         """Returns the best Design of all rounds, even if it is not valid.
 
         Args:
-            brief: the requirements.
-            world: the map and the limits of the rules.
+            brief: the requirements for the road.
+            world: size of the map, and limits that the rules check, such as the steepest grade.
             notes: objections of rules to an earlier draft.
             earlier: designs of the campaign so far; the new one should not be like any of them.
             seed: determines the start that is suggested to the model.

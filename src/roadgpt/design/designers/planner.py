@@ -1,9 +1,9 @@
 """The default designer: draws drafts until one meets the Brief, is valid and differs from earlier roads.
 
 Tests run in the order of their cost: whether the draft fits on the map, keeps clear of itself, is new, meets
-the requirements as measured on its line, and whether the rules accept the road that is built from it. Every
-draft is drawn with a little more haste than the one before, with shorter straights and smaller turns. So
-requirements that hardly fit are met in the end, and only those that cannot be met are refused.
+the requirements as measured on its line, and whether the rules accept the road that is built from it. After
+the first drafts, straights and turns become a little shorter with every draft. Requirements that leave little
+room are therefore met by a later draft, and only those that cannot be met are refused.
 """
 
 from collections import Counter
@@ -66,8 +66,8 @@ class Planner:
         """Returns a Design that meets the Brief and is valid.
 
         Args:
-            brief: the requirements.
-            world: the map and the limits of the rules.
+            brief: the requirements for the road.
+            world: size of the map, and limits that the rules check, such as the steepest grade.
             notes: objections to an earlier draft; only their number matters, as it changes the seed.
             earlier: designs of the campaign so far; the new one differs from them as far as possible.
             seed: seed of the random number generator.

@@ -6,9 +6,9 @@ Source: sections 5.3.1 and 5.3.2 of the thesis. The prompt is paraphrased. Where
 thesis' program, this designer does the following:
 
 * theta 0 is "along the y axis" in the prompt and +x in the program: +x is used;
-* x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": the prompt names
-  four fifths of the side of the map;
-* right turns are negative in the prompt, and its own example has a left turn of -20: the direction wins;
+* x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": here the
+  prompt states 0.8 times the side length of the map;
+* right turns are negative in the prompt, and its own example has a left turn of -20: ``direction`` decides;
 * the program begins with 5 m of level road, which is kept, and shifts the start by (5, 5), which is omitted.
 
 The thesis' program passed answers, which were Python dictionaries, to ``eval``; here answers are JSON.

@@ -3,9 +3,9 @@
 
     words --read_request--> EditRequest --pointed--> elements --steps--> requirements --fit--> Edited
 
-Turns and straights are those that are measured on the finished road (``check.measures``); they have the
-numbers that they had before the edit. Elements that the request does not name keep all their values, but the
-road as a whole may be shifted or rotated, so that it stays inside the map.
+Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
+road before the edit. Elements that the request does not name keep all their values, but the road as a whole
+may be shifted or rotated, so that it stays inside the map.
 """
 
 from collections.abc import Sequence
@@ -54,10 +54,10 @@ def edit(
     Args:
         design: the Design before the edit; this value itself is not changed.
         words: a change request.
-        world: the map and the limits of the rules.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that the road is built with.
-        designer: name of a designer; if it asks a language model, the model changes the road, otherwise rules
-            do.
+        designer: name of a designer. If it uses a language model, the model makes the change; otherwise rules
+            make it.
         chat: settings of the language model; None for the user's settings.
 
     Raises:

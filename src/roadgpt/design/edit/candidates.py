@@ -1,7 +1,7 @@
-"""Returns candidates for a change: values to aim at, and ranges in which the measured values may lie.
+"""Lists candidates (ways to make a change): target values, and ranges for the values measured afterwards.
 
-Words ('sharper') allow wide ranges. Numbers do not: only other values may then vary, such as the radius of a
-turn whose angle is given. A second candidate has wider ranges, or lets more elements change.
+Words ('sharper') allow wide ranges. If a number is given, such as the angle of a turn, only other values may
+vary, such as its radius. A second candidate has wider ranges, or lets more elements change.
 """
 
 from collections.abc import Callable, Sequence
@@ -58,7 +58,7 @@ def change_candidates(
         change: Any change except an addition, a removal or a mirror image.
         elements: The elements to change.
         found: The measurements of the whole road.
-        world: The limits of the rules.
+        world: The limits that the rules check, such as the steepest grade.
 
     Raises:
         EditError: No road can have the requested values.
@@ -106,7 +106,7 @@ def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that make turns alternate, from the first one on; none if they already do."""
+    """Returns the candidates that make turns alternate between left and right; none if they already do."""
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
         wrong += [element] if element.side != side else []

@@ -1,9 +1,9 @@
-"""Edits a road by a language model: the model answers with the whole road, and code restores what was not to
-be changed.
+"""Edits a road with a language model: the model answers with the whole road, and code restores the segments
+that were not to be changed.
 
 For every segment of its answer, the model gives the number of the same segment in the old road; it also lists
-the segments that the request concerns. All other segments get their old values back, whatever the model made
-of them.
+the segments that the request concerns. All other segments get their old values back, whatever the model
+answered for them.
 """
 
 import json

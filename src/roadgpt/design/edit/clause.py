@@ -1,4 +1,4 @@
-"""Defines a clause of a change request: the places that it names, and the words that remain."""
+"""Defines a clause of a change request: the places that it names, and its other words."""
 
 from dataclasses import dataclass, field
 
@@ -17,15 +17,15 @@ class RequestClause:
     new: list[Target] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     row: list[RequestLexeme] = field(default_factory=list)
-    """The lexemes that remain: verbs, comparatives and amounts."""
+    """The lexemes that do not name places: verbs, comparatives and amounts."""
     unknown: list[str] = field(default_factory=list)
     begins_unknown: bool = False
-    """Whether its first word, where a verb is expected, was not understood."""
+    """Whether the first word of the clause was not understood; it should be a verb."""
     words: str = ""
 
     @property
     def names(self) -> set[str]:
-        """Names of the lexemes that remain."""
+        """Names of the lexemes in ``row``."""
         return {lexeme.name for lexeme in self.row}
 
     @property

@@ -18,7 +18,7 @@ class CountedRow:
 
     def ordinals(self, at: int, found: dict[str, Any]) -> int:
         """Reads 'second', 'first and third', 'last two' or 'second to fourth' into ``found``; returns the
-        index behind it.
+        index of the next lexeme.
         """
         numbers = [int(self.row[at].value)]
         at += 1
@@ -43,7 +43,9 @@ class CountedRow:
         return at
 
     def numbers(self, at: int, found: dict[str, Any]) -> int:
-        """Reads 'turns 2 to 4', 'turn 3' or 'turns 1, 3 and 5' into ``found``; returns the index behind."""
+        """Reads 'turns 2 to 4', 'turn 3' or 'turns 1, 3 and 5' into ``found``; returns the index of the
+        next lexeme.
+        """
         numbers: list[int] = []
         while (
             self.name(at) == "#" and not self.row[at].unit and self.row[at].value == int(self.row[at].value)

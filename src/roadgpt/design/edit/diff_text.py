@@ -1,4 +1,4 @@
-"""Describes in sentences what an edit changed, by the measurements of the road before and after it."""
+"""Describes in sentences what an edit changed, from measurements of the road before and after the edit."""
 
 from collections.abc import Iterator, Sequence
 
@@ -22,7 +22,7 @@ def sentences(
         elements: The elements of that road.
         found: The measurements of that road.
         after: The road after the edit.
-        besides: Sentences about what was changed only to keep the road valid.
+        besides: Sentences about changes that were made only to keep the road valid.
     """
     besides = [said for said in besides if not said.startswith(AGAIN)]
     if besides:

@@ -1,4 +1,6 @@
-"""Combines clauses; what a clause omits is taken from its neighbours. Main function: ``gathered``."""
+"""Turns clauses into changes; what a clause omits is taken from its neighbours. Main function:
+``gathered``.
+"""
 
 from collections.abc import Sequence
 from dataclasses import replace

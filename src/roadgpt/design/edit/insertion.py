@@ -60,8 +60,8 @@ def insertion_candidates(
     Args:
         change: what to add, and where.
         elements: the elements of the road before the edit.
-        world: the limits of the rules.
-        number: the number of the change, used in the names of new elements.
+        world: the limits that the rules check, such as the steepest grade.
+        number: number of this change within its request; it is used to name new elements.
 
     Raises:
         EditError: the place does not exist, or no turn can have the requested values.

@@ -21,8 +21,9 @@ SIGNS = {",": "comma", ";": "then", ".": "stop", "!": "stop", "\n": "then", "%":
 
 @dataclass(frozen=True, slots=True)
 class RequestLexeme:
-    """A word, phrase or number with its meaning: ``name`` is a name of the vocabulary, "#" for a number, or
-    "ord" for an ordinal.
+    """A word, phrase or number of a request.
+
+    ``name`` is its meaning in the vocabulary, "#" for a number, or "ord" for an ordinal.
     """
 
     name: str

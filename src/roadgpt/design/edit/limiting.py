@@ -34,8 +34,8 @@ def _apart(lexeme: RequestLexeme, behind: str) -> tuple[RequestLexeme, ...]:
 
 
 def bounded(row: Row) -> Row:
-    """Returns the row with 'at most' or 'at least' in place of a negated comparison, such as 'no steeper
-    than'.
+    """Returns the lexemes with negated comparisons, such as 'no steeper than', replaced by 'at most' or
+    'at least'.
     """
     row = [y for at, x in enumerate(row) for y in _apart(x, _name(row, at + 1))]
     out: Row = []

@@ -36,19 +36,24 @@ PLACES = {"after", "before", "between", "on"}
 
 
 class NamedTarget(NamedTuple):
-    """A target that was read from a row, and the index of the first lexeme behind it."""
+    """A target that was read from a row of lexemes, and the index of the first lexeme after it."""
 
     target: Target
     stop: int
 
 
 def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
-    """Returns the target whose name begins at index ``at``; None if there is none."""
+    """Returns the target, such as 'the second left turn', that the lexemes from index ``at`` on name; None
+    if they name none.
+    """
     return _TargetReader(row).read(at)
 
 
 def place_at(row: Sequence[RequestLexeme], at: int) -> tuple[int, Place | None]:
-    """Returns a place such as 'after the second turn', and the index behind it; None if there is none."""
+    """Reads a place such as 'after the second turn' from the lexemes at index ``at``.
+
+    Returns the index of the next lexeme, and the place; None instead of the place if there is none.
+    """
     return _TargetReader(row).place_behind(at)
 
 

@@ -23,7 +23,7 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
         what: the property to be changed; it decides what 'the end' and a name without a noun refer to.
 
     Raises:
-        EditError: there is no such element, or there are several where the request means one.
+        EditError: no element matches, or several match although the request means one.
     """
     match target.noun:
         case "end" | "start":

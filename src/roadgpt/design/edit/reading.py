@@ -1,4 +1,4 @@
-"""Reads change requests by rules: words -> EditRequest. Main function: ``read_request``.
+"""Reads change requests by rules, and returns each as an EditRequest. Main function: ``read_request``.
 
 The words are split into clauses at commas and at 'and'. Each clause names a place and the change to make
 there; what a clause omits is taken from the clause before or after it: 'make the first and the last turn

@@ -28,7 +28,7 @@ class Target:
     """Places on the road, as a person names them: 'the second left turn', 'turns 2 to 4', 'the end'."""
 
     noun: Noun | None = None
-    """The noun of the name; None if there is only a number, as in 'the second'."""
+    """The noun, such as 'turn' or 'straight'; None if there is only a number, as in 'the second'."""
     kind: Kind | None = None
     """The kind of turn, as in 'the hairpin'."""
     numbers: tuple[int, ...] = ()
@@ -61,14 +61,14 @@ class Target:
     half: int | None = None
     """1 or 2 if only the first or the second half of the road is meant."""
     is_definite: bool = True
-    """True if 'the', 'every' or a number says which elements are meant; 'left turns' alone may be what
-    other turns are to become.
+    """True if 'the', 'every' or a number says which elements are meant; 'left turns' alone is not
+    definite, as in 'make turns 1 and 2 left turns'.
     """
     words: str = ""
 
     @property
     def is_new(self) -> bool:
-        """Whether the name is that of something that is not on the road yet."""
+        """Whether the target is to be added to the road, as in 'a turn'."""
         return self.indefinite or (self.count is not None and not (self.numbers or self.most))
 
 
@@ -87,7 +87,9 @@ class Change:
 
     what: What
     target: Target | None = None
-    """The places to change; None if none is named: the whole road, or what was mentioned before."""
+    """The places to change. None if the request names none; then the whole road is meant, or the places
+    mentioned before.
+    """
     more: int = 0
     """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if a value is given."""
     by: float | None = None
@@ -96,7 +98,9 @@ class Change:
     bound: Literal[-1, 0, 1] = 0
     """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0
-    """The size of a change for which no number is given: 'slightly' is less than 1, 'much' is more."""
+    """The size of a change for which no number is given: less than 1 for 'slightly', more than 1 for
+    'much'.
+    """
     way: Way | None = None
     side: Side | None = None
     """The new side; None for the opposite of the present one."""
@@ -105,7 +109,7 @@ class Change:
     count: int = 1
     place: Place | None = None
     degrees: float | None = None
-    """The angle of a turn that is added."""
+    """The angle in degrees of a turn that is added."""
     radius: float | None = None
     length: float | None = None
     grade: float | None = None

@@ -1,4 +1,4 @@
-"""Rewrites a request in words that the reader of clauses knows. Main function: ``reworded``.
+"""Rewrites a request in simpler words, which the parser of clauses knows. Main function: ``reworded``.
 
 turn 4 (the last one) a hairpin          turn 4 a hairpin
 left instead of right                    left

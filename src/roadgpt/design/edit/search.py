@@ -35,16 +35,18 @@ def made(
     world: World,
     geometry: Geometry,
 ) -> tuple[Look | None, str, Design]:
-    """Returns the road with all changes, or None and the objection to the preferred candidates.
+    """Returns the road with all changes, an objection, and a design.
 
-    The last value is the design of the road, or, if elements that the request does not name were changed too,
-    the design before these changes.
+    If no valid road was found, the road is None, the objection says what was wrong with the first road that
+    was tried, and the design is the one before the edit. Otherwise the objection is empty, and the design is
+    that of the road. If elements that the request does not name had to change too, it is the design before
+    these additional changes.
 
     Args:
         design: The road before the edit.
         elements: The elements of that road.
         changes: The candidates of every change, the preferred one first.
-        world: The map and the limits of the rules.
+        world: Size of the map, and limits that the rules check, such as the steepest grade.
         geometry: The kind of geometry that roads are built with.
     """
     objection, drafts = "", list[Look]()

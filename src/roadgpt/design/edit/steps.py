@@ -60,7 +60,7 @@ class Wanted(NamedTuple):
 
 
 def near(aim: float, slack: float) -> Wanted:
-    """Returns an aim with a tolerance of ``slack`` in both directions."""
+    """Returns a value to aim at, with a tolerance of ``slack`` in both directions."""
     return Wanted(aim, Range(aim - slack, aim + slack))
 
 
@@ -76,8 +76,8 @@ class Adjust:
     """The mean grade in percent."""
 
     def milder(self) -> "Adjust":
-        """Returns the step with aims nearer to the present measurements of the element, in the same
-        ranges.
+        """Returns the same step with aims nearer to the present measurements of the element; the ranges
+        stay the same.
         """
         seen = self.element.seen
         if seen is None:
@@ -90,7 +90,7 @@ class Adjust:
         )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with new values for this one, and with its ranges as its requirement."""
+        """Returns the elements; the adjusted one has new values, and their ranges become its requirement."""
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
@@ -134,7 +134,7 @@ class Adjust:
 
 
 def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
-    """Returns the steps; a single Adjust is followed by a milder one with the same ranges."""
+    """Returns the steps; if the only step is an Adjust, its milder version is appended."""
     return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
@@ -215,7 +215,7 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
 @dataclass(frozen=True, slots=True)
 class RoadLength:
     """Requires a range of lengths for the whole road, in metres; other steps decide which elements may
-    change for it.
+    change to meet it.
     """
 
     room: Range
@@ -231,7 +231,7 @@ class SlopeOfAll:
 
     names: frozenset[str]
     slope: Callable[[float], float]
-    """A function that returns the new incline of a segment for its present one, both in percent."""
+    """A function that maps the present incline of a segment to its new incline, both in percent."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
@@ -254,7 +254,7 @@ class Mirror:
     """Names of the elements to mirror; None for all elements."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements, with those of these names mirrored."""
+        """Returns the elements, with the named ones mirrored."""
         return tuple(flipped(e) if self.names is None or e.name in self.names else e for e in elements)
 
 
@@ -303,7 +303,7 @@ class Insert:
     """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with the new ones in their place."""
+        """Returns the elements and the inserted ones in driving order."""
         if self.split:
             return tuple(
                 part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))

@@ -1,8 +1,8 @@
 """The vocabulary of change requests: phrases, written without accents, and their meanings.
 
-A phrase of several words takes precedence over its parts. A meaning with blanks stands for several meanings
-in a row. The five languages share one table, as their words hardly collide; where they do, English takes
-precedence.
+A phrase of several words takes precedence over its parts. A meaning that contains blanks is a sequence of
+several meanings. The five languages share one table, as few of their words coincide; for those that do,
+English takes precedence.
 """
 
 NUMBERS = {

@@ -55,7 +55,7 @@ class Requirements(NamedTuple):
     """The requirements for a road, in addition to those for each of its elements."""
 
     world: World
-    """The map and the limits of the rules."""
+    """The size of the map, and the limits that the rules check."""
     outline: Outline = Outline(groups=(), turns=Range())
     """Requirements for the whole road; none by default."""
     brief: Brief | None = None
@@ -103,7 +103,7 @@ class Look:
 
     @property
     def keeps_all_but_slopes(self) -> bool:
-        """Whether the road breaks no rule and all turns are measured, each to its side."""
+        """Whether the road breaks no rule, and has all turns, each to the required side, when measured."""
         return not self.findings and shows_turns(self.found, self.elements)
 
 
@@ -154,18 +154,18 @@ def fit(
     requirements: Requirements,
     frozen: Collection[str] = frozenset(),
 ) -> Look:
-    """Finds the road nearest to a design that meets all requirements; its ``objection`` is empty.
+    """Finds a road that meets all requirements and differs from the design as little as possible.
 
     Args:
         design: The road as it was proposed, or after the steps of an edit.
         elements: The turns and straights of the road in driving order, each with its requirement; together
-            they have all segments of the design.
+            they contain all segments of the design.
         requirements: The other requirements for the road.
         frozen: Names of the elements whose lengths, turns and radii stay as they are.
 
     Returns:
-        That road. If none is found, a road that meets everything except the proposed slopes, or else the
-        design, moved inside the map if possible.
+        A Look at that road, with an empty ``objection``. If no such road is found, a Look at a road that
+        meets everything except the proposed slopes, or else at the design, moved inside the map if possible.
 
     Raises:
         UsageError: No road can be built from these segments.

@@ -27,17 +27,18 @@ INSIDE = 0.2  # percentage points off the edge of what was asked for, or a third
 
 
 def graded(design: Design, elements: RoadElements, before: Design, world: World) -> Iterator[Design]:
-    """Yields the design with required grades, and with parabolas where slopes meet that did not meet before.
+    """Yields versions of the design that have the required grades, and parabolas at new joints of slopes.
 
-    The first designs have the most comfortable parabolas, and keep the parabolas at segments that the road
-    had before the change. The later designs make room for parabolas to which the rules would object. If none
-    has the required grades, the first one is yielded.
+    A joint is new if its two slopes did not meet before the change. The first designs have the most
+    comfortable parabolas, and keep the parabolas at segments that the road had before the change. The later
+    designs make room for parabolas to which the rules would object. If none has the required grades, the
+    first one is yielded.
 
     Args:
         design: The changed road.
         elements: The numbered elements of that road, some with a required grade.
         before: The road before the change.
-        world: The limits of the rules.
+        world: The limits that the rules check, such as the steepest grade.
     """
     pace = Pace.of(design, world)
     road = build(design)

@@ -1,7 +1,8 @@
 """Writes the limits of lengths and turns as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
 
-A least radius becomes such a limit: a segment that turns by ``turn`` radians over ``length`` metres, with a
-largest curvature ``peak`` times its mean one, has a least radius of length / (peak * turn).
+A minimum radius can be written as such a limit: if a segment turns by ``turn`` radians over ``length``
+metres, and its maximum curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak *
+turn).
 """
 
 from collections.abc import Sequence
@@ -31,7 +32,9 @@ class Margins(NamedTuple):
     """Distances that a repaired road keeps from the limits of the rules."""
 
     radius: float = 1.045
-    """Factor on the least radius that the rules allow, because the competition's spline cuts corners."""
+    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
+    spline cuts corners.
+    """
     seen: float = 12.0
     """Smallest angle of a turn, in degrees."""
     apart: float = 15.5
@@ -41,7 +44,7 @@ class Margins(NamedTuple):
     edge: float = 0.6
     """Distance in metres between the road and the border of the map."""
     promise: float = 0.04
-    """Margin inside a required range of lengths or radii, as a share of its bounds."""
+    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
 
 
 TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
@@ -84,7 +87,7 @@ class Rows:
             self.add({}, dict.fromkeys(members, METRES_PER_RADIAN), METRES_PER_RADIAN * radians(span.hi))
 
     def done(self) -> tuple[Array, Array]:
-        """Returns the matrix ``(m, 2 n)`` and the right side ``(m,)``."""
+        """Returns the matrix ``(m, 2 n)`` and the right-hand side ``(m,)``."""
         return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
 
 
@@ -96,15 +99,15 @@ def limits_of(
     world: World,
     margins: Margins,
 ) -> tuple[Array, Array]:
-    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right side ``(m,)``.
+    """Returns all limits of lengths and turns as a matrix ``(m, 2 n)`` and a right-hand side ``(m,)``.
 
     Args:
         segments: The ``n`` segments as proposed.
         elements: The turns and straights that the segments form, some with requirements of their own.
-        peak: Ratio of the largest to the mean curvature of each segment, ``(n,)``.
+        peak: Ratio of maximum to mean curvature of each segment, ``(n,)``.
         outline: The requirements of the whole road.
-        world: The limits of the rules.
-        margins: The margins to all limits.
+        world: The limits that the rules check, such as the steepest grade.
+        margins: The distances to keep from the limits.
     """
     rows = Rows(len(segments))
     radius = world.min_radius * margins.radius

@@ -1,8 +1,8 @@
 """Changes inclines as little as needed, so that every slope is measured as proposed and as required.
 
 Parabolas join the grades of a road, so a short level turn between two climbs is measured as climbing itself.
-If a turn is measured with a wrong grade, its incline is changed by the error, as far as the turn itself
-remains up, down or level. The rest of the error is corrected at its neighbours.
+If a turn is measured with a wrong grade, its incline is changed by the error, as long as the turn stays in
+its class (up, down or level). The rest of the error is corrected at its neighbours.
 """
 
 from collections.abc import Sequence
@@ -46,11 +46,11 @@ def sloped(
     If none are found, the last inclines that were tried are returned. The plan and the start stay the same.
 
     Args:
-        design: the design, with the plan that it is to have.
-        proposed: its segments as proposed, with the proposed inclines.
-        elements: its turns and gaps, each with its requirement.
+        design: the design, whose plan and start stay the same.
+        proposed: the segments of the design with the inclines that were proposed.
+        elements: the turns and gaps of the design, each with its requirement.
         outline: requirements for the whole road.
-        world: the limits of the rules.
+        world: the limits that the rules check, such as the steepest grade.
     """
     windows = [_window(element, outline, world) for element in elements]
     own = [window for window, element in zip(windows, elements, strict=True) for _ in element.segments]

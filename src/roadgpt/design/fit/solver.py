@@ -8,7 +8,7 @@ from round to round. Each step solves for all free lengths, all free turns and t
 
     step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
 
-``share_m`` is the share of the segment's turn that is completed at that step. It is taken from the built
+``share_m`` is the fraction of the segment's turn that is completed at that step. It is taken from the built
 curve, and kept while lengths and turns change a little.
 """
 
@@ -49,7 +49,7 @@ class PlanPolyline(NamedTuple):
     owner: NDArray[np.intp]
     """Index of the segment to which each step of the polyline belongs, ``(k,)``."""
     share: Array
-    """Share of its segment's turn that is completed in the middle of each step, ``(k,)``."""
+    """Fraction (0 to 1) of its segment's turn that is completed in the middle of each step, ``(k,)``."""
     peak: Array
     """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
 
@@ -69,7 +69,9 @@ class PlanPolyline(NamedTuple):
         return np.concatenate([[0j], np.cumsum(steps)]), steps
 
     def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
-        """Returns the derivatives of all points by each length and by each turn, ``(k + 1, n)`` each."""
+        """Returns the derivatives of all points with respect to each length and each turn, ``(k + 1, n)``
+        each.
+        """
         n, k = len(lengths), len(steps)
         own = self.owner[:, None] == np.arange(n)
         behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
@@ -115,9 +117,9 @@ class Aim(NamedTuple):
     """Whether the length and the turn of each segment may change; the others are constants."""
     figure: PlanPolyline
     rows: Array
-    """Limits of lengths and turns, ``(m, 2 n)``."""
+    """Matrix of the limits of lengths and turns, ``(m, 2 n)``."""
     most: Array
-    """Right sides of the limits, ``(m,)``."""
+    """Right-hand sides of the limits, ``(m,)``."""
     world: World
     margins: Margins
 
