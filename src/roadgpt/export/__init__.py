@@ -41,11 +41,14 @@ class Exporter(Protocol):
             road: The road to export.
             path: The file to write. Further files in the same folder must have names that begin with its
                 stem.
-            world: Friction, speed limit, and the lanes if the road has none of its own.
-            poses: The motion of the car in a drive along the road; formats that cannot hold it ignore it.
+            world: The World, which defines friction, speed limit, and the lanes of a road without its own
+                cross-section.
+            poses: The motion of the car in a drive along the road; formats that cannot store a drive ignore
+                it.
 
         Raises:
-            ExportError: The format cannot hold this road, or something that it needs is not installed.
+            ExportError: The format cannot hold this road, or a program that the exporter needs is missing or
+                fails.
         """
         ...
 
@@ -77,7 +80,8 @@ def save(
         road: The road to export.
         folder: The folder, which is created if it does not exist.
         formats: Names of exporters, such as "opendrive". All are looked up before any file is written.
-        world: Friction, speed limit, and the lanes if the road has none of its own.
+        world: The World, which defines friction, speed limit, and the lanes of a road without its own
+            cross-section.
         name: Name of the files without suffix.
         poses: The motion of the car in a drive along the road, for formats that can hold it.
 

@@ -19,13 +19,14 @@ PINCH = 0.95  # share of the radius; an offset line closer to the centre of its 
 
 
 def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
-    """Returns increasing stations for the points of a polyline along the road, both ends included.
+    """Returns increasing stations at which a polyline along the road needs points, both ends included.
 
     The stations are dense in bends and on crests, and sparse on straights.
 
     Args:
         road: The road.
-        reach: Largest offset in metres of a line from the centre line. Larger offsets need more points.
+        reach: Largest distance in metres between the centre line and any polyline that uses the stations.
+            Larger distances need more points.
         chord: Greatest allowed distance in metres between the polyline and the curve.
 
     Raises:
@@ -78,7 +79,9 @@ def _with_joints(s: Array, profile: Profile) -> Array:
 
 
 def line(road: Road, s: Array, t: ArrayLike) -> Array:
-    """Returns points ``(n, 3)`` at stations ``s`` and offset ``t`` to the left, in metres.
+    """Returns the points ``(n, 3)`` of the line at offset ``t`` to the left of the centre line, in metres.
+
+    There is one point for each station in ``s``.
 
     In a bend with a radius smaller than ``t``, the offset is reduced so that the line does not fold.
     """
@@ -89,7 +92,9 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
 
 
 def lines(road: Road, s: Array, offsets: Sequence[ArrayLike]) -> list[Array]:
-    """Returns for each of several offsets the points ``(n, 3)`` of ``line`` at stations ``s``."""
+    """Returns one array of points ``(n, 3)`` for each offset from the centre line, as computed by
+    ``line``.
+    """
     return [line(road, s, t) for t in offsets]
 
 

@@ -85,7 +85,7 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
 
     Args:
         road: The road.
-        world: Supplies the speed limit, the friction and the lane width.
+        world: The World, which defines the speed limit, the friction and the lane width.
         start: Station in metres where the drive begins.
     """
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
@@ -104,7 +104,9 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:
-    """Returns points ``(n, 3)`` on the ground under the car, ``ahead`` metres from its centre of gravity."""
+    """Returns points ``(n, 3)`` on the ground under the car, ``ahead`` metres in front of its centre of
+    gravity.
+    """
     h, p, r = poses.heading, poses.pitch, poses.roll
     forward = np.stack([np.cos(h) * np.cos(p), np.sin(h) * np.cos(p), np.sin(p)], axis=-1)
     left = np.stack([-np.sin(h), np.cos(h), np.zeros_like(h)], axis=-1)

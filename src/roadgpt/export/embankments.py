@@ -26,7 +26,7 @@ class Embankment(NamedTuple):
 
 
 def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:
-    """Yields the slopes at both edges of a road and at both ends.
+    """Yields the slopes along both edges of a road and across both of its ends.
 
     Args:
         road: The road.

@@ -40,7 +40,7 @@ class LaneletSection:
     end: float
     lanes: tuple[int, ...]
     bounds: tuple[LaneletBound, ...]
-    """The bounds from right to left; one more than lanes."""
+    """The bounds of the lanes from right to left. There is one more bound than there are lanes."""
 
     def bounds_of(self, lane: int) -> tuple[LaneletBound, LaneletBound]:
         """Returns the bounds of a lane: the one towards the centre line, and the outer one."""
@@ -50,7 +50,7 @@ class LaneletSection:
 
 
 def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
-    """Returns one or more sections, from the start of the road to its end.
+    """Returns the consecutive sections of a road from its start to its end; there is at least one.
 
     Raises:
         ExportError: The road has a number that is not finite.

@@ -62,7 +62,7 @@ class XmlElement:
         return child
 
     def extended(self, *children: Self) -> Self:
-        """Adds children and returns the element itself."""
+        """Appends the given elements as children, and returns this element."""
         self.children.extend(children)
         return self
 

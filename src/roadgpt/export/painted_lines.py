@@ -19,16 +19,19 @@ class NamedLine(NamedTuple):
     number: int
     """Index of the line in the result of ``Profile.markings``."""
     place: Place
-    """The place of the line: at the left or right edge of the carriageway, on the centre line, or between
-    two lanes.
+    """Position of the line: "left" or "right" edge of the carriageway, "middle" for the centre line, or
+    "between" two lanes.
     """
     is_broken: bool
     edges: Edges
-    """The offsets in metres of the left and the right edge of the line, at the given stations."""
+    """The offsets in metres of the left and right edges of the line, at the stations passed to
+    ``named_lines``.
+    """
 
 
 def named_lines(profile: Profile, s: Array) -> list[NamedLine]:
-    """Returns the lines of a road: those at its edges first, then the centre line and those between lanes.
+    """Returns the painted lines of a road: first the edge lines, then the centre line, then lines between
+    lanes.
 
     Args:
         profile: The cross-section of the road.

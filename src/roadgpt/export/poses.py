@@ -15,8 +15,8 @@ from roadgpt.geometry.curve import Array
 class Poses:
     """Poses of a car over time. Every array has shape ``(n,)`` with n >= 2, and the times increase.
 
-    Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
-    counter-clockwise, pitch positive nose up, roll positive left side up. Time is in s, speed in m/s.
+    Positions are those of the car's centre of gravity, in metres. Angles are in radians: heading 0 along +x
+    and counter-clockwise, pitch positive nose up, roll positive left side up. Time is in s, speed in m/s.
 
     Raises:
         UsageError: The arrays differ in length or contain a number that is not finite, or the times do not
@@ -43,7 +43,8 @@ class Poses:
 
     @classmethod
     def of(cls, columns: Mapping[str, ArrayLike]) -> Self:
-        """Returns the poses from a mapping with one column per field of this class, such as that of a Drive.
+        """Returns the poses from a mapping with one column per field of this class, such as the columns of a
+        Drive.
 
         Other columns are ignored.
 

@@ -30,7 +30,7 @@ class PlanCurve(Protocol):
 
 
 class ElevationProfile(Protocol):
-    """The height of a road as a function of the arc length ``s`` of its plane curve, in metres."""
+    """The height of a road in metres as a function of ``s``, the arc length of its plane curve in metres."""
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres at stations ``s``."""

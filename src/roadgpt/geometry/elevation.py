@@ -1,4 +1,4 @@
-"""Defines elevation profiles of two forms: constant grades joined by parabolas, and piecewise cubics."""
+"""Defines two types of elevation profile: constant grades joined by parabolas, and piecewise cubics."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -106,7 +106,8 @@ class CubicProfile:
     def cubics(self, s: ArrayLike) -> Array:
         """Returns the coefficients ``(n, 4)`` of the cubics at stations ``s`` ``(n,)``.
 
-        Each cubic is re-expressed as a function of the distance from its given station."""
+        The cubic that applies at each station is rewritten as a function of the distance from that station.
+        """
         u, table = self._place(s)
         return shifted(np.moveaxis(table, 0, -1), u)
 
@@ -138,7 +139,10 @@ class CubicProfile:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Returns cubics ``(..., 4)``, constant coefficient first, with the origin moved forward by ``u``."""
+    """Returns the coefficients of cubics ``(..., 4)`` after their origin is moved forward by ``u``.
+
+    The constant coefficient comes first.
+    """
     u = np.asarray(u, float)
     a, b, c, d = np.moveaxis(cubics, -1, 0)
     rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]

@@ -91,7 +91,9 @@ class PieceCurve:
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Returns curvatures in 1/m, positive to the left; at a jump of the curvature, the value after it."""
+        """Returns curvatures in 1/m, positive to the left; where the curvature jumps, the value after the
+        jump.
+        """
         u, i = self._place(s)
         _, _, _, _, k0, dk = self._table
         return np.asarray(k0[i] + u * dk[i])
@@ -142,7 +144,7 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """Returns the pieces without empty ones, and with neighbours of equal constant curvature merged."""
+    """Returns the pieces without those of zero length; neighbours of equal constant curvature are merged."""
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

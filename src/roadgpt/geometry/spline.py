@@ -52,7 +52,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
     Args:
         points: Control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
-        fewest: The least number of interpolated points, which applies to short roads.
+        fewest: The minimum number of interpolated points; it takes effect on short roads.
         decimals: The number of decimals to round to.
 
     Returns:
@@ -71,7 +71,9 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
 @dataclass(frozen=True, eq=False)
 class SplineCurve:
-    """A cubic spline in plan, parametrised by arc length in plan; the control points may have heights."""
+    """The plan view of a cubic spline, parametrised by arc length in plan. The control points may have
+    heights.
+    """
 
     tck: Tck
     knots: Array
@@ -153,7 +155,7 @@ class SplineCurve:
 
 @dataclass(frozen=True, eq=False)
 class SplineProfile:
-    """The heights of a spline in space as a function of arc length in plan."""
+    """The heights of a 3-D spline as a function of arc length in plan."""
 
     curve: SplineCurve
 

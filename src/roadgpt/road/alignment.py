@@ -7,9 +7,10 @@ The curvature of a turning segment changes from an entry value to its own value,
            entry ___/             \___ exit
                 clothoid      clothoid
 
-Entry and exit are 0 next to a straight or a turn to the other side. Between two segments that turn to the
-same side, they are the smaller curvature of the two. Such segments therefore form one longer turn. The prompt
-in the RoadGPT thesis asks language models to build turns of more than 70 degrees in this way.
+The entry or exit value is 0 where the neighbouring segment is straight or turns to the other side. Where both
+segments turn to the same side, the value is the smaller of their own curvatures, so that the two segments
+form one longer turn. The prompt in the RoadGPT thesis asks language models to build turns of more than 70
+degrees in this way.
 """
 
 import math
@@ -54,7 +55,7 @@ def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
     """Returns the lines, arcs and clothoids of all segments in order.
 
     Every segment keeps its length and its change of heading exactly. It also keeps its radius if the turn
-    fits into the length and does not continue into neighbouring turns at both ends.
+    fits into this length and at most one of its neighbours turns to the same side.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)

@@ -49,7 +49,9 @@ class Segment(_Frozen):
     transition: Length | None = None
     """Length in metres of the transition curve (clothoid) at either end of a turn."""
     vertical_radius: Length | None = None
-    """Radius in metres of the vertical curve from the grade of the previous segment to this one's."""
+    """Radius in metres of the vertical curve at the start of the segment, which joins its grade to that of
+    the previous segment.
+    """
 
 
 class Design(_Frozen):
@@ -87,7 +89,7 @@ def _plain(value: Any) -> Any:
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
-    """Returns the Design in a dictionary in the format of the RoadGPT thesis, and remarks about it.
+    """Reads a dictionary in the format of the RoadGPT thesis; returns the Design and a list of remarks.
 
     Each remark is a sentence about a contradiction in the data or an unusual value.
 

@@ -96,7 +96,8 @@ def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
 def elevation_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
     """Returns the elevation profile of the segments of a Design, starting at height ``z0`` in metres.
 
-    Outside the vertical curves, heights are the same as without vertical curves.
+    A vertical curve changes heights only within its own length. Elsewhere, heights are as if the grade
+    changed abruptly between segments.
     """
     grades = [segment.incline / 100 for segment in segments]
     stations, values = [0.0], [grades[0]]

@@ -33,7 +33,9 @@ class Land:
     heights: Array
     """Heights in metres, of shape (rows, columns)."""
     away: Array
-    """Distance in metres from the area in which the land follows the road, of shape (rows, columns)."""
+    """Distance in metres of each grid point from the strip along the road in which the land follows the
+    height of the road, of shape (rows, columns).
+    """
     cell: float
 
     @classmethod
@@ -58,7 +60,7 @@ class Land:
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:
-        """Returns ``values`` ``(rows, columns)`` of the grid, interpolated at n points ``x``, ``y``."""
+        """Returns grid values of shape ``(rows, columns)``, interpolated at n points ``x``, ``y``."""
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)

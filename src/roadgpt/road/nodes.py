@@ -1,7 +1,8 @@
-"""Converts a Design to nodes for a spline, as in the RoadGPT thesis.
+"""Converts a Design to the nodes of a spline, as in the RoadGPT thesis.
 
-The nodes are joined by straight lines, and the spline through them is smooth. Source: the thesis, section
-5.3.2. Unlike the program of the thesis, this module does not shift roads by (5, 5) m.
+Each segment is taken as a straight line between two nodes; the spline through the nodes makes the road
+smooth. Source: the thesis, section 5.3.2. Unlike the program of the thesis, this module does not shift roads
+by (5, 5) m.
 """
 
 import math

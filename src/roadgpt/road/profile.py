@@ -30,7 +30,7 @@ Width = float | CubicProfile
 
 
 class Edges(NamedTuple):
-    """The offsets of a left and a right edge, in metres to the left of the centre line.
+    """The offsets of a left and a right edge, in metres, positive to the left of the centre line.
 
     Both arrays have the shape of the stations for which they were computed.
     """
@@ -114,7 +114,8 @@ class Profile:
             backward: Number of oncoming lanes. With 0 the road is one-way.
             lane_width: Width of every lane.
             shoulder: Width of the shoulder on each side in metres; 0 for none.
-            superelevation_angle: As for the class.
+            superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
+                positive where it falls to the right; None for a level cross-section.
         """
 
         def side(count: int) -> tuple[Lane, ...]:
@@ -173,7 +174,8 @@ class Profile:
     def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
         """Returns the offsets of the outer edges of all lanes and shoulders, left and right of the centre.
 
-        Each list has one array for each lane of that side, from the centre line outwards.
+        The result is a list for the left side and a list for the right side. Each list has one array per
+        lane, from the centre line outwards.
         """
         left = [_sum(self.left[: n + 1], s) for n in range(len(self.left))]
         return left, [-_sum(self.right[: n + 1], s) for n in range(len(self.right))]
@@ -205,7 +207,7 @@ class Profile:
         return [PaintedLine(mark, _painted(t, side)) for (mark, t), side in found if mark != "none"]
 
     def marking_limits(self, s: ArrayLike) -> Edges:
-        """Returns the offsets of the outer edges of the markings beside the driven lane.
+        """Returns the offsets of the outer edges of the two lane markings that bound the driven lane.
 
         If a boundary of the lane has no marking, the offset of the boundary is returned.
         """

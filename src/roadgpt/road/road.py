@@ -80,7 +80,7 @@ class Road:
         """Returns the road whose centre line is the SBFT competition's spline through the given points.
 
         Args:
-            points: The points ``(n, 2)`` or ``(n, 3)`` in metres that the spline passes through.
+            points: The points ``(n, 2)`` or ``(n, 3)`` in metres through which the spline passes.
             road_points: Control points of the test that the road was read from, if they differ from
                 ``points``.
 
@@ -153,7 +153,9 @@ class Road:
         return s, np.asarray(t / np.cos(self.profile.superelevation(s)))
 
     def with_profile(self, profile: Profile | None) -> Self:
-        """Returns the road with this cross-section; with None, the road uses that of the World."""
+        """Returns the road with the given cross-section. With None, the road uses the cross-section of the
+        World.
+        """
         return replace(self, profile=profile, _sampled={})
 
     def heading(self, s: ArrayLike) -> Array:
@@ -198,8 +200,8 @@ class Road:
     def control_points(self) -> Array:
         """Returns the road's control points ``(n, 2)`` in metres for the spline of the SBFT competition.
 
-        For a road that was not built from points, these are points of the centre line that are dense enough
-        for the spline to keep its radii.
+        For a road that was not built from points, the control points are sampled from the centre line,
+        densely enough for the spline to preserve the radii of the road.
         """
         if self.road_points is not None:
             return self.road_points
@@ -286,7 +288,8 @@ def check_length(length: float) -> None:
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:
-    """Checks that a road nowhere climbs or falls by more than ten metres per metre in plan.
+    """Checks that the grade of a road is nowhere steeper than 10, that is ten metres of height per metre in
+    plan.
 
     Raises:
         UsageError: The road is steeper than this at some station.

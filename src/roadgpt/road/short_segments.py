@@ -18,9 +18,10 @@ HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m abov
 def in_short_segments(design: Design) -> Design:
     """Returns a design of short straight segments that approximates the given design.
 
-    With the geometry "spline", the new design follows the lines, arcs and clothoids of the given one. The
-    geometry "spline" adds a level stub at the start. To avoid overshoot of the spline after this stub, the
-    grade is built up over a few segments, which shifts the heights of the rest of the road by a constant.
+    If the new design is built with the geometry "spline", the road follows the lines, arcs and clothoids of
+    the given design. The geometry "spline" puts a level stub at the start of the road. The grade is therefore
+    built up over a few segments after the stub, so that the spline does not overshoot there. This shifts the
+    heights of the rest of the road by a constant.
     """
     road = build(design)
     first = min(STUB, road.length / 2)

@@ -60,9 +60,7 @@ class PathGeometry(Protocol):
 
 @dataclass(frozen=True)
 class DrivingLimits:
-    """The limits that a driver respects: largest accelerations in multiples of g, largest speed, and engine
-    power.
-    """
+    """The limits that a driver respects. Accelerations are in multiples of g."""
 
     lateral: float
     """Largest lateral acceleration in a steady bend, in g."""
@@ -93,8 +91,8 @@ def expected_speed(
     """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
     The car drives on dry asphalt in the middle of its lane, within the speed limit and the default driver's
-    limits of acceleration. Arguments are as for ``lane_speed``. ``profile`` is the road's own cross-section;
-    with None, the road has the lanes and the superelevation of the World.
+    limits of acceleration. The arguments have the meaning that they have in ``lane_speed``. ``profile`` is
+    the cross-section of the road; with None, the road has the lanes and the superelevation of the World.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
     s = step * np.arange(np.size(curvature))
@@ -117,9 +115,10 @@ def lane_speed(
     limits: DrivingLimits,
     superelevation: ArrayLike = 0.0,
 ) -> Array:
-    """Returns the speeds in m/s, from a standing start, of a car in the middle of its lane.
+    """Returns the speeds in m/s of a car that starts from rest and drives in the middle of its lane.
 
-    The car slows down for bends but not for crests, so that abrupt crests are judged at full speed.
+    The car slows down for bends but not for crests, so that the check for abrupt crests is made at full
+    speed.
 
     Args:
         curvature: Curvature of the centre line in 1/m, ``(n,)``.

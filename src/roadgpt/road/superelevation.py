@@ -3,7 +3,7 @@
 Source: National Highways, CD 109 Highway link design (earlier TD 9/93), section 3: at a design speed of V
 km/h, a bend of radius R metres has a superelevation of V^2 / (2.828 R) percent, and at most 7 % outside
 towns. The superelevation is built up along the transition curve (the run-in). If the transition curve is so
-short that the edge of the carriageway would climb or fall by more than 1 % against the centre line, the
+short that the edge of the carriageway would climb or fall by more than 1 % relative to the centre line, the
 run-in begins earlier and ends later, at most at the middle of the adjoining straight or arc.
 """
 
@@ -29,14 +29,16 @@ Knots = list[tuple[float, float]]
 
 
 def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | None = None) -> CubicProfile:
-    """Returns the superelevation in radians by station; it is negative in left bends, so that bends fall to
-    the inside.
+    """Returns the superelevation in radians as a function of the station.
+
+    The surface falls to the inside of each bend, so the superelevation is negative in left bends.
 
     Args:
         plan: The centre line.
         reach: Distance in metres from the centre line to the farther edge of the carriageway.
         speed: Design speed in m/s.
-        ratio: The superelevation of every bend as a ratio; None: the value of CD 109 for the bend's radius.
+        ratio: The superelevation of every bend as a ratio; None for the value that CD 109 gives for the
+            radius of the bend.
     """
     if isinstance(plan, PieceCurve):
         knots = _of_pieces(plan, reach, speed, ratio)
@@ -82,7 +84,7 @@ def _run_in(
 def superelevation_for(curvature: Array, speed: float, ratio: float | None = None) -> Array:
     """Returns the superelevation in radians for curvatures in 1/m (positive to the left), without a run-in.
 
-    Speed and ratio are as for ``superelevation``.
+    ``speed`` and ``ratio`` have the same meaning as in ``superelevation``.
     """
     bend = np.abs(curvature)
     if ratio is None:

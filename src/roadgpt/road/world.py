@@ -34,7 +34,9 @@ class World(BaseModel):
     lane_width: Positive = 4.0
     """Width of every lane in metres."""
     lane_width_end: Positive | None = None
-    """Width in metres to which the lanes widen or narrow until the end of the road; None for no change."""
+    """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
+    start; None for a constant width.
+    """
     bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=0.12)] = "none"
     """Superelevation of bends: "none", "auto" for the values of CD 109, or one ratio for all bends."""
     verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
@@ -47,18 +49,18 @@ class World(BaseModel):
     speed_limit: Positive = 70 / 3.6
     """Speed limit in m/s. The default is the competition's 70 km/h."""
     oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
-    """Share of the car's area, 0 to 1, that may be outside its lane before the test fails."""
+    """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
     lane_departure: bool = False
     """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking.
 
     Source: UN Regulation No. 157, 5.2.1.
     """
     min_radius: Positive = 14.326
-    """Least radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
+    """Minimum radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
-    """Steepest grade that rules allow, uphill or downhill, as a ratio."""
+    """Steepest grade, uphill or downhill, that the validity rules allow, as a ratio."""
     z_floor: float = -28.0
-    """Height in metres of the level's ground."""
+    """Height in metres of the flat ground of the simulator's map."""
     min_length: NotNegative = 20.0
 
     @model_serializer(mode="wrap")
@@ -67,10 +69,12 @@ class World(BaseModel):
         return {name: value for name, value in data.items() if name not in OWN or value != OWN[name]}
 
     def profile_of(self, road: Road) -> Profile:
-        """Returns the cross-section of a road: its own, or this World's if it has none.
+        """Returns the cross-section of a road: ``road.profile``, or this World's cross-section if that is
+        None.
 
         Raises:
-            UsageError: This World has banked bends, and the road was not laid in it.
+            UsageError: This World has banked bends, but the road has no superelevation because it was not
+                passed through ``lay``.
         """
         if road.profile is not None:
             return road.profile
@@ -96,7 +100,7 @@ class World(BaseModel):
     def usual_profile(self, length: float) -> Profile:
         """Returns the cross-section of a road of this length in metres, without superelevation.
 
-        Roads that have no cross-section of their own have this one.
+        It applies to every road whose own ``profile`` is None.
         """
         forward, backward = map(int, self.lanes.split("+"))
         return Profile.of(forward, backward, self._width(length), self.verge)

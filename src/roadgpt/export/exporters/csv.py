@@ -1,4 +1,4 @@
-"""Exports the road at every metre, and every step of the drive, as comma-separated values."""
+"""Exports comma-separated values: one row per metre of the road, and one row per time step of the drive."""
 
 from pathlib import Path
 
@@ -18,8 +18,9 @@ DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
 class Csv:
     """Tables of the centre line every metre, with heading, curvature, grade and widths, and of the drive.
 
-    If the road has other lanes than the usual two, the table also has the superelevation, and the offset of
-    the outer edge of each lane and shoulder, which are numbered as in OpenDRIVE.
+    If the road does not have the default cross-section (one lane of constant width in each direction, level),
+    the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.
+    Lanes are numbered as in OpenDRIVE.
     """
 
     name = "csv"

@@ -44,7 +44,9 @@ class OpenScenario:
 
 
 def scenario(road: Road, world: World, map_: str) -> XmlElement:
-    """Returns the scenario in which the car starts from rest, slows down for bends, and drives to the end."""
+    """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
+    the road.
+    """
     profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
     start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
@@ -79,7 +81,9 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
-    """Returns the scenario in which the car repeats a recorded drive, given as a trajectory with times."""
+    """Returns a scenario in which the car replays a recorded drive, written as a trajectory with time
+    stamps.
+    """
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
     exact = np.column_stack([ground, poses.heading, -poses.pitch, poses.roll])

@@ -1,4 +1,6 @@
-"""Exports roads as tests of the SBFT tool competition, with additional points that have heights."""
+"""Exports roads as tests of the SBFT tool competition, with an additional list of points that have
+heights.
+"""
 
 import json
 from pathlib import Path

@@ -44,7 +44,9 @@ class Sumo:
     suffix = ".nod.xml"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml, .sumocfg, and with netconvert .net.xml."""
+        """Writes NAME.nod.xml, .edg.xml, .netccfg, .rou.xml and .sumocfg; also .net.xml if netconvert is
+        installed.
+        """
         stem = path.name.removesuffix(self.suffix)
         shape = np.round(line(road, stations(road, world.profile_of(road).paved_reach), 0.0), DECIMALS) + 0.0
         limits = speed_zones(road, world)
@@ -85,20 +87,20 @@ def _nodes(shape: Array) -> XmlElement:
 
 
 class SpeedZone(NamedTuple):
-    """A part of the road with one speed limit; it ends where the next part starts."""
+    """A stretch of road with one speed limit; it ends where the next zone starts."""
 
     start: float
-    """Station in metres where the part starts."""
+    """Station in metres where the zone starts."""
     speed: float
     """Speed limit in m/s."""
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
-    """Divides the road into consecutive parts, each with the lowest speed at which a calm driver drives on
-    it.
+    """Divides the road into consecutive zones. The speed limit of each is the lowest speed of a calm driver
+    in it.
 
-    A part is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
-    the speed limit of the next part, so they drive bends at a suitable speed.
+    A zone is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
+    the speed limit of the next zone, so they drive bends at a suitable speed.
     """
     count = max(1, int(road.length / SHORTEST))
     ends = np.linspace(0.0, road.length, count + 1)

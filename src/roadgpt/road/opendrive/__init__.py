@@ -9,7 +9,7 @@ line        computes the plan: unchanged where possible, otherwise clothoids thr
 joins       finds places where elements do not meet exactly, and bridges them
 heights     reads the elevation without changing it
 cubic_rows  joins and limits piecewise cubics of the station
-reversal    turns a road round whose driving lanes are on the left
+reversal    reverses a road whose driving lanes are on the left
 left_out    lists the contents of the file that a Road cannot represent
 """
 
@@ -55,8 +55,8 @@ class ImportedRoad:
     road: Road
     """The road.
 
-    It has no cross-section of its own if the file describes the usual one of a World: one lane in each
-    direction, both of the same constant width, with shoulders of the same constant width.
+    Its ``profile`` is None if the file describes the default cross-section of a World: one lane in each
+    direction, both of the same constant width, with shoulders of equal constant width.
     """
     id: str
     name: str
@@ -73,8 +73,9 @@ class ImportedRoad:
     def world(self, base: World) -> World:
         """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
 
-        A speed limit or friction that the file does not state is taken from ``base``. If the road has a
-        cross-section of its own, lane width and shoulder are taken from ``base`` as well.
+        A speed limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is
+        not None, lane width and shoulder are also taken from ``base``, because the road's own cross-section
+        defines them.
         """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:

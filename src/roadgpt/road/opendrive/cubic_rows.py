@@ -1,4 +1,4 @@
-"""Joins, limits and closes piecewise cubics of the station: widths of lanes and superelevation."""
+"""Adds, limits and completes piecewise cubics over the station, such as lane widths or superelevation."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -17,7 +17,10 @@ SHORTEST = 1e-6  # m between two stations
 
 
 def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
-    """Returns the sum of cubics between two stations in metres, each multiplied by its factor."""
+    """Returns the weighted sum of piecewise cubics between two stations in metres.
+
+    Each entry of ``parts`` is a factor and the cubics that it multiplies.
+    """
     inner = {s for _, each in parts for s in each.stations if start < s < end}
     stations = np.array([start, *sorted(inner)])
     table = np.zeros((len(stations), 4))
@@ -27,18 +30,18 @@ def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: flo
 
 
 def value_at(row: Row, s: float) -> float:
-    """Returns the value of a row's cubic at a station."""
+    """Returns the value that the cubic of a row has at station ``s``."""
     (a, b, c, d), u = row[1], s - row[0]
     return float(a + u * (b + u * (c + u * d)))
 
 
 def constant(s: float, value: float) -> Row:
-    """Returns the row of a constant value from a station on."""
+    """Returns a row with a constant cubic that begins at station ``s``."""
     return s, (value, 0.0, 0.0, 0.0)
 
 
 def limited(rows: Sequence[Row], end: float, low: float, high: float) -> list[Row]:
-    """Returns the rows with every value moved to the nearest one between two limits.
+    """Returns the rows with their values clamped to the range from ``low`` to ``high``.
 
     The result is exact: a row is cut where its cubic crosses a limit.
 
@@ -77,9 +80,9 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the cubics for a road of this length in metres, constant after its end.
+    """Returns the rows as a profile of a road of this length in metres; its value is constant after the end.
 
-    Rows that only continue a constant are left out.
+    A constant row that repeats the value of the previous constant row is left out.
     """
     kept: list[Row] = []
     for row in rows:
@@ -95,7 +98,7 @@ def closed(rows: Sequence[Row], length: float) -> CubicProfile:
 
 
 def rows_of(cubics: CubicProfile) -> list[Row]:
-    """Returns the rows of piecewise cubics."""
+    """Converts a profile to rows, each with a station and the cubic that begins there."""
     return [*zip(cubics.stations, cubics.coefficients, strict=True)]
 
 

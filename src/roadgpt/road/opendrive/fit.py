@@ -1,4 +1,4 @@
-"""Fits a clothoid between each two consecutive poses, so that position and heading are met at both ends.
+"""Fits a clothoid between each two consecutive poses, with the position and heading of the pose at both ends.
 
 The only unknown, the change of curvature, is found with Newton's method. Source: Bertolazzi and Frego, G1
 fitting with clothoids, Mathematical Methods in the Applied Sciences 38 (2015).

@@ -44,7 +44,7 @@ class GeometryElement:
     y: float
     heading: float
     length: float
-    """Length in metres that the file states."""
+    """Length of the element in metres, as stated in the file."""
     shape: Shape
 
     def poses(self, share: Array) -> Array:

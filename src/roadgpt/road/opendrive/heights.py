@@ -17,13 +17,15 @@ APART = 1.0  # m between the stations of the heights of a centre line beside the
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Returns the elevation profile over the stations of the file; height 0 if the file has no elevation."""
+    """Returns the elevation profile over the stations of the file. If the file has no elevation, the
+    height is 0.
+    """
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 
 
 def plain(profile: CubicProfile, length: float) -> ElevationProfile:
-    """Returns the profile as constant grades and parabolas, if it consists of them.
+    """Returns the profile as a GradeProfile if it consists of constant grades and parabolas.
 
     A profile with steps, kinks or cubic terms is returned unchanged.
     """
@@ -55,8 +57,8 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
     """Returns the heights of the inner edge of the driving lanes over the stations of the file.
 
-    The heights equal those of the reference line, except where the edge is away from this line and the
-    surface is inclined.
+    They differ from the heights of the reference line only where the road has superelevation and the edge
+    does not coincide with this line.
 
     Args:
         heights: The heights of the reference line.
@@ -100,8 +102,8 @@ def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
     """Returns cubics of the file as cubics over the stations of the Road.
 
-    Stations of file and Road differ where the centre line is longer or shorter than the reference line. The
-    stations are interpolated linearly between the given ones.
+    Stations of file and Road differ where the centre line is longer or shorter than the reference line.
+    Between the given pairs of corresponding stations, the conversion is linear.
 
     Args:
         profile: The cubics over the stations of the file.

@@ -2,7 +2,7 @@
 
 Files contain rounded numbers, and some elements are shorter than the rounding errors. A curve through every
 pose would oscillate there: an error of 1 cm within one metre causes a bend with a radius of 33 m. Poses close
-to such a place are therefore left out; the larger the error, the more poses.
+to such a place are therefore left out. The larger the error, the more poses are left out.
 """
 
 import math
@@ -46,7 +46,9 @@ class SampledLine:
     """
 
     def only(self, kept: Array) -> "SampledLine":
-        """Returns the line with only the poses that the mask or the indices ``kept`` select."""
+        """Returns a line with only the poses selected by ``kept``, which is a boolean mask or an array of
+        indices.
+        """
         return SampledLine(self.s[kept], self.poses[kept], self.gaps[kept], self.kinks[kept], self.ends)
 
 
@@ -112,7 +114,8 @@ def _thinned(s: Array, kept: Array) -> Array:
 
 
 def misses(line: SampledLine) -> str:
-    """Returns a text with the numbers of noticeable kinks and gaps, and the largest of each.
+    """Returns a text that states how many noticeable kinks and gaps the line has, and the largest kink and
+    gap.
 
     The text is empty if there are none.
     """

@@ -25,7 +25,9 @@ MOST_ACROSS = 200  # lanes on one side of a section
 
 @dataclass(frozen=True)
 class LaneElement:
-    """One lane of a lane section. Either ``width`` or ``border``, the offset of its outer edge, is given."""
+    """One lane of a lane section. The file gives either its width or its ``border``, the offset of its
+    outer edge.
+    """
 
     node: Node
     kind: str
@@ -54,7 +56,7 @@ class LaneSection:
 
 
 class Span(NamedTuple):
-    """A lane section with a driving lane, and where it begins and ends, in metres."""
+    """A lane section that has a driving lane, with the stations in metres at which it begins and ends."""
 
     section: LaneSection
     start: float
@@ -66,7 +68,7 @@ class Lanes:
     """The lane sections of a road."""
 
     side: int
-    """-1 where the driven side is to the right of the reference line, 1 where it is to the left."""
+    """-1 if the driven side is to the right of the reference line, 1 if it is to the left."""
     sections: tuple[LaneSection, ...]
     offset: CubicProfile | None
     angle: CubicProfile | None
@@ -74,7 +76,7 @@ class Lanes:
     length: float
 
     def edge(self, s: Array) -> tuple[Array, Array]:
-        """Returns the offset of the inner edge of the driving lanes, and its slope, at stations ``s``.
+        """Returns offset and slope of the inner edge of the driving lanes at stations ``s``.
 
         The offset is in metres to the left of the reference line and is measured in plan; the slope is its
         change per metre.
@@ -86,7 +88,9 @@ class Lanes:
         return t * cos, slope * cos - t * sin * self.angle.grade(s)
 
     def edge_on_surface(self, s: Array) -> tuple[Array, Array]:
-        """Returns the same as ``edge``, but measured along the inclined surface."""
+        """Returns offset and slope of the inner edge as ``edge`` does, but measured along the inclined
+        road surface.
+        """
         t, slope = _both(self.offset, s)
         starts = np.array([section.s for section in self.sections])
         index = np.clip(np.searchsorted(starts, s, side="right") - 1, 0, len(starts) - 1)
@@ -131,7 +135,9 @@ class Lanes:
         ]
 
     def stretches(self) -> list[tuple[float, float]]:
-        """Returns the first and the last station in metres of every part with a driving lane."""
+        """Returns the first and last station in metres of each continuous stretch of road with a driving
+        lane.
+        """
         found: list[tuple[float, float]] = []
         for _, start, end in self.spans():
             joins = bool(found) and start - found[-1][1] < NEAR
@@ -222,6 +228,6 @@ def _speeds(nodes: Sequence[Node]) -> list[float]:
 
 
 def friction(driven: Sequence[Node]) -> float | None:
-    """Returns the friction of the driven lane in the file; None if the file gives no friction."""
+    """Returns the friction coefficient that the file states for the driven lane; None if it states none."""
     said = [node for lane in driven for node in lane.all("material") if "friction" in node.attributes]
     return number(said[0], "friction") if said else None

@@ -23,26 +23,26 @@ MARKS: dict[str, Marking] = {
 
 
 class MarkedLane(NamedTuple):
-    """A lane in one lane section, with the road marks at its outer edge."""
+    """A lane in one lane section; its XML element contains the road marks at its outer edge."""
 
     span: Span
     node: Node
 
 
 def has_marks(road: Node) -> bool:
-    """Returns whether a road has any road mark in the file."""
+    """Returns whether the file contains a road mark for this road."""
     return any(
         road.all("lanes", "laneSection", side, "lane", "roadMark") for side in ("left", "center", "right")
     )
 
 
 def marking(lanes: Iterable[MarkedLane]) -> tuple[Marking, bool]:
-    """Returns the marking at an edge, and whether it changes along the road.
+    """Returns the marking at the outer edge of a lane, and whether this marking changes along the road.
 
-    If it changes, the longest one is returned.
+    If it changes, the marking with the largest total length is returned.
 
     Args:
-        lanes: The lane at whose outer edge the marks are, in each section that has it.
+        lanes: The lane, once for each lane section in which it exists.
     """
     lengths: dict[Marking, float] = {}
     for span, lane in lanes:

@@ -44,8 +44,9 @@ def cubic(node: Node) -> Cubic:
 
 
 def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
-    """Returns the cubic polynomials of elements, each valid from its station to the next; None if there are
-    no elements.
+    """Returns the cubic polynomials that the elements define; None if there are no elements.
+
+    Each cubic applies from its own station to the station of the next cubic.
 
     Before the first station, the value is constant.
 

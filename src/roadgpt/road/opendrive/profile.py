@@ -30,7 +30,7 @@ Carry = Callable[[CubicProfile], CubicProfile]
 
 
 class JoinedLane(NamedTuple):
-    """A lane of the road, joined from the lanes of its sections."""
+    """A lane along the whole road, joined from one lane of each lane section in which it exists."""
 
     kind: Kind
     width: CubicProfile
@@ -49,7 +49,9 @@ class LaneMarkings:
 
 @dataclass(frozen=True)
 class FileProfile:
-    """The cross-section in a file, over the stations of the file and as seen along the driven side."""
+    """The cross-section that a file describes, over the stations of the file. Left and right are as seen
+    in the driving direction of the driven side.
+    """
 
     right: tuple[JoinedLane, ...]
     left: tuple[JoinedLane, ...]
@@ -61,19 +63,19 @@ class FileProfile:
     """Sentences about properties of the file that were changed."""
 
     def used(self) -> set[int]:
-        """Returns Python's ``id`` of the XML element of every lane that is a part of the cross-section."""
+        """Returns Python's ``id`` of the XML element of every lane that the cross-section contains."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
     def driven_nodes(self) -> list[Node]:
-        """Returns the driven lane in each section that has it."""
+        """Returns the XML element of the driven lane from each lane section in which it exists."""
         return [part.node for part in self.right[self.driven].parts]
 
     def carried(self, carry: Carry, turned: Carry) -> Profile:
         """Returns the cross-section over the stations of the Road.
 
         Args:
-            carry: Converts the widths.
-            turned: Converts the superelevation.
+            carry: Function that converts lane widths from stations of the file to stations of the Road.
+            turned: Function that does the same for the superelevation.
         """
         right, left = (
             tuple(
@@ -111,7 +113,8 @@ class _SectionSide(NamedTuple):
 
 
 def read_profile(road: Node, lanes: Lanes) -> FileProfile:
-    """Returns the cross-section of a road. Its cubics are constant from the end of the road on.
+    """Returns the cross-section of a road. Its widths and superelevation are constant after the end of the
+    road.
 
     Raises:
         UsageError: A width or the superelevation consists of too many cubics.
@@ -258,7 +261,7 @@ def checked(cubics: CubicProfile) -> CubicProfile:
     """Returns the cubics unchanged if a road file can hold them.
 
     Raises:
-        UsageError: There are too many.
+        UsageError: There are too many cubics.
     """
     if len(cubics.stations) > MOST_ROWS:
         raise UsageError(

@@ -1,4 +1,4 @@
-"""Reads one road from the XML of an OpenDRIVE file, which may be malicious, and skips everything else.
+"""Reads one road from an OpenDRIVE file, skips the rest of the file, and is safe against malicious XML.
 
 A file with a DOCTYPE is refused, so that no XML entities can be declared, fetched or expanded. Limits on file
 size, number of elements, depth and tag length bound the time and memory that reading takes.
@@ -49,7 +49,9 @@ class Node:
     children: list["Node"] = field(default_factory=list)
 
     def all(self, *path: str) -> list["Node"]:
-        """Returns all elements below this one that are reached by a path of tags."""
+        """Returns all descendants that are reached by a path of tags, such as ``all("lanes",
+        "laneSection")``.
+        """
         found = [self]
         for tag in path:
             found = [child for node in found for child in node.children if child.tag == tag]
@@ -64,9 +66,11 @@ class Choice:
     others: tuple[str, ...]
     """Ids of all roads in the file."""
     passed: Mapping[str, int]
-    """Numbers of objects, signals and other skipped elements of the road, by kind."""
+    """Number of skipped elements of the road for each type of element, such as objects and signals."""
     header: frozenset[str]
-    """Names of those skipped elements of the header (``geoReference``, ``offset``) that the file contains."""
+    """Names of the header elements (``geoReference``, ``offset``) that the file contains and that are
+    skipped.
+    """
 
 
 def is_driven(lane: Node) -> bool:

@@ -49,7 +49,7 @@ def write_level(
         road: The road.
         levels: The folder of levels; the level becomes a sub-folder.
         name: Name of the level and of its folder, as returned by ``level_name``.
-        world: Widths of lane and shoulder, friction.
+        world: The World, which defines lane width, shoulder width and friction.
         title: Title of the level in the game; empty to use ``name``.
         seed: Seed of the random shifts of mesh nodes that prevent flicker.
         model: Name of BeamNG's vehicle model.

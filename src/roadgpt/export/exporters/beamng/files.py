@@ -34,7 +34,9 @@ def ground_model(friction: float) -> str:
 
 
 def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[Item]]:
-    """Returns the objects of each ``items.level.json``; the keys are folders below ``main``."""
+    """Returns the objects of every ``items.level.json`` file of a level, by the folder of the file below
+    ``main``.
+    """
     groups = ("sky_and_ground", "roads", "player")
     return {
         "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],

@@ -6,8 +6,8 @@ r"""Builds a road as BeamNG represents roads, for the files of a level and for a
 As in the RoadGPT thesis, both strips follow the same line, and the nodes of the mesh are shifted at random so
 that the two surfaces do not flicker. In addition, the decal is placed a little above the mesh. The shifts
 depend only on the seed. The shoulder is a second, wider mesh just below the first one. It reaches down to the
-ground, whose height is that of the lowest place of the road. A road without shoulder floats above a ground at
-height ``world.z_floor``.
+ground, which is at the height of the lowest point of the road. A road without shoulder floats above a ground
+at height ``world.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ GOAL = "goal"
 
 
 class Materials(NamedTuple):
-    """Names of the materials of a level, by the surface that uses them."""
+    """Names of the materials of a level; each field is named after the surface that uses the material."""
 
     road: str
     verge: str
@@ -67,7 +67,7 @@ class Strip:
     normals: Array | None = None
     """Unit vectors ``(n, 3)`` at right angles to a banked mesh, upwards; None for a level cross-section."""
     is_one_way: bool = False
-    """Whether the decal that BeamNG's AI follows has no lane against the road."""
+    """Whether the road has no oncoming lanes; only set for the decal road that BeamNG's AI follows."""
 
     @property
     def is_mesh(self) -> bool:
@@ -100,7 +100,7 @@ def level_road(
 
     Args:
         road: The road.
-        world: Widths of lane and shoulder.
+        world: The World, which defines lane width and shoulder width.
         seed: Seed of the random shifts of mesh nodes that prevent flicker.
         materials: Names of materials that exist in the level.
         lift: Metres by which everything is raised, for a level whose ground is not at ``world.z_floor``.

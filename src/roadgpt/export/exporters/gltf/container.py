@@ -40,7 +40,7 @@ class TriangleMesh:
     texture: Array
     """Texture coordinates of shape (n, 2) in metres, across and along the surface.
 
-    The texture of the material is repeated over them.
+    The texture of the material is repeated across the surface.
     """
     triangles: np.ndarray
     """Indices of points, of shape (m, 3), counter-clockwise seen from outside."""
@@ -50,7 +50,7 @@ def to_bytes(meshes: Sequence[TriangleMesh], near: Array) -> bytes:
     """Returns the bytes of a binary glTF file with the given meshes.
 
     Args:
-        meshes: The meshes of the scene, each a node of its own.
+        meshes: The meshes of the scene; each becomes a separate node of the file.
         near: A point of the scene, (x, y, z) in metres. Coordinates are stored relative to it, because single
             precision is too coarse far from the origin.
     """

@@ -1,4 +1,6 @@
-"""Creates textures of surfaces from noise. They tile without a seam and are the same for every road."""
+"""Creates textures of surfaces from noise. The textures tile without a seam and are the same for every
+road.
+"""
 
 import io
 from functools import cache
@@ -13,13 +15,15 @@ SIDE = 256  # pixels
 
 
 class Grain(NamedTuple):
-    """A texture that makes a surface lighter and darker."""
+    """A texture that varies the brightness of a surface."""
 
     metres: float
     """Side length in metres of the square area that the texture covers."""
     seed: int
     octaves: tuple[tuple[int, float], ...]
-    """Layers of noise: number of cells along a side, and strength relative to the mean brightness."""
+    """Layers of noise. Each has the number of noise cells along a side of the texture, and the amplitude
+    relative to the mean brightness.
+    """
 
 
 GRAINS = {

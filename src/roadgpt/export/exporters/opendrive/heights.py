@@ -1,4 +1,4 @@
-"""Writes elevations and other profiles over the station: parabolas and cubics exactly, splines as fitted
+"""Writes elevation and other functions of the station: parabolas and cubics exactly, splines as fitted
 cubics.
 """
 
@@ -23,9 +23,10 @@ def elevations(road: Road) -> list[XmlElement]:
 
 
 def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[XmlElement]:
-    """Returns one element for each cubic that begins on a road of this length, the first at station 0.
+    """Returns one XML element for each cubic of a profile, up to the end of the road; the first is at station
+    0.
 
-    Cubics that only continue the previous one are left out.
+    A cubic that is identical to the continuation of the previous one is left out.
 
     Args:
         name: Name of the elements.

@@ -109,7 +109,8 @@ def _cubic(cu: float, cv: float, du: float, dv: float) -> XmlElement:
 def breaks_of(plan: PlanCurve) -> Array:
     """Returns the stations that bound the smooth parts of a curve, both ends included.
 
-    They include all nodes of a spline."""
+    For a spline, they include the stations of all its nodes.
+    """
     if isinstance(plan, SplineCurve):
         inner = plan.stations[1:-1]
         kept, last = [], 0.0
