@@ -62,7 +62,7 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Returns the command that the first arguments name, by its present or an earlier name.
+        """Returns the command that the first arguments name; earlier names of commands work too.
 
         Raises:
             click.UsageError: There is no such command; the message says what to type instead.

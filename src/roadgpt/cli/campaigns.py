@@ -57,7 +57,7 @@ def faults_of(status: "Status") -> "Faults | None":
 
 
 def as_line(status: "Status", found: "Faults | None") -> str:
-    """Returns a status as one line of JSON."""
+    """Returns a campaign's status as one line of JSON."""
     import json
 
     counts = found and {"faults": len(found.them), "failures": found.failures, "compared": found.compared}

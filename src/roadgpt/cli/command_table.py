@@ -64,8 +64,10 @@ EARLIER_VALUES = {"--view bonnet": "--view hood"}
 
 
 def renamed(args: Sequence[str]) -> tuple[list[str], str]:
-    """Returns the arguments with the command's present name, and a sentence for the user if they had an
-    earlier name.
+    """Replaces an earlier name of a command by its present name.
+
+    Returns the arguments, and a sentence that tells the user the present name; the sentence is empty if
+    nothing was replaced.
 
     Args:
         args: The arguments after ``roadgpt``.
@@ -78,12 +80,13 @@ def renamed(args: Sequence[str]) -> tuple[list[str], str]:
 
 
 def renamed_options(args: Sequence[str], known: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Returns the arguments with the options' present names, and a sentence for the user for each earlier
-    name.
+    """Replaces earlier names of options by their present names.
+
+    Returns the arguments, and for each replaced name a sentence that tells the user the present one.
 
     Args:
         args: The arguments after a command.
-        known: The options of the command.
+        known: Names of the options that the command has now.
     """
     new: list[str] = []
     told: list[str] = []

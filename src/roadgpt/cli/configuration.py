@@ -1,9 +1,9 @@
 """Options that can also be set in a configuration file or the environment; ``roadgpt config show`` lists
 them.
 
-Sources and precedence are those of ``roadgpt.chat.config``: the command line first, then the environment
-(``ROADGPT_FRICTION``), then ``.env`` and ``roadgpt.toml`` in the working folder, then the user's
-``config.toml``. The tables are ``[run]``, ``[world]`` and ``[beamng]``; ``[chat]`` is for language models.
+A value on the command line takes precedence, then the environment (``ROADGPT_FRICTION``), then ``.env`` and
+``roadgpt.toml`` in the working folder, then the user's ``config.toml``. The tables are ``[run]``, ``[world]``
+and ``[beamng]``; ``[chat]`` is for language models.
 
 A working folder may come from somebody else. Therefore its files cannot specify a driver's file, a program, a
 server or a plug-in that uses a language model: such a value is refused, and the user has to give it as an
@@ -103,8 +103,8 @@ def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
 
 
 def driver_guard(value: str, place: str) -> str:
-    """Refuses a driver's file if a configuration file in the working folder specifies it, or if its path is
-    relative.
+    """Refuses a driver's file that a configuration file in the working folder specifies, or that has a
+    relative path.
     """
     if ".py" not in value:
         return ""
@@ -121,7 +121,7 @@ def place_guard(value: str, place: str) -> str:
 
 
 def path_guard(value: str, place: str) -> str:
-    """Refuses paths as ``place_guard`` does, and relative paths in the user's own configuration file."""
+    """Refuses a path that a file in the working folder sets, or a relative path in the user's own file."""
     if place == OF_USER and not Path(value).expanduser().is_absolute():
         return WHOLE_PATH
     return place_guard(value, place)

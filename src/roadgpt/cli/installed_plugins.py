@@ -16,7 +16,9 @@ from roadgpt.errors import PartError
 
 @dataclass(frozen=True)
 class InstalledPlugin:
-    """A plug-in with its kind, its package and its description."""
+    """An installed plug-in: its kind (such as reader or driver), the package that provides it, and what it
+    does.
+    """
 
     shelf: str
     name: str

@@ -1,4 +1,6 @@
-"""``roadgpt`` without a command: asks for descriptions and numbers of roads, and makes the roads."""
+"""``roadgpt`` without a command: asks for a description and a number of roads, makes the roads, and asks
+again.
+"""
 
 import re
 import sys
@@ -45,7 +47,9 @@ Here all options have their defaults, or what your settings say. 'roadgpt run' t
 
 
 def converse() -> None:
-    """Asks the user for descriptions, makes their roads and changes them, until the user leaves."""
+    """Asks the user for descriptions, makes roads from them and changes roads on request, until the user
+    quits.
+    """
     from roadgpt.brief import read
 
     _enable_editing()

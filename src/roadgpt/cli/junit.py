@@ -16,13 +16,14 @@ UNKNOWN = "roads that were given"
 
 
 def junit_writer(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], object] | None":
-    """Returns a function that writes one test case for each row; None if no path is given.
+    """Returns a function that writes result rows as a JUnit file, a test case for each; None if no path is
+    given.
 
     Args:
         path: The JUnit file to write.
-        request: The request that all the tests share.
+        request: The request from which all the roads are made.
 
-    The function raises RoadGPTError if the file cannot be written.
+    The returned function raises RoadGPTError if the file cannot be written.
     """
     if path is None:
         return None
@@ -125,7 +126,7 @@ def _named(words: str) -> str:
 
 
 def common(request: "Request") -> "Properties":
-    """Returns the properties that all tests of a request share."""
+    """Returns the settings of a request as JUnit properties, which hold for all its tests."""
     setup, world = request.setup, request.world
     return {
         "words": request.words or None,

@@ -33,14 +33,14 @@ class WithoutFailure:
     outside: int = 0
     """Number of passed tests in which any part of the car was outside its lane."""
     goal: str | None = None
-    """The goal of the campaign's search; None if it did not search."""
+    """What the campaign searched for, such as 'failures'; None if it did not search."""
     is_search: bool = False
     """Whether the tests are those of a campaign."""
 
     @property
     def is_worth_it(self) -> bool:
-        """Whether enough tests were driven to make suggestions, and whether the whole request can be
-        expressed by command-line options.
+        """Whether suggestions make sense: enough tests passed, and command-line options can express the
+        whole request.
         """
         named = {flag.field for flag in options.WORLD}
         usual = type(self.request.world)().model_dump(exclude=named)
@@ -51,7 +51,7 @@ class WithoutFailure:
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
     """Returns suggestions, each with the command that carries it out.
 
-    The list is empty if a test failed (then ``quiet`` is None) or if too few tests were driven.
+    The list is empty if ``quiet`` is None, which means that a test failed, or if too few tests were driven.
     """
     return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 
@@ -120,7 +120,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_runs(folder: Path) -> WithoutFailure | None:
-    """Summarises a folder of runs in which no test failed; None if a test failed."""
+    """Summarises a folder of runs in which no test failed; returns None if a test failed."""
     from roadgpt.cli.result_row import row_of
     from roadgpt.run import read_run
     from roadgpt.run.card import read_card
@@ -132,7 +132,7 @@ def of_runs(folder: Path) -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Summarises the result rows of roads on which no test failed; None if a test failed."""
+    """Summarises result rows among which no road failed; returns None if a road failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

@@ -1,4 +1,4 @@
-"""An option of the command line: one value with its names, help, heading, default, settings key and field."""
+"""Defines ``Option``: a command-line option with its help text, default, and key in configuration files."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Heading(StrEnum):
-    """The headings of a command's help, in their order."""
+    """The headings under which the help lists options, in the order of the help."""
 
     FIRST = "Options"
     DESIGN = "Design and check"
@@ -36,7 +36,7 @@ FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
 
 
 class Option(click.Option):
-    """An option of commands, with the data that help, configuration files and printed commands need.
+    """A command-line option that can also be set in configuration files and appear in printed commands.
 
     Several commands can share one Option. ``click.Option`` documents the other arguments.
 
@@ -45,16 +45,17 @@ class Option(click.Option):
             differs.
         sentence: The option's text in the help.
         kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
-        default: The value without the option; the help shows it unless ``sentence`` does.
+        default: The value if the option is not given; the help shows it unless ``sentence`` states a default.
         heading: The heading in the help.
-        is_rare: Whether only --help-all lists the option if its command has many options.
+        is_rare: Whether --help omits the option and only --help-all lists it; has no effect on commands with
+            few options.
         table: The table of configuration files in which the option can be set; empty if it cannot be set.
             A switch that can be set also gets a name with --no-.
         key: The option's key in that table; empty if it is the option's first name.
         guard: A function that refuses values which a configuration file must not set.
-        unit: The factor from the unit of the field that the option sets to the option's own unit, such as 3.6
-            for m/s and km/h.
-        advice: A sentence that says what to type where a required option is missing.
+        unit: The field's value times this factor is the option's value, such as 3.6 for a field in m/s and an
+            option in km/h.
+        advice: A sentence that says what to type if the option is required and missing.
     """
 
     def __init__(
@@ -76,7 +77,9 @@ class Option(click.Option):
         self.advice = advice
 
     def under(self, heading: Heading) -> "Option":
-        """Returns a copy of the option that every help lists, under another heading."""
+        """Returns a copy of this option that is listed under another heading and appears in every help
+        text.
+        """
         twin = copy(self)
         twin.heading, twin.is_rare = heading, False
         return twin
@@ -87,7 +90,7 @@ class Option(click.Option):
         return str(self.name)
 
     def read(self, given: Any) -> Any:
-        """Returns the value of the field for a value of the option, converted to the field's unit."""
+        """Converts a value of the option to the unit of the field, such as km/h to m/s."""
         return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
@@ -95,8 +98,9 @@ class Option(click.Option):
 
         Args:
             value: The field's value.
-            usual: The field's default; None: that of the option.
-            is_set: Whether a configuration file sets the option, so that even the default has to be given.
+            usual: The field's default; None uses the option's default.
+            is_set: Whether a configuration file sets the option; then the arguments are returned even for the
+                default.
         """
         default = self.read(self.default) if usual is None else usual
         if value is None or (value == default and not is_set):
@@ -115,7 +119,9 @@ class Option(click.Option):
 
     @property
     def setting_name(self) -> str:
-        """The option's name in a list of the settings of all tables."""
+        """The option's name in ``roadgpt config show``: its key, with ``beamng_`` in front if its table is
+        [beamng].
+        """
         return f"beamng_{self.key}" if self.table == "beamng" else self.key
 
     def consume_value(self, ctx: click.Context, opts: Any) -> tuple[Any, ParameterSource]:
@@ -131,7 +137,8 @@ class Option(click.Option):
         """Returns the converted value.
 
         Raises:
-            UsageError: A value from a file or the environment cannot be used; the message says where it is.
+            UsageError: A value from a file or the environment cannot be used; the message says where it is
+                set.
         """
         own, setting = ctx.meta.get(FROM_FILES, {}).get(self.name, (None, None))
         if own is not self:
@@ -149,13 +156,13 @@ class Option(click.Option):
             return self.type_cast_value(ctx, setting.value)
 
     def found(self, layers: "Sequence[Layer]") -> "Setting | None":
-        """Returns the value from the source with the highest precedence; None if no source has one.
+        """Returns the value from the first source that sets the option; None if no source sets it.
 
         Args:
             layers: The environment and the configuration files, highest precedence first.
 
         Raises:
-            UsageError: The value is of the wrong kind, or must not come from that source.
+            UsageError: The value has the wrong type, or must not be set by that source.
         """
         from roadgpt.chat.config import FOLDER, Setting
 
@@ -234,9 +241,10 @@ def words_of(
 
     Args:
         options: The options.
-        values: An object that has the options' fields; None gives no arguments.
+        values: An object that has the options' fields; for None, no arguments are returned.
         usual: An object with the defaults of these fields; None: the defaults are those of the options.
-        told: The keys of options that configuration files set, so that even a default has to be given.
+        told: The keys of options that configuration files set; for these, the arguments contain even a
+            default value.
     """
     return [
         word

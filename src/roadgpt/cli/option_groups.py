@@ -14,7 +14,7 @@ from roadgpt.cli.streams import warn
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
-    """Turns click's error into advice if one of the words is a description with a leading dash."""
+    """Replaces click's error by advice if an argument looks like a description that begins with a dash."""
     given = list(args)  # click takes them out of its list
     try:
         yield

@@ -33,7 +33,7 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
 
 
 def lanes(value: str) -> str:
-    """Checks numbers of lanes, along the road and against it."""
+    """Checks the numbers of lanes in and against the direction of the road, such as '2+1'."""
     from roadgpt.road.world import LANES
 
     if not LANES.fullmatch(value.replace(" ", "")):
@@ -112,7 +112,9 @@ def driver(value: str) -> str:
 
 
 def driver_again(value: str) -> str:
-    """Returns the value of --driver with an absolute path, for comparison with the driver of a folder."""
+    """Returns the value of --driver with an absolute path, to be compared with the driver recorded in a
+    folder.
+    """
     from roadgpt.drive.loading import absolute_spec
 
     return driver(absolute_spec(value, Path.cwd()))

@@ -1,7 +1,7 @@
-"""The options that several commands share, each declared once, and the values that they make together.
+"""Declares the options that several commands share, and converts their values to objects such as the World.
 
 One entry in ``WORLD`` or ``SETUP`` makes an option of ``roadgpt run``, ``campaign`` and others, a key of the
-configuration files, a line of ``roadgpt config show``, and a part of the commands that RoadGPT prints.
+configuration files, a line of ``roadgpt config show``, and an argument in the commands that RoadGPT prints.
 """
 
 import os
@@ -193,22 +193,22 @@ ROADS = Argument("files...", "ROAD...", "Name one or more road files, or folders
 
 
 def seed(sentence: str, default: int | None = None) -> Option:
-    """Returns the option --seed with this sentence in the help and default."""
+    """Returns the option --seed; ``sentence`` is its text in the help."""
     return Option("--seed", sentence, SEED, default)
 
 
 def out(sentence: str, **more: Any) -> Option:
-    """Returns the option --out, which names a folder, with this sentence in the help."""
+    """Returns the option --out, which names a folder; ``sentence`` is its text in the help."""
     return Option("--out", sentence, folder, **more)
 
 
 def json_option(sentence: str = "Print one JSON object.", **more: Any) -> Option:
-    """Returns the option --json with this sentence in the help."""
+    """Returns the option --json; ``sentence`` is its text in the help."""
     return Option("--json as_json", sentence, bool, **more)
 
 
 def formats_option(names: str, sentence: str, **more: Any) -> Option:
-    """Returns an option for formats of road files, which can be separated by commas, or repeated."""
+    """Returns an option for formats of road files; users separate formats by commas, or repeat the option."""
     return Option(
         names, sentence, formats, metavar="FORMAT,...", multiple=True,
         callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
@@ -272,6 +272,8 @@ def drawing_of(formats: Any, axes: Any = "equal") -> "Drawing | None":
 
 
 def pictures_of(values: dict[str, Any]) -> Any:
-    """Returns the formats of the pictures to draw, and removes their options; empty with --no-plot."""
+    """Returns the formats of the pictures to draw (none with --no-plot), and removes their options from
+    ``values``.
+    """
     given = values.pop("picture_formats")
     return () if values.pop("no_plot") else given

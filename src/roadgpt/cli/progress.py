@@ -16,10 +16,10 @@ EVERY = 10.0  # s between two lines where there is no terminal
 def progress(
     what: str, total: int | None, quiet: bool = False, has_lines: bool = True
 ) -> Iterator[Callable[..., None]]:
-    """Shows on standard error how many steps are done and how long the rest will take, until the block ends.
+    """Shows on standard error, during a ``with`` block, how many steps are done and the remaining time.
 
-    Yields a function, to be called with the number of steps that are done. For the bar it also takes a new
-    ``total``, and ``rate``, a text to show behind the numbers.
+    Yields a function, to be called with the number of steps that are done. Its keyword arguments change the
+    bar: ``total`` is a new total, and ``rate`` is a text to show after the numbers.
 
     Args:
         what: Name of the steps in the plural, such as 'faults'.
@@ -68,7 +68,7 @@ class _Lines:
 
 
 def watched(steps: Iterable[T], total: int, what: str, quiet: bool = False) -> Iterator[T]:
-    """Yields each step when it is done, and shows the progress as ``progress`` does."""
+    """Yields each step when it is done, and shows how many are done and the remaining time."""
     with progress(what, total, quiet) as tell:
         for done, step in enumerate(steps, 1):
             tell(done)

@@ -1,5 +1,5 @@
-"""Returns the commands that repeat a Run: one makes its road from the description, one drives its road
-file.
+"""Builds the commands that repeat a Run: one makes its road from the description, the other drives its
+road file.
 """
 
 import shlex
@@ -29,7 +29,7 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int) -> list[str]:
-    """Returns the arguments after ``roadgpt run`` that make this many roads of a request."""
+    """Returns the arguments of ``roadgpt run`` that make the first ``roads`` roads of a request."""
     rest = ["-n", str(roads), "--seed", str(request.seed), *option_words(request.setup, request.world)]
     if not request.setup.drives:
         rest.append("--no-drive")
@@ -43,9 +43,10 @@ def option_words(
     """Returns the options that differ from their defaults or are set in a configuration file.
 
     Args:
-        setup, world: The values of the options.
-        of_setup: The options of the command that set fields of the Setup. asks: Whether the command has
-            options for language models.
+        setup: The Setup to express by options.
+        world: The World to express by options.
+        of_setup: The options of the command that set fields of the Setup.
+        asks: Whether the command has options for language models.
     """
     told = keys_set()
     words = [*words_of(of_setup, setup, told=told), *words_of(options.WORLD, world, told=told)]

@@ -1,4 +1,4 @@
-"""The Row of a road: its result as a command prints it, as a line of text or as JSON."""
+"""Defines ``Row``, the result of one road, which commands print as a line of text or as JSON."""
 
 import json
 import math
@@ -64,7 +64,7 @@ class Row:
     length_m: float | None = None
     seconds: float = 0.0
     name: str = ""
-    """A shorter name to print if the path of the file is too long."""
+    """A shorter name, which is printed instead of ``file``; if empty, ``file`` is printed."""
     spent: "Spent | None" = None
     """Tokens, seconds and cost of the language models used for the road."""
     words: str = ""
@@ -84,8 +84,8 @@ class Row:
 
     @property
     def told(self) -> str:
-        """The outcome as lines show it; a PASS with the share of the car that was outside, and the
-        distance.
+        """The outcome as commands print it; for a PASS with any part of the car outside its lane, it says how
+        far outside, such as 'PASS (62 % out, 1.13 m)'.
         """
         if self.test_outcome != "PASS" or not self.max_oob:
             return self.outcome
@@ -105,7 +105,9 @@ class Row:
         return json.dumps(told)
 
     def to_line(self) -> str:
-        """Returns a line with outcome, length, margin and file, and the sentence if something is wrong."""
+        """Returns a line with outcome, length, margin and file, and the sentence on a broken rule or an
+        error.
+        """
         length = "" if self.length_m is None else f"{self.length_m:6.1f} m"
         margin = "" if self.margin_m is None else f"margin {metres(self.margin_m)}"
         line = f"{self.told:<{MOST_TOLD}} {length:>9}  {margin:<15}  {self.name or self.file}"
@@ -141,7 +143,7 @@ def metres(margin: float) -> str:
 
 
 def spending(spent: "Spent") -> str:
-    """Returns number of answers, tokens, seconds and cost of language models as text."""
+    """Returns as text how many answers language models gave, and their tokens, seconds and cost."""
     money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
     answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
@@ -155,8 +157,8 @@ def _rounded(value: Any) -> Any:
 
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
-    """Returns a tuple for each outcome: its name, number of roads, share, smallest margin, and furthest
-    outside.
+    """Returns a tuple for each outcome: its name, the number and percentage of roads, the smallest margin,
+    and how far the car was outside its lane at most.
     """
     counted = Counter(row.outcome for row in rows)
     table = []

@@ -28,11 +28,11 @@ class NamedRoad:
     """A road that the user named."""
 
     said: str
-    """The road's name in a form that can be typed again."""
+    """The road's name as a user can type it as an argument of a command."""
     stem: str
     """The first part of the names of files that are made from the road."""
     key: object
-    """A value that is equal for two names of the same road."""
+    """A value that identifies the road; two names of the same road have equal keys."""
     run: "Callable[[], Run] | None"
     """A function that reads the road's Run; None for a road file, which each command reads in its own way."""
 
@@ -47,7 +47,7 @@ def roads_named(
 
     Args:
         files: The names, as the user typed them.
-        choice: Which roads of a folder to yield; None: no choice.
+        choice: Which roads of a folder to yield, such as the failures; None if the user chose none.
         takes_all: Whether a folder without a choice means all its roads; otherwise it must hold one road.
         complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
 
@@ -149,7 +149,7 @@ LANES = ("lanes", "lane_width", "lane_width_end", "verge", "bank")
 def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str, ...]]:
     """Returns the Design or the Road in a file, and remarks on assumptions made in reading it.
 
-    One remark names the options for lanes that have no effect, as the road has its own.
+    If the file defines lanes, lane options have no effect; a remark then names the ones that were given.
 
     Args:
         file: The road file, or the folder of a run.
@@ -192,7 +192,7 @@ def shown_runs(
         files, choice: As for ``roads_named``.
         world, geometry: World and geometry for road files.
         most: Maximum number of Runs that can be shown together.
-        what: What shows them, such as 'a page'.
+        what: The output that shows them, for messages, such as 'a page'.
 
     Raises:
         UsageError: A name is wrong, a road cannot be read, or there are more than ``most``.
@@ -248,7 +248,7 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
 
 
 def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) -> None:
-    """Checks that a path can be that of a file to write, such as a page, a film or a picture.
+    """Checks that a path is suitable for a file to write, such as a page, a film or a picture.
 
     Args:
         path: The path.
@@ -272,7 +272,7 @@ def open_page(page: Path) -> None:
 
 
 def numbered(name: str, ending: str = "") -> Iterator[str]:
-    """Yields a name of a file or folder, then the same name with -2, -3 and so on, before its ending."""
+    """Yields names for a file or folder; for 'road' and '.json': road.json, road-2.json, road-3.json, ..."""
     yield name + ending
     yield from (f"{name}-{number}{ending}" for number in count(2))
 
@@ -281,7 +281,7 @@ def made(folder: Path) -> Path:
     """Makes a folder, if it does not exist, and returns it.
 
     Raises:
-        UsageError: It cannot be made.
+        UsageError: The folder cannot be made.
     """
     with explained(UsageError, f"cannot make {folder}", "name another folder with --out"):
         folder.mkdir(parents=True, exist_ok=True)

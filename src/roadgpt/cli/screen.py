@@ -24,8 +24,9 @@ if TYPE_CHECKING:
 class Screen:
     """Prints each road when it is finished, and at the end a table of outcomes.
 
-    Rows of roads and other text go to standard output; if the rows are JSON, other text does not. The bar
-    goes to standard error if that is a terminal. A total of 0 means that the number of roads is unknown.
+    Rows of roads and other text go to standard output; if the rows are JSON, other text goes to standard
+    error. The bar goes to standard error if that is a terminal. A total of 0 means that the number of roads
+    is unknown.
     """
 
     def __init__(

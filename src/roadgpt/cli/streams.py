@@ -70,7 +70,7 @@ def _nothing(number: int, mode: int) -> int:
 
 def drop_output() -> None:
     """Redirects standard output to the null device, because Python flushes standard output once more at
-    exit.
+    exit, which would fail.
     """
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())

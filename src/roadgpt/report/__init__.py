@@ -43,7 +43,8 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
     Args:
         run: the Run; it may be invalid, and it need not have a drive.
         folder: the folder for the pictures; files of the same names are replaced.
-        axes: "equal" fits the road and is to scale; "thesis" uses the fixed axes of RoadGPT's thesis.
+        axes: "equal" for axes that fit the road and are to scale; "thesis" for the fixed axes of RoadGPT's
+            thesis.
         formats: the file formats; each picture is written in all of them.
     """
     if run.road is None:
@@ -59,7 +60,9 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws the pictures of a campaign while it runs; the argument ``draw`` of ``roadgpt.campaign``."""
+    """Draws the pictures of a campaign while it runs; given to ``roadgpt.campaign`` as its argument
+    ``draw``.
+    """
 
     axes: Scale = "equal"
     formats: tuple[Format, ...] = PNG

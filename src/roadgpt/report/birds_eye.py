@@ -142,7 +142,7 @@ def driven_path(axes: Axes, drive: Drive) -> LineCollection:
 
 
 def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
-    """Draws a marker at a place, and the outline of the car if the drive has a step there."""
+    """Draws a marker at a place, and the outline of the car if the place comes from a drive."""
     if place.step is not None and run.drive is not None:
         car = Polygon(
             run.drive.corners(place.step), closed=True, fc="none", ec=place.letters, lw=1.6, zorder=9
@@ -152,8 +152,8 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
 
 
 def severities(drive: Drive | None) -> list[Severity]:
-    """Returns how far the car was outside its lane at each step that is judged; empty if there is no
-    drive.
+    """Returns for each judged step whether the car was inside, partly outside or mostly outside its lane.
+    The list is empty if there is no drive.
     """
     return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
 

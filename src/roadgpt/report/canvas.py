@@ -86,7 +86,7 @@ def add_axes(figure: Figure, left: float, bottom: float, right: float, top: floa
 
 
 def dress(axes: Axes) -> Axes:
-    """Gives axes the grey frame and ticks of all pictures, and returns them."""
+    """Gives axes the grey frame and ticks that all pictures have, and returns the axes."""
     for side in axes.spines.values():
         side.set_color("#9aa1ab")
         side.set_linewidth(0.8)
@@ -140,7 +140,9 @@ class Header:
 
 
 def outcome_of(run: Run) -> str:
-    """Returns the outcome of a Run as a key of OUTCOMES; a PASS includes how far the car was outside."""
+    """Returns the outcome of a Run as a key of OUTCOMES; a PASS also says whether the car was partly or
+    mostly outside its lane.
+    """
     return graded(run.outcome, run.verdict.max_oob if run.verdict else None)
 
 

@@ -2,12 +2,12 @@
 
     PASS, VALID    a test that passed
     FAIL           <failure>: the car failed on a road that the rules allow
-    INVALID        <skipped>: a rule objects to the road, so nobody drove it
+    INVALID        <skipped>: the road breaks a rule, so it was not driven
     ERROR          <error>: a driver or simulator failed, or no road could be designed
 
-There is no standard; this is the part that Jenkins, GitLab, GitHub, Azure and CircleCI read: suites with
-counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and cases. Source:
-the documentation of the common format, https://github.com/testmoapp/junitxml.
+There is no standard; the file has the elements that Jenkins, GitLab, GitHub, Azure and CircleCI read: suites
+with counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and cases.
+Source: the documentation of the common format, https://github.com/testmoapp/junitxml.
 """
 
 import os

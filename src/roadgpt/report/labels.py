@@ -1,4 +1,4 @@
-"""Places labels so that they cover neither the road nor each other, and names the border of the map."""
+"""Places labels so that they cover neither the road nor each other, and labels the border of the map."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -35,13 +35,15 @@ class Labels:
     clear_of: Array
     """Points ``(n, 2)`` that no label should cover."""
     radius: float
-    """Radius in metres around each of these points that no label should cover."""
+    """Radius in metres of the circle around each point of ``clear_of`` that no label should cover."""
     _boxes: list[Box] = field(default_factory=list)
     _leaders: list[Array] = field(default_factory=list)
     """Points on the lines that connect labels with their places, each ``(n, 2)``."""
 
     def name_border(self, size: float) -> None:
-        """Labels a visible border of a map whose side is ``size`` metres, if there is room."""
+        """Labels the border of a square map with sides of ``size`` metres, if it is visible and there is
+        room.
+        """
         wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
         offers = _offers(self.frame, size, wide, HIGH * self.per_inch, GAP * self.per_inch)
         clear = ((box, turned) for box, turned in offers if _away(box, self.clear_of) > CLEAR)

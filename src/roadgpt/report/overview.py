@@ -47,7 +47,7 @@ STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
 @dataclass(frozen=True)
 class Entry:
-    """One road on the page."""
+    """One road of an overview: its map and its outcome."""
 
     number: int
     outcome: str
@@ -64,7 +64,7 @@ class Entry:
 
 @in_our_style
 def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draws ``overview.png`` into a folder of runs, and returns the paths.
+    """Draws ``overview.png`` into a folder of runs, and returns the paths of the pictures.
 
     After 100 roads it continues in ``overview-2.png`` and so on; only the first 1,000 roads are drawn.
 

@@ -29,7 +29,7 @@ def pair(one: Run, other: Run, scale: Scale = "equal") -> Figure:
     Args:
         one: the upper Run; it must have a road.
         other: the lower Run; it must have a road.
-        scale: "equal" fits both roads; "thesis" uses the fixed axes of RoadGPT's thesis.
+        scale: "equal" for axes that fit both roads; "thesis" for the fixed axes of RoadGPT's thesis.
     """
     runs = (one, other)
     row = SIDE + BOTTOM + TOP

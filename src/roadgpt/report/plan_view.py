@@ -70,7 +70,9 @@ def stations_of(road: Road) -> Array:
 
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
-    """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is in metres."""
+    """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is the number
+    of metres per inch of the picture.
+    """
     s, profile = stations_of(road), world.profile_of(road)
     if profile.has_shoulders:
         _ribbon(axes, road, s, profile.rims(s), VERGE, 1)

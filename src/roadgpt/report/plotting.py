@@ -24,7 +24,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
     Args:
         what: a Road, a Design, or a Run that has a road.
         ax: the axes to draw on; None uses matplotlib's current axes.
-        world: width of lanes and shoulders; None uses the Run's own, or the default.
+        world: width of lanes and shoulders; None uses the Run's World, or the default World.
 
     Raises:
         UsageError: ``what`` is none of these, or is a Run without a road.

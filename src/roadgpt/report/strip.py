@@ -31,7 +31,7 @@ RADII = (15, 20, 30, 60)  # m, named on the right
 
 
 def strip(run: Run) -> Figure:
-    """Returns a figure with one panel for each quantity over the distance along the road."""
+    """Returns a figure with a panel each for curvature, grade and, after a drive, speed over the distance."""
     assert run.road is not None
     panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
     header = Header.of(run, WIDTH)

@@ -15,7 +15,7 @@ def plain(text: str) -> str:
 
 
 def inches(text: str, size: float, bold: bool = False) -> float:
-    """Returns the width of the longest line in inches; ``size`` is in points."""
+    """Returns the width of the longest line in inches; ``size`` is the font size in points."""
     return max(sum(_advance(letter, bold) for letter in row) for row in text.split("\n")) * size / POINTS
 
 

@@ -88,12 +88,14 @@ def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **g
 
 
 def work_to_the_end(folder: Path, plan: "Plan", given: dict[str, Any]) -> None:
-    """Runs the tests of a campaign that are missing, prints the results, and writes what else is asked for.
+    """Runs the remaining tests of a campaign and prints the results.
+
+    If requested, writes a JUnit file and analyses the failures.
 
     Args:
-        folder: The campaign.
-        plan: Its plan.
-        given: The options of workers, faults, JUnit and output.
+        folder: The campaign's folder.
+        plan: The campaign's plan.
+        given: Values of the options for workers, analysis of faults, JUnit file and output.
     """
     from roadgpt.campaign.lifecycle import work
 

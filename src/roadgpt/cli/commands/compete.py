@@ -1,4 +1,6 @@
-"""``roadgpt compete``: the tool competitions, SBFT for test generators and SDC for choosing tests."""
+"""``roadgpt compete``: runs a test generator of the SBFT competition, or the server of the SDC
+competition.
+"""
 
 import logging
 import sys

@@ -1,4 +1,4 @@
-"""``roadgpt doctor``: checks this installation, or an installed BeamNG, and says how to mend problems."""
+"""``roadgpt doctor``: checks this installation, or an installed BeamNG, and says how to solve problems."""
 
 import json
 import platform
@@ -73,7 +73,7 @@ class CheckResult:
 
 
 def examined() -> Iterator[CheckResult]:
-    """Yields the result of each check in turn; a check that fails raises no exception."""
+    """Runs all checks and yields the result of each; a failed check is a result, not an exception."""
     yield CheckResult("roadgpt", True, f"{__version__} in {Path(__file__).resolve().parents[2]}")
     fits = sys.version_info >= (3, 11)
     yield CheckResult("Python", fits, f"{platform.python_version()} on {platform.platform()}")

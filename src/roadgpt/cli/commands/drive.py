@@ -1,4 +1,4 @@
-"""``roadgpt drive``: drives roads from files, or tests of a campaign again."""
+"""``roadgpt drive``: drives roads from files, or repeats tests of a campaign."""
 
 import sys
 from collections.abc import Sequence
@@ -142,13 +142,13 @@ def drive_again(
     axes: "Scale",
     formats: "tuple[Format, ...]",
 ) -> None:
-    """Drives tests of a campaign again, writes their runs, and prints which results differ from the stored
-    ones.
+    """Repeats tests of a campaign, writes a run folder for each, and warns if a result differs from the
+    recorded one.
 
     Args:
-        names: A campaign and numbers of its tests, or tests with the folders of their campaigns.
+        names: A campaign's folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17.
         choice: Which tests to drive if a name means a whole campaign.
-        out: Folder for the runs; None: ``again`` in the campaign's folder.
+        out: Folder in which the run folders are written; None: ``again`` in the campaign's folder.
         driver: The campaign's driver as given with ``--driver``; None if it was not given.
         axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
         formats: Formats of the pictures; none are drawn if empty.

@@ -1,4 +1,4 @@
-"""``roadgpt edit``: changes a road as a request in words says."""
+"""``roadgpt edit``: changes a road according to a request in plain words."""
 
 import json
 import sys
@@ -73,12 +73,13 @@ def edit_road(
         screen: Prints the result.
         road: The folder of a run, a test of a campaign, or a file with a design.
         words: The change request.
-        world: The World of a design that belongs to no run.
+        world: The World for a road that is read from a design file, which names no World.
         out: The folder for the changed road; None: a new one.
         designer: The plug-in that changes the road.
-        chat: The settings of its language model; None if it asks none.
+        chat: The settings of the designer's language model; None if the designer uses none.
         driver: The run's driver as given with ``--driver``; None if it was not given.
-        drives: Whether to drive the changed road, if the run was driven.
+        drives: If True, the changed road is driven, provided that the original run was; if False, it is not
+            driven.
         pictures: The formats of the pictures; none are drawn if empty.
 
     Raises:

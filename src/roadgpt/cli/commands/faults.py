@@ -33,7 +33,7 @@ FAULT_OPTIONS = (
 
 
 class AnalysisOptions(NamedTuple):
-    """Options of an analysis of failures."""
+    """Values of the options with which ``roadgpt faults`` analyses failures."""
 
     repeat: int = REPEAT
     minimise: bool = False
@@ -46,7 +46,7 @@ class AnalysisOptions(NamedTuple):
 
     @property
     def words(self) -> list[str]:
-        """The options of ``roadgpt faults`` that request the same analysis."""
+        """The command-line options with which ``roadgpt faults`` would repeat this analysis."""
         asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
         asked += ["--minimise"] if self.minimise else []
         asked += ["-j", str(self.workers)] if self.workers > 1 else []
@@ -55,13 +55,15 @@ class AnalysisOptions(NamedTuple):
         return asked
 
     def say(self, text: str, is_news: bool = False) -> None:
-        """Prints a text unless ``is_quiet``; news about the progress goes to standard error."""
+        """Prints a text unless ``is_quiet``; progress messages (``is_news``) go to standard error."""
         if not self.is_quiet:
             click.echo(text, err=is_news or self.is_apart)
 
 
 def analysis_options(given: dict[str, Any]) -> AnalysisOptions | None:
-    """Returns the analysis that the options of a campaign request; None if ``FAULT_OPTIONS`` request none."""
+    """Returns the options for the analysis of a campaign's failures; None if the user requested no
+    analysis.
+    """
     if not given["faults"] and not given["minimise"] and given["repeat"] is None:
         return None
     # the campaign's workers may be on other machines

@@ -1,4 +1,4 @@
-"""``roadgpt film``: films drives from behind the car, from its hood, or of two roads side by side."""
+"""``roadgpt film``: films a drive from behind the car or from its hood, or two drives side by side."""
 
 from collections.abc import Iterator
 from pathlib import Path

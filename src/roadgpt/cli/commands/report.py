@@ -59,8 +59,8 @@ def _written(folder: Path) -> Path:
 
 
 def command_of_many(folder: Path) -> str:
-    """Returns the command that makes a campaign again; for a campaign from a plan file, the command that
-    resumes it.
+    """Returns the command that repeats a campaign. For a campaign that was made from a plan file, it is
+    the command that resumes it.
     """
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL
     from roadgpt.campaign.record import Record

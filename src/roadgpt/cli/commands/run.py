@@ -36,7 +36,7 @@ SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be
 
 @dataclass(frozen=True)
 class RunJob:
-    """A description from which to make roads, with all options."""
+    """One call of ``roadgpt run``: the description, and the values of all options."""
 
     words: str
     roads: int
@@ -101,8 +101,8 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
 
 
 def usual_job(words: str, roads: int) -> RunJob:
-    """Returns the job of ``roadgpt run`` without options: with the defaults and the settings of configuration
-    files.
+    """Returns the job of ``roadgpt run`` if the user gives no options; values come from configuration files,
+    or are the defaults.
 
     Raises:
         UsageError: A setting cannot be used.

@@ -70,7 +70,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Renders a Run from one camera at any time; several threads may use it at once."""
+    """Renders the view of one camera at any time of a Run; several threads may call it at once."""
 
     scene: Scene
     trip: Trip
@@ -80,13 +80,15 @@ class Pane:
 
     @classmethod
     def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
-        """Returns the pane of a Run for one mount of the camera; FIELDS gives the field of view."""
+        """Returns the Pane of a Run for one position of the camera, which also determines the field of
+        view.
+        """
         camera = Camera(width, height, FIELDS[mount], mount)
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; for later times than the end of
-        the drive, the last picture.
+        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; after the end of the drive, it
+        is the last picture.
         """
         now = min(time, self.trip.duration)
         car = self.trip.car(now)

@@ -28,7 +28,7 @@ class Glyph(NamedTuple):
 
 @cache
 def glyph(letter: str, size: int, weight: Weight) -> Glyph:
-    """Returns a letter; ``size`` is the font size in pixels."""
+    """Returns the raster image of a letter; ``size`` is the font size in pixels."""
     font = get_font(findfont(FontProperties(family="DejaVu Sans", weight=weight)))
     font.set_size(float(size), POINTS)
     advance = float(font.load_char(ord(letter)).linearHoriAdvance) / 65536
@@ -49,7 +49,9 @@ def write(
     frame: Frame, x: float, y: float, text: str, size: int, colour: tuple[int, int, int] = (255, 255, 255),
     weight: Weight = "normal",
 ) -> None:  # fmt: skip
-    """Writes one line of text into a frame, with its baseline from (x, y); the part outside is cut off."""
+    """Writes one line of text into a frame, with its baseline beginning at (x, y); text beyond the frame
+    is cut off.
+    """
     for letter in text:
         shape = glyph(letter, size, weight)
         _blend(frame, round(x) + shape.left, round(y) - shape.top, shape.cover, colour)

@@ -34,7 +34,9 @@ class Overlay:
 
     @property
     def scale(self) -> float:
-        """Factor for all sizes; it is 1 for a picture of 640 by 360 pixels."""
+        """Factor for the sizes of text and its distances from the edges; it is 1 for a picture of 640 by
+        360 pixels.
+        """
         return max(LEAST, min(self.height / 360, self.width / 440))
 
     def _size(self, pixels: int) -> int:

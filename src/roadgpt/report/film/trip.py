@@ -1,4 +1,4 @@
-"""Computes the poses of car and camera and the displayed numbers of a film at any time."""
+"""Computes the poses of car and camera, and the numbers that a film displays, for any time of a drive."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -36,13 +36,15 @@ class Readout(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Trip:
-    """The motion of car and camera, as columns of shape ``(n,)`` over ascending times in seconds."""
+    """The motion of car and camera; arrays have shape ``(n,)``, one value for each of ``n`` ascending
+    times.
+    """
 
     time: Array
     columns: dict[str, Array]
-    """The columns COLUMNS, and ``wheel``, the angle by which the wheels have rolled."""
+    """The quantities named in COLUMNS, and ``wheel``, the angle by which the wheels have rolled, rad."""
     followed: dict[str, Array]
-    """``heading`` and ``pitch`` of the camera behind the car."""
+    """``heading`` and ``pitch`` of the camera behind the car, rad."""
     s: Array
     margin: Array | None
     outside: Array | None = None

@@ -31,7 +31,7 @@ NEEDLESS = (
 
 @cache
 def palette() -> dict[str, str]:
-    """Returns the light colours of ``style.css`` as ``#rrggbb``, by the names of their variables."""
+    """Returns the light colours of ``style.css`` as ``#rrggbb``, by the names of their CSS variables."""
     light, _, _ = CSS.read_text(encoding="utf-8").partition("}")
     return dict(re.findall(r"--([a-z0-9]+): (#[0-9a-f]{6});", light))
 
@@ -93,7 +93,7 @@ def columns_of(names: list[str], width: float) -> int:
 def embedded(figure: Figure, label: str) -> str:
     """Returns a figure as an ``svg`` element for a page; the same figure and label give the same text.
 
-    Colours of ``palette`` become the page's variables, and letters are in the page's font.
+    Colours of ``palette`` are replaced by the page's CSS variables, and text uses the page's font.
 
     Args:
         figure: a figure made by ``new_chart`` within ``in_page_style``.

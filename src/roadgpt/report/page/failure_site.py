@@ -18,24 +18,26 @@ SCALE = 10.0  # m, of the bar
 
 @dataclass(frozen=True, eq=False)
 class FailureSite:
-    """The lines of the picture, as points of shape ``(n, 2)`` in metres."""
+    """The lines of the picture that shows where a car failed, each as points of shape ``(n, 2)`` in
+    metres.
+    """
 
     left: Array
     """Points of the left edge of the road."""
     middle: Array
     right: Array
     path: Array
-    """Path of the car's middle up to the failure; empty if there is no drive."""
+    """Path of the car's centre up to the failure; empty if there is no drive."""
     car: Array | None
     """Four corners of the car at the failure."""
     at: Array
-    """The place of the failure, ``(2,)``: the middle of the right lane."""
+    """Position ``(2,)`` of the middle of the right lane at the station of the failure."""
     heading: float
     """Heading of the road before the failure in radians; this direction points up in the picture."""
 
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
-    """Returns the place of a failure ``station`` metres along a road."""
+    """Returns the lines to draw for a failure that occurred ``station`` metres along a road."""
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     profile = world.profile_of(road)
     edges = profile.edges(s)

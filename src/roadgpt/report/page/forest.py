@@ -20,7 +20,7 @@ ROW, HEAD, GAP = 20.0, 22.0, 10.0  # px
 
 
 class Share(NamedTuple):
-    """A share from 0 to 1 with its interval, and the text beside it."""
+    """A share from 0 to 1, its confidence interval, and the text that is written next to it."""
 
     series: int
     value: float

@@ -1,4 +1,4 @@
-"""Draws a matrix or a map of cells; a stronger colour means a larger number."""
+"""Draws a matrix or a feature map as coloured cells; a stronger colour means a larger number."""
 
 from typing import Literal, NamedTuple
 
@@ -32,7 +32,9 @@ class AxisRange(NamedTuple):
 
 
 def is_map(values: NDArray[np.float64]) -> bool:
-    """Returns whether a map shows anything: at least two different positive numbers, or many equal ones."""
+    """Returns whether a map is worth drawing: it has at least two different positive numbers, or many
+    equal ones.
+    """
     filled = values[np.isfinite(values) & (values > 0)]
     return len(np.unique(filled)) > 1 or len(filled) >= FEW
 
@@ -50,9 +52,9 @@ def heat(
 
     Args:
         values: the matrix; row 0 is at the bottom, or at the top if ``downwards`` is True.
-        across: the horizontal axis.
-        upwards: the vertical axis.
-        meaning: the meaning of the colours.
+        across: name and limits of the horizontal axis.
+        upwards: name and limits of the vertical axis.
+        meaning: title of the colour scale, which says what the numbers are.
         label: what the picture shows, for screen readers.
         downwards: whether row 0 is at the top, as in a distance matrix.
     """

@@ -1,4 +1,4 @@
-"""Draws line charts, such as failures found over tests, and histograms."""
+"""Draws line charts, such as the number of failures found over the number of tests, and histograms."""
 
 from collections.abc import Sequence
 

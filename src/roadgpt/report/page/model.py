@@ -11,7 +11,7 @@ class TableCell(NamedTuple):
     """One cell of a table, or one piece of a line of text."""
 
     value: Raw
-    """The value in a CSV file."""
+    """The value that is written into CSV files."""
     text: str
     """The text that people read."""
     href: str = ""
@@ -42,7 +42,7 @@ class Table:
     note: str = ""
     """Small text below the table."""
     has_total: bool = False
-    """Whether the last row is a sum."""
+    """Whether the last row holds totals."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Page:
     """The main results in about five lines."""
     sections: Sequence[Section]
     card: Mapping[str, str] = field(default_factory=dict)
-    """How the page was made: seeds, versions, and the command that makes it again."""
+    """How the page was made: seeds, versions, and the command that repeats it."""
     lead: str = ""
     """One line under the title."""
 

@@ -102,8 +102,8 @@ def _table(table: Table) -> str:
 
 
 def csv_of(table: Table) -> str:
-    """Returns a table as CSV with raw values; None becomes an empty field, and text cannot be read as a
-    formula.
+    """Returns a table as CSV with raw values; None becomes an empty field, and text is changed where a
+    spreadsheet would read it as a formula.
     """
     values = (
         [None if each.value is None else unformulated(each.value) for each in row] for row in table.rows
@@ -112,8 +112,8 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """Returns the value; text gets uniform line ends, and an apostrophe in front if a spreadsheet would
-    read it as a formula.
+    """Returns the value; text gets uniform line ends. Text that a spreadsheet would read as a formula gets
+    an apostrophe in front.
     """
     if not isinstance(value, str):
         return value

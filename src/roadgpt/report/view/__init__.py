@@ -44,7 +44,7 @@ def page(runs: Sequence[Run]) -> str:
     """Returns the whole page, to be written as UTF-8; the same Runs give the same text.
 
     Raises:
-        UsageError: there is no Run or more than two, one has no road, or a number of it is not finite.
+        UsageError: there is no Run or more than two, a Run has no road, or one of its numbers is not finite.
     """
     if not 1 <= len(runs) <= MOST:
         raise UsageError(f"a page shows one road or two side by side; {len(runs)} are given")
@@ -55,7 +55,7 @@ def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
     """Returns the page for one or two scenes made by ``scene``; empty parts of a scene are not shown.
 
     Raises:
-        UsageError: a number is not finite.
+        UsageError: a number in a scene is not finite.
     """
     title = " and ".join(dict.fromkeys(each["title"] for each in scenes))
     parts = {

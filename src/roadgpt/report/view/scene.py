@@ -48,7 +48,7 @@ def scene(run: Run) -> dict[str, Any]:
     """Returns everything that the page shows of a Run, in metres, seconds and radians.
 
     Raises:
-        UsageError: the Run has no road, or a number of it is not finite.
+        UsageError: the Run has no road, or one of its numbers is not finite.
     """
     if run.road is None:
         raise UsageError(f"there is no road to show: {run.description}")
