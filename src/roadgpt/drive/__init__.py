@@ -1,4 +1,6 @@
-"""Drives cars: a road, a driver and a simulator give a Drive. Main function: ``simulate``.
+"""Drives cars: a driver controls a simulated car on a road, and the result is a Drive.
+
+Main function: ``simulate``.
 
 This package has two kinds of plug-ins. A simulator (``simulators/``) is a car and its physics; a driver
 (``drivers/``) controls the car:
@@ -47,7 +49,8 @@ class Driver(Protocol):
     """Controls the car.
 
     A driver may also have a method ``start(road, world, seed)``, which is called once before time 0, and an
-    attribute ``name``. Without the attribute, the name of its class is recorded.
+    attribute ``name``, which is recorded in the Drive. Without this attribute, the name of the driver's class
+    is recorded.
     """
 
     def steer(self, view: View) -> Command:
@@ -69,14 +72,15 @@ class Simulator(Protocol):
         """Drives from the start of the road until the drive ends.
 
         At every control step the simulator checks these conditions in this order: the car has reached the
-        goal; the car is stuck; more than ``world.oob_tolerance`` of its box is outside its lane or, with
-        ``world.lane_departure``, a front tyre is beyond a marking (neither ends the drive with
-        ``keep_driving``); the car has fallen; the time is up. The first condition that holds ends the drive.
+        goal; the car is stuck; the car is out of its lane; the car has fallen; the time is up. The first
+        condition that holds ends the drive. The car is out of its lane if more than ``world.oob_tolerance``
+        of its box is outside or, with ``world.lane_departure``, if a front tyre is beyond a marking. With
+        ``keep_driving``, the drive goes on when the car leaves its lane.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
-            SimulatorError: the simulator itself failed; after three failures in a row it is not used any
-                more.
+            SimulatorError: the simulator itself failed. After three such failures in a row, commands stop
+                using the simulator.
             SimulationError: the physics became unstable.
         """
         ...
@@ -93,8 +97,9 @@ def simulate(
     """Drives a road with one driver; the same arguments give the same Drive, bit for bit, on one machine.
 
     Args:
-        road: the road.
-        world: friction, speed limit and tolerances, and the lanes if the road has none of its own.
+        road: the road to drive on.
+        world: the World, which gives the friction, the speed limit, the tolerances, and the lanes of a road
+            that has none of its own.
         driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
             file.
         seed: passed to the driver and recorded; the car's physics uses no random numbers.
@@ -121,15 +126,17 @@ def simulate(
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -> None:
-    """Checks that the world and the road have nothing that the simulator cannot apply.
+    """Checks that the simulator can apply every setting of the world, and the superelevation of the road.
 
     Args:
         simulator: the simulator or its class.
         world: the World; a field with its default value counts as not set.
-        road: the road, if it is known; its own superelevation counts as ``World.bank``.
+        road: the road, or None if it is not known yet. Superelevation that is stored in the road is treated
+            like ``World.bank``.
 
     Raises:
-        UsageError: the world sets such a field, or the road has such a property; the message names it.
+        UsageError: the simulator cannot apply a field that the world sets, or the superelevation of the road;
+            the message says which.
     """
     from roadgpt.road import World
 

@@ -49,8 +49,8 @@ class CameraSensor:
         self._image: NDArray[uint8] | None = None
 
     def see(self, row: Mapping[str, float]) -> "NDArray[uint8]":
-        """Returns the image ``(height, width, 3)`` at a control step; it is rendered anew every
-        ``camera.every`` steps.
+        """Returns the image ``(height, width, 3)`` at a control step. A new image is rendered every
+        ``camera.every`` steps; in between, the last image is returned again.
 
         Args:
             row: values of one step of a drive, by column name.

@@ -63,8 +63,8 @@ if COMPILES:
 
 
 def compiled(function: Function) -> Function:
-    """Returns the function as machine code, which is cached on disk for later processes if the disk allows
-    it."""
+    """Returns the function as machine code. If the cache folder is writable, the code is kept there for
+    later processes."""
     if not COMPILES:
         return function
     try:
@@ -75,8 +75,8 @@ def compiled(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Returns a small function for use by compiled functions only; it is cached with them and not by
-    itself."""
+    """Compiles a small function that only other compiled functions call. Its machine code is cached as
+    part of theirs."""
     if not COMPILES:
         return function
     made: Function = numba.njit(nogil=True)(function)

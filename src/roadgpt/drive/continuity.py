@@ -20,7 +20,7 @@ FAILED = ", so the simulation failed, which says nothing about the driver; drive
 
 
 def check_motion(drive: Drive) -> None:
-    """Checks that a car can have moved as the positions and speeds of a drive say.
+    """Checks that a car can move in the way that the recorded positions and speeds of a drive describe.
 
     Raises:
         SimulationError: a position or a speed is not a finite number, the car jumped, or its motion does not

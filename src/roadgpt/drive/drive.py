@@ -50,8 +50,8 @@ FORMAT = 2
 class Box(NamedTuple):
     """The outline of the car, and the position and largest steering angle of its front wheels.
 
-    The defaults are the numbers of RoadGPT's saloon; they are used if a file of an older version lacks a
-    field.
+    The defaults describe RoadGPT's saloon. They are used for fields that are missing in a file from an older
+    version.
     """
 
     length: float
@@ -178,7 +178,7 @@ class Drive:
 
     @classmethod
     def load(cls, path: Path | str) -> "Drive":
-        """Reads a Drive from a file that ``to_bytes`` made.
+        """Reads a Drive from an .npz file whose content ``to_bytes`` returned.
 
         Raises:
             UsageError: there is no such file, or it does not hold a Drive.

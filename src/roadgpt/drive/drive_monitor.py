@@ -80,9 +80,9 @@ class DriveMonitor:
         return "timeout" if time >= self.limit - ROUNDING else None
 
     def is_at_goal(self, x: float, y: float, s: float) -> bool:
-        """Returns whether the car has reached the goal; never in the first half, because a road may end
-        near its start.
-        """
+        """Returns whether the car has reached the goal at the end of the road. In the first half of the
+        road the result is always False: if a road ends near its start, a car that has just started is
+        close to the goal."""
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
@@ -97,7 +97,7 @@ class DriveMonitor:
 
         Args:
             outside: share of the car's box outside the lane, 0 to 1.
-            pose: the values of the columns POSE, shape (6,); None if no tyres are watched.
+            pose: the values of the columns POSE, shape (6,); None if lane departures do not count.
         """
         if outside > self._tolerance:
             return True

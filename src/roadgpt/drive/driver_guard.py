@@ -36,7 +36,7 @@ TICK = 0.2  # s between two checks of the clock
 
 
 class RemoteDriverError(DriverError):
-    """A DriverError from the driver's own process; its message needs no additions."""
+    """A DriverError about a driver that runs in its own process; its message already names the driver."""
 
 
 class _HungError(BaseException):

@@ -1,5 +1,5 @@
-"""Computes driving lines: the centre line of the road, shifted sideways by a given offset at every station;
-and the controls with which a car follows such a line.
+"""Computes driving lines, and the controls with which a car follows a driving line. A driving line is the
+centre line of the road, shifted sideways by a given offset at every station.
 
 Drivers look up the line every 20 ms. The line is therefore computed once per road and stored as plain lists,
 so that a lookup takes one index.
@@ -52,7 +52,7 @@ class DrivingLine:
     curvature: list[float]
     """Curvature of the line itself in 1/m, positive to the left."""
     stretch: list[float]
-    """Length of the line per length of the road."""
+    """Length of the line per metre of the road's centre line; below 1 on the inside of a bend."""
     grade: list[float]
     """Grade of the road as a ratio."""
     crest: list[float]
@@ -138,8 +138,8 @@ def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
 
 
 def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[float, float]:
-    """Returns throttle and brake, 0..1 each, by feed-forward for a speed plan and feedback on the speed
-    error.
+    """Returns throttle and brake, 0..1 each, with which the car follows the planned speed: feed-forward from
+    the plan, and feedback on the speed error.
 
     Args:
         line: the driving line.

@@ -1,7 +1,7 @@
 """Computes how much of the car lies outside its lane, by clipping two polygons exactly.
 
-The lane is a strip of quadrilaterals between the edges of the driven lane. Only the part of the strip near
-the car's own station counts, so that other parts of the same road nearby, or crossing above or below, are
+The lane is a strip of quadrilaterals between the edges of the driven lane. Only quadrilaterals near the car's
+own station count. Other sections of the same road that pass nearby, or cross above or below, are therefore
 ignored.
 """
 
@@ -38,16 +38,17 @@ class LanePolygon(NamedTuple):
         return cls(edges, road.length / count)
 
     def outside(self, corners: FloatArray, s: float) -> float:
-        """Returns the share, 0..1, of a convex counter-clockwise box of shape (4, 2) that is outside the
-        lane; only the part of the lane near station s is considered."""
+        """Returns which share, 0..1, of the area of a box is outside the lane. The box is given by its
+        four corners, shape (4, 2), counter-clockwise. Only the section of the lane near station s is
+        considered."""
         box = np.ascontiguousarray(corners, dtype=np.float64)
         return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
 
 
 @compiled
 def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
-    """Returns the share of the convex box that is outside the strip; ``scratch`` is working memory of shape
-    (2, 16, 2)."""
+    """Returns which share of the area of the convex box is outside the strip; ``scratch`` is working
+    memory of shape (2, 16, 2)."""
     whole = 0.0
     mid_x = 0.25 * (box[0, 0] + box[1, 0] + box[2, 0] + box[3, 0])
     mid_y = 0.25 * (box[0, 1] + box[1, 1] + box[2, 1] + box[3, 1])

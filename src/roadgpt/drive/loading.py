@@ -18,8 +18,9 @@ from roadgpt.errors import UsageError
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
-    The user's file is run only with permission: a file that only a run, a campaign or a plan names is not run
-    (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a process of its own.
+    A driver's file is run only if the user has named it or agrees; that a run, a campaign or a plan names it
+    is not enough (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a process
+    of its own.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.
@@ -42,7 +43,7 @@ def absolute_spec(spec: str, folder: Path) -> str:
 
     Args:
         spec: as for ``load_driver``; the name of a plug-in is returned unchanged.
-        folder: the folder to which a relative path refers.
+        folder: the folder that a relative path starts from.
     """
     path, wanted = split_spec(spec)
     if not path:

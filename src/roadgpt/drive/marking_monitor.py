@@ -35,8 +35,8 @@ LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per met
 
 
 class MarkingMonitor(NamedTuple):
-    """The markings of the driven lane of one road, and the points of a car whose distance to them is
-    computed."""
+    """The markings of the driven lane of one road, and the points of a car whose distance to these
+    markings is computed."""
 
     sampled: SampledRoad
     edges: FloatArray

@@ -1,5 +1,5 @@
-"""Decides which drivers may be run: a driver's code that is named only in a file is not run until the user
-names it.
+"""Decides which drivers may be run. If a driver's file is named only in a stored file, such as a run's
+``run.json``, it is not run until the user names it or agrees.
 
 Plug-ins need no permission, because the user has installed them.
 """
@@ -19,10 +19,11 @@ def split_spec(spec: str) -> tuple[str, str]:
 
 
 def permit(spec: str) -> None:
-    """Records that the user has named this driver: it may then be run, even if a file names it.
+    """Records that the user has named this driver, so that it may also be run where a stored file names it.
 
-    A file written on another machine names the driver by a path that does not exist on this machine. A driver
-    with the same file name and class therefore counts as the same; the file that the user named is run.
+    A run that was made on another machine names the driver by a path that does not exist on this machine.
+    Drivers with the same file name and the same class therefore count as the same driver, and the file that
+    the user named is run.
     """
     if split_spec(spec)[0]:
         CODE.add_from_user(_whole(spec))
@@ -30,8 +31,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use if a file names ``spec``: the user's driver if the user has named the same
-    one, else ``spec``."""
+    """Returns the driver to use where a stored file names the driver ``spec``: the user's own driver if it
+    has the same file name and class, else ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))
@@ -41,10 +42,11 @@ def driver_from_file(spec: str, file: object) -> str:
 
 
 def require_permission(spec: str) -> None:
-    """Permits a driver's file to be run; asks the user if only a file names the driver.
+    """Permits a driver's file to be run. Asks the user first if the driver is named only in a stored file,
+    and not by the user.
 
     Raises:
-        UsageError: only a file names the driver, and the user does not agree or cannot be asked.
+        UsageError: the driver is named only in a stored file, and the user does not agree or cannot be asked.
     """
     if not split_spec(spec)[0]:
         return

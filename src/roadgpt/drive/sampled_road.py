@@ -72,7 +72,8 @@ def _straight_on(row: FloatArray, along: FloatArray) -> FloatArray:
 
 
 def stations_of(sampled: SampledRoad) -> FloatArray:
-    """Returns the station of each row of the table; beyond the ends of the road, that of the nearer end."""
+    """Returns the station of each row of the table. A row beyond an end of the road gets the station of
+    that end."""
     s = sampled.first + sampled.step * np.arange(len(sampled.table))
     return np.clip(s, 0.0, sampled.length)
 
@@ -80,7 +81,7 @@ def stations_of(sampled: SampledRoad) -> FloatArray:
 @inlined
 def room_at(edges: FloatArray, first: float, step: float, s: float, t: float) -> float:
     """Returns the distance in metres from offset ``t`` to the nearer of two edges at station ``s``; negative
-    outside.
+    outside the edges.
 
     ``edges`` has the offsets of the left and the right edge for each row of the table, shape (n, 2).
     """

@@ -24,7 +24,7 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         episodes: number of most recent episodes from which the share is computed.
 
     Raises:
-        UsageError: ``prompts`` is empty, or a number is out of range.
+        UsageError: ``prompts`` is empty, or ``share`` or ``episodes`` is out of range.
     """
 
     def __init__(

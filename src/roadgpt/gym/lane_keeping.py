@@ -45,8 +45,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 
     Reward of a step: metres gained along the lane, minus 0.1 per metre of distance from the middle of the
     lane, minus a small penalty for rough steering; +10 at the goal, -10 if the car leaves its lane, falls or
-    gets stuck. An episode is ``terminated`` under the same conditions as a drive; if the time runs out, it is
-    ``truncated``.
+    gets stuck. An episode is ``terminated`` when the car reaches the goal, leaves its lane, falls or gets
+    stuck; it is ``truncated`` when the time runs out.
 
     ``info`` has s, t (m, position on the road), outside (share of the car outside its lane), speed (m/s),
     progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
@@ -144,12 +144,11 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
-        """Runs two control steps (40 ms) with an action; after the end of the episode nothing moves, and the
-        reward is 0.
+        """Runs two control steps (40 ms) with an action; numbers beyond ±1 are clipped. After the end of the
+        episode nothing moves, and the reward is 0.
 
         Raises:
-            UsageError: there is no road yet, or the action is not two finite numbers; numbers beyond ±1 are
-                clipped.
+            UsageError: there is no road yet, or the action is not two finite numbers.
         """
         if self.road is None:
             raise UsageError("the environment has no road yet; call reset() first")

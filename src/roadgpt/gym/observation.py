@@ -24,7 +24,7 @@ MOST = 20.0  # limit of each number after the division
 
 
 class Preview:
-    """Table of curvature, grade and the middle of the lane of one road, for quick lookup."""
+    """Table of the curvature and grade of one road, and of the middle of its lane, for quick lookup."""
 
     def __init__(self, road: Road, world: World, step: float = 0.5) -> None:
         """Samples the road every ``step`` metres; beyond its end the road continues straight and level."""

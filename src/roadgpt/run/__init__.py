@@ -72,10 +72,10 @@ def perform(
     Args:
         words: a description, or the Brief that was read from it.
         seed: seed of the campaign; the road's own seed is derived from this seed and the road's index.
-        world: map, limits of the rules, surface.
-        setup: the reader, designer, rules, simulator and driver.
+        world: the World, with the size of the map, the limits that the rules check, and the friction.
+        setup: the Setup, which names the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
-        earlier: designs that the new design has to differ from.
+        earlier: designs of earlier roads, from which the new design has to differ.
         meter: counts the calls, tokens and cost of language models, and holds the campaign's limits for them.
 
     Raises:
@@ -111,12 +111,13 @@ def perform(
 
 
 def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Meter | None = None) -> Brief:
-    """Returns the Brief that the setup's reader reads from the words, if the world's map has room for such a
-    road.
+    """Returns the Brief that the setup's reader reads from the words. The Brief is checked against the size
+    of the world's map and the world's other limits.
 
     Raises:
-        BriefError: the words cannot be read, or ask for what the world does not allow.
-        PartError: there is no such reader.
+        BriefError: the words cannot be read, or ask for something that the world does not allow, such as a
+            road that is too long for the map.
+        PartError: the reader that the setup names is not installed.
         ChatError: a language model could not be asked, or gave no usable answer.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
@@ -141,8 +142,8 @@ def prove(
     Args:
         blueprint: the Design, or the Road.
         seed: seed of the drive; it is used unchanged.
-        world: map, limits of the rules, surface.
-        setup: the rules, simulator and driver.
+        world: the World, with the size of the map, the limits that the rules check, and the friction.
+        setup: the Setup, which names the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         brief: the requirements that the road has to meet; None if there are no requirements.
         despite_findings: whether to drive a road that breaks rules, as roads of real maps often do, unless it

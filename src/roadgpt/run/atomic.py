@@ -23,8 +23,8 @@ PART = ".part"  # end of the name of what is not yet whole
 
 
 def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
-    """Writes to a temporary file in the same folder and renames it; a private file is readable only by its
-    owner."""
+    """Writes the content to a temporary file in the same folder, and then renames that file to ``path``.
+    If ``is_private``, only the owner can read the file."""
     data = to_bytes(content) if isinstance(content, str) else content
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
@@ -39,7 +39,8 @@ def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> N
 
 
 def refuse_links(*paths: Path) -> None:
-    """Raises an error for paths that are links: in a folder from somebody else, a link may point anywhere.
+    """Raises an error if one of the paths is a link. In a folder from somebody else, a link may point to any
+    file, and writing to the link would change that file.
 
     Raises:
         UsageError: one of these paths is a link, or neither a file nor a folder.
@@ -95,12 +96,13 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def missing(folder: Path) -> tuple[Path, ...]:
-    """Returns those of the folder and its parent folders that do not exist, the innermost first."""
+    """Returns the folders that do not exist yet among the folder and its parent folders, the innermost
+    first."""
     return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes the files, and then those of the folders that are empty afterwards."""
+    """Removes the files, and then each of the folders that is empty after that."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()

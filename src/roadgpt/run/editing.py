@@ -38,8 +38,8 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
 
     Args:
         path: the folder or the file.
-        world: used for a Design that belongs to no run.
-        setup: used for a Design that belongs to no run.
+        world: the World for a Design that is read from a file and belongs to no run.
+        setup: the Setup for such a Design.
 
     Raises:
         UsageError: there is no Design, or there are several.
@@ -54,7 +54,7 @@ def original(path: Path | str, world: World, setup: Setup) -> Original:
 
 
 def original_of(run: Run, path: str) -> Original:
-    """Returns the Design of a Run, to be changed; ``path`` is the path of the Run.
+    """Returns the Design of a Run as the original of a change; ``path`` is the path of the Run.
 
     Raises:
         UsageError: the Run has no Design.

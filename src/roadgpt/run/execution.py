@@ -3,15 +3,16 @@
     timer            s
     pos, dir, vel    [x, y, z]: centre of gravity, m; unit vector ahead; m/s
     steering         degrees at the steering wheel, left positive
-    steering_input   -1 to 1: share of the lock
+    steering_input   -1 to 1: share of full lock
     brake, brake_input, throttle, throttle_input     0 to 1
     wheelspeed       m/s
     vel_kmh          whole km/h
-    is_oob           more than the tolerated share of the car's box is outside its lane, or it has departed
-                     from the lane where that counts
+    is_oob           more than the tolerated share of the car's box is outside its lane, or, if lane
+                     departures count, a front tyre is beyond a marking
     oob_counter      how often it has left the lane so far
-    max_oob_percentage    0 to 1: largest share while outside
-    oob_distance     m: half a lane less the distance from the middle of the lane; negative outside
+    max_oob_percentage    0 to 1: largest share of the car's box outside its lane, since it last left the lane
+    oob_distance     m: half the lane's width minus the car's distance from the middle of the lane;
+                     negative outside
     oob_percentage   0 to 1: share of the car's box outside its lane
 
 Source: the competition's simulation record (2024). The competition's simulator reports the angle of the

@@ -1,4 +1,5 @@
-"""Writes road files of Runs: for each Run while a campaign is running, or for existing Runs."""
+"""Writes the roads of Runs as road files: for each new Run while a campaign is running, or for existing
+Runs."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,5 @@
-"""Computes the features by which the SBFT competition maps tests: two of the road, three of the drive.
+"""Computes the features that span the SBFT competition's feature map of tests: two features of the road, and
+three of the drive.
 
     MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last window is left out
     DIR_COV    share of directions that occur: angles to north, in 25 bins from 0 to 360 degrees

@@ -1,4 +1,4 @@
-"""Counts lost drives, to stop using a simulator that has lost three drives in a row.
+"""Counts lost drives, so that a command stops using a simulator that has lost three drives in a row.
 
 All commands that drive many roads count their drives here. A drive is lost if the simulator could not be
 started, ended unexpectedly, or did not answer (``SimulatorError``); a failure of the driver, or of the
@@ -34,6 +34,6 @@ class LostDrives(Generic[Key]):
 
         Args:
             reason: the simulator's error message for the last drive.
-            again: a hint on how to drive the remaining roads later.
+            again: the part of the message that tells the user how to drive the remaining roads later.
         """
         return GivenUpError(f"the simulator failed {MOST} times in a row and is given up ({reason})", again)

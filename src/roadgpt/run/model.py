@@ -38,10 +38,10 @@ class Setup(Frozen):
     """
 
     def came_with(self, file: object) -> Self:
-        """Returns the Setup, marked as read from a file of unknown origin: its driver and server need the
-        user's permission.
+        """Returns the Setup, marked as read from a file of unknown origin: its driver, and the server of its
+        language model, need the user's permission.
 
-        See ``roadgpt.provenance``; a driver is trusted if the user named its file as well.
+        See ``roadgpt.provenance``. A driver needs no permission if the user has named its file as well.
         """
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
@@ -49,7 +49,8 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """A request for roads, without the number of roads; the same Request gives the same files."""
+    """A request for roads; it does not include how many roads to make. The same Request gives the same
+    files."""
 
     words: str = ""
     """The description; empty if the roads were not made from words."""

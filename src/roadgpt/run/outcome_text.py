@@ -1,5 +1,5 @@
-"""Describes the outcome of a drive in one sentence, including how the drive ended if the car drove on after a
-lane departure."""
+"""Describes the outcome of a drive in one sentence, and adds how the drive ended if the car drove on after
+it had left its lane."""
 
 from roadgpt.drive import Drive
 from roadgpt.verdict import Verdict

@@ -1,8 +1,9 @@
 """Converts a Run to the SBFT competition's file ``test.NNNN.json``, which the competition's tools read.
 
-There are two differences. A field that the competition omits, such as the execution data of an invalid road,
-is present and empty. Interpolated points are [x, y, z] instead of the competition's [x, y]. The description
-of a drive uses the competition's wording; ``verdict.json`` has RoadGPT's.
+There are two differences from the competition's own files. A field that the competition omits, such as the
+execution data of an invalid road, is present and empty. Interpolated points are [x, y, z] instead of the
+competition's [x, y]. The description of a drive uses the competition's wording; ``verdict.json`` has
+RoadGPT's.
 """
 
 from typing import Any

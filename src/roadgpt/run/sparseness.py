@@ -1,11 +1,13 @@
 """Finds where cars left their lane and measures how much such failures differ, as the SBFT competition does.
 
 Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane,
-as a sequence of steps (change of direction, length). Two sequences differ by their weighted Levenshtein
-distance: deleting or inserting a step costs 1, and substituting a step costs (da / (1 + da) + dl / (1 + dl))
-/ 2 with da in degrees and dl in metres, or nothing if da < 0.3 and dl < 0.2. Source: the competition's
-tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so that the competition's tools
-give the same figures for RoadGPT's files:
+as a sequence of steps (change of direction, length). The difference between two failures is the weighted
+Levenshtein distance between their sequences: deleting or inserting a step costs 1, and substituting a step
+costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees and dl in metres, or nothing if da < 0.3 and dl <
+0.2.
+
+Source: the competition's tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so
+that the competition's tools give the same figures for RoadGPT's files:
 
 * sparseness is the mean, over failures, of the largest distance to any failure of a *later* test; the last
   failure has no such distance and is left out;
@@ -47,15 +49,15 @@ class Departure(NamedTuple):
     first: int = 0
     """Index of the record in which the car entered the segment."""
     before: Array | None = None
-    """The part of the segment before the place, points ``(n, 2)``; None if it cannot be cut out of the
-    road."""
+    """The road from the start of the segment to the place where the car left its lane, points ``(n, 2)``;
+    None if it cannot be cut out of the road."""
     after: Array | None = None
-    """The part of the segment after the place, points ``(m, 2)``; None if it cannot be cut out of the
-    road."""
+    """The road from the place where the car left its lane to the end of the segment, points ``(m, 2)``;
+    None if it cannot be cut out of the road."""
 
     @property
     def segment(self) -> Array | None:
-        """The parts before and after the place, joined; None if they cannot be cut out of the road."""
+        """The whole segment: ``before`` and ``after``, joined; None if they cannot be cut out of the road."""
         return (
             None if self.before is None or self.after is None else np.concatenate((self.before, self.after))
         )
@@ -70,8 +72,8 @@ def departure(
     Args:
         points: control points of the road, ``(n, 2)`` or with more columns, metres.
         records: the execution data of the drive.
-        before: length of the segment before the place, in metres.
-        after: length of the segment after the place, in metres.
+        before: length of road in metres to include before the place where the car left its lane.
+        after: length of road in metres to include after that place.
     """
     number = next((i for i, record in enumerate(records) if record.is_oob), None)
     if number is None:
@@ -89,7 +91,8 @@ def departure(
 
 
 def segment_around(points: ArrayLike, place: Sequence[float]) -> Array | None:
-    """Returns points ``(n, 2)`` of a road around a place; None if the segment cannot be cut out."""
+    """Returns points ``(n, 2)`` of a road from 30 m before to 30 m after a place; None if the segment
+    cannot be cut out."""
     line = _interpolated(points)
     found = None if line is None else _cut_out(line, place, AROUND, AROUND)
     return None if found is None else np.concatenate(found)
@@ -177,7 +180,8 @@ def _cost(step: Array, others: Array) -> Array:
 
 
 class Sparseness:
-    """The sparseness of failures, updated with each new failure without measuring earlier pairs again."""
+    """The sparseness of failures, updated with each new failure. Distances between earlier failures are
+    not computed again."""
 
     def __init__(self) -> None:
         self._rows: dict[tuple[int, int], Array] = {}

@@ -1,7 +1,7 @@
 """Writes the tables of a campaign, with the columns of the SBFT competition.
 
 generation_stats.csv         counts, and wall-clock seconds
-oob_stats.csv                failures by side, and their sparseness
+oob_stats.csv                failures to the left and to the right, and the sparseness of failures
 experiment_description.csv   the settings: the competition's columns first, then RoadGPT's
 """
 
@@ -26,7 +26,7 @@ ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none w
 
 
 class TallyEntry(NamedTuple):
-    """The values of one Run that the tables of its folder count."""
+    """The values of one Run that enter the tables of its campaign."""
 
     number: int
     """Number of the road, from 1."""
@@ -124,9 +124,11 @@ def write_settings(
     """Writes experiment_description.csv: the competition's columns in their order, then RoadGPT's.
 
     Args:
-        request: gives simulator and world.
-        theirs: values for other columns of the competition; columns that are missing here stay empty.
-        ours: values for columns of RoadGPT, which come before those of the world.
+        request: the Request whose simulator and world are written.
+        theirs: values for the competition's other columns, by column name; a column without a value stays
+            empty.
+        ours: values for RoadGPT's own columns, by column name; they are written before the fields of the
+            world.
         folder: where the file is written.
     """
     world = request.world

@@ -33,13 +33,12 @@ class BeamngLike:
     It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
     uses it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tested on 2,129
     others: on average it is a fair substitute, but it cannot predict the outcome of a single road
-    (docs/explanation/fair-judge.md has the figures). Like BeamNG's AI it fails by cutting corners: any other
-    lane counts as outside, and so does the shoulder.
+    (docs/explanation/fair-judge.md has the figures). Like BeamNG's AI it fails by cutting corners: it leaves
+    its lane for another lane or for the shoulder, and both count as outside.
 
-    Three of its properties are assumed, because all recordings have one speed limit and a dry road with two
-    lanes that is level across: the higher the speed limit, the more it cuts (``eagerness``), it plans for a
-    dry road, whatever the friction (``assumed_friction``), and its planned speed takes superelevation into
-    account.
+    All recordings have the same speed limit and a dry two-lane road without superelevation. Three properties
+    of the driver are therefore assumptions: it cuts more at a higher speed limit (``eagerness``), it always
+    plans for a dry road (``assumed_friction``), and its planned speed takes superelevation into account.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
@@ -50,8 +49,8 @@ class BeamngLike:
         eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
         risk: lateral acceleration in bends, in g (BeamNG's AI at aggression 0.7 reaches 0.64); at most 0.95
             of the friction is used.
-        headway: time to the point ahead, in seconds.
-        nearest: smallest distance to the point ahead, in metres.
+        headway: time in seconds in which the car would reach the point that it steers towards.
+        nearest: smallest distance to the point that it steers towards, in metres.
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.

@@ -19,8 +19,8 @@ class PurePursuit:
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
-        headway: time to the point ahead, in seconds.
-        nearest: smallest distance to the point ahead, in metres.
+        headway: time in seconds in which the car would reach the point that it steers towards.
+        nearest: smallest distance to the point that it steers towards, in metres.
         wheelbase: wheelbase in metres.
     """
 

@@ -32,9 +32,11 @@ class Reference:
             at 0.3 g.
         slip: slip angle of the rear axle per lateral acceleration, in rad per m/s^2.
         gain: steering angle per lateral error at the point ahead, in rad per metre.
-        ahead: distance in metres; the point ahead is ``ahead + headway * speed`` metres in front of the car.
-        headway: time in seconds, see ``ahead``.
-        lag: steering delay in seconds; the curvature is looked up this time ahead of the car.
+        ahead: distance in metres to the point ahead when the car stands; at speed it is ``ahead + headway *
+            speed``.
+        headway: increase of this distance with speed, in metres per m/s; see ``ahead``.
+        lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
+            delay.
     """
 
     name = "reference"

@@ -3,8 +3,8 @@
     here:   IsolatedDriver.steer(view) --> 13 numbers, and an image if the driver has a camera (a pickle)
     child:  DriverGuard.ask(view)      --> 3 numbers, or a sentence about an error (JSON)
 
-A driver that hangs, in Python or in compiled code, ends its process, or takes more memory than allowed, fails
-only its own drive. One process serves many drives, one after another; the driver is created anew for each.
+If a driver hangs (in Python or in compiled code), ends its process, or takes more memory than allowed, only
+its own drive fails. One process serves many drives, one after another; the driver is created anew for each.
 """
 
 from roadgpt.drive.isolation.proxy import IsolatedDriver, driver_of

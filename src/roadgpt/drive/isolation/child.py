@@ -110,7 +110,7 @@ class _DriverHost:
 
 
 def main() -> None:
-    """Answers requests until the other end is closed."""
+    """Answers the requests of RoadGPT's process until that process closes the connection."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the asking process handles Ctrl-C and ends this one
     heard, said = private_streams()
     up, down = said.fileno(), heard.fileno()

@@ -22,7 +22,8 @@ BEGIN = 60.0  # s within which a new process must be ready
 
 
 class GoneError(Exception):
-    """Raised when a driver's process has ended; the message is a clause that follows the driver's name."""
+    """Raised when a driver's process has ended; its message continues a sentence that starts with the
+    driver's name, such as "ended its own process"."""
 
     def __init__(self, why: str, is_late: bool = False) -> None:
         super().__init__(why)
@@ -60,7 +61,8 @@ class DriverProcess:
             given: arguments for this method.
 
         Returns:
-            The answer; after an error, with the keys ``said``, ``is_users`` and ``trace``.
+            The answer, as a dictionary. After an error in that process, its keys are ``said``, ``is_users``
+            and ``trace``.
 
         Raises:
             GoneError: the process ended, or did not answer within ``seconds``; in the second case it is
@@ -94,7 +96,7 @@ class DriverProcess:
 
     @property
     def is_alive(self) -> bool:
-        """Whether the process is running and can be asked."""
+        """Whether the process is running and can take requests."""
         return not self.is_broken and self._process.poll() is None
 
     def _watch(self) -> None:

@@ -1,4 +1,5 @@
-"""Defines the messages between RoadGPT and a driver's process: four bytes with a length, and the body.
+"""Defines the messages between RoadGPT and a driver's process. A message is four bytes with the length of its
+body, followed by the body.
 
 RoadGPT sends requests as pickles. The driver's process answers in JSON, so that RoadGPT can read the answers
 without running the driver's code.
@@ -27,7 +28,8 @@ def send(number: int, body: bytes) -> None:
 
 
 def receive(number: int, most: int = 1 << 32) -> bytes:
-    """Reads the next message from the file descriptor ``number``; it may have at most ``most`` bytes.
+    """Reads the next message from the file descriptor ``number``; the message may have at most ``most``
+    bytes.
 
     Raises:
         EOFError: the other end is closed, or sent invalid data.

@@ -1,7 +1,7 @@
 """Runs one drive in BeamNG: steps the physics, samples the car, asks the driver, and detects how the drive
 ends.
 
-The moment at which the car crosses a limit is interpolated between two samples.
+If the car reaches the goal or leaves its lane between two samples, that moment is found by interpolation.
 """
 
 import math

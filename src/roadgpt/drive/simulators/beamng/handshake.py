@@ -1,5 +1,5 @@
-"""Exchanges the first message with the program that listens on a port, to find out whether it is BeamNG, and
-which version.
+"""Exchanges the first message with the program that listens on a port, to find out whether that program is
+BeamNG, and which protocol version it uses.
 
 A message consists of its length (four bytes, big-endian) and one MessagePack map; the first message is named
 Hello.

@@ -284,8 +284,8 @@ def _triple(point: FloatArray) -> tuple[float, float, float]:
 
 
 def as_quaternion(matrix: FloatArray) -> tuple[float, float, float, float]:
-    """Returns the quaternion (x, y, z, w) of a rotation matrix, in the form in which beamngpy takes a car's
-    attitude."""
+    """Returns the quaternion (x, y, z, w) of a rotation matrix, in the order of components that beamngpy
+    expects for a car's attitude."""
     from scipy.spatial.transform import Rotation
 
     x, y, z, w = Rotation.from_matrix(matrix).as_quat().tolist()

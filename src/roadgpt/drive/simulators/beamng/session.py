@@ -152,7 +152,8 @@ class Session:
         return self.within(patience, "it was loading its first road")
 
     def within(self, seconds: float, doing: str) -> AbstractContextManager[None]:
-        """Returns a context manager that ends calls to BeamNG after ``seconds``; see `Watchdog`."""
+        """Returns a context manager that interrupts calls to BeamNG that take longer than ``seconds``; see
+        `Watchdog`."""
         return self.watchdog.within(seconds, doing)
 
     def close(self) -> None:
@@ -207,7 +208,8 @@ _sessions: dict[BeamngSettings, Session] = {}
 
 
 def session_of(settings: BeamngSettings) -> Session:
-    """Returns the session for these settings; each process has one session per settings."""
+    """Returns this process's session for these settings. If there is none, creates it and ends any session
+    with other settings."""
     if settings not in _sessions:
         leave_all()  # one BeamNG at a time is enough for a graphics card
         _sessions[settings] = Session(settings)

@@ -23,15 +23,15 @@ class BeamngSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     home: Path | None = None
-    """BeamNG's folder; None: RoadGPT uses a running BeamNG and starts none."""
+    """BeamNG's folder. If it is None, RoadGPT starts no BeamNG, and uses one that is already running."""
     user: Path | None = None
-    """BeamNG's user folder; further workers get folders next to it."""
+    """BeamNG's user folder; worker processes after the first get folders next to it."""
     host: str = "127.0.0.1"
     port: Annotated[int, Field(ge=1, le=65535)] = PORT
     """Port of the first worker; the others use the next free ports."""
     headless: bool = False
     nogpu: bool = False
-    """Whether BeamNG runs without graphics; drivers that need images cannot be used then."""
+    """Whether BeamNG runs without graphics; without graphics, drivers that need images cannot be used."""
     gfx: Literal["dx11", "vk"] | None = None
     level: str = ""
     """Level in which roads are placed; empty: the level ``tig`` if it is installed, else a flat level that
@@ -53,8 +53,8 @@ class BeamngSettings(BaseModel):
     poll_timeout: Annotated[float, Field(gt=0)] = 20.0
     """Seconds within which BeamNG must give any other answer."""
     imitation: bool = False
-    """Whether the driver ``beamng_like`` drives itself; if not, BeamNG's own AI, which it imitates, drives in
-    its place."""
+    """Whether the driver ``beamng_like``, an imitation of BeamNG's AI, is run in BeamNG. If False,
+    BeamNG's AI drives in its place."""
 
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> Self:

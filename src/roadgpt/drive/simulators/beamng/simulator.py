@@ -25,7 +25,7 @@ class BeamngSimulator:
 
     If the driver is ``beamng_like``, BeamNG's own AI, which it imitates, drives in its place (Drive.driver is
     ``beamng_ai`` then). If BeamNG hangs, ends or loses its connection, the road is tried once more on a new
-    BeamNG; a second failure is a SimulatorError of that road.
+    BeamNG; a second failure raises SimulatorError.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.

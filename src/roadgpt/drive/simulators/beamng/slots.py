@@ -1,6 +1,6 @@
 """Assigns a port and a user folder to each of several worker processes that use BeamNG at the same time.
 
-A worker holds a lock file, which the system releases when the process is killed.
+Each worker locks a file; the system releases the lock when the worker ends, even if it is killed.
 """
 
 import os
@@ -50,8 +50,8 @@ class Slot:
 def take(settings: BeamngSettings) -> Slot:
     """Returns the first free slot.
 
-    If RoadGPT starts BeamNG itself, ports on which a program already listens are skipped, because it may not
-    be BeamNG.
+    If RoadGPT starts BeamNG itself, ports on which a program already listens are skipped, because that
+    program may not be BeamNG.
 
     Raises:
         UsageError: BeamNG cannot use the user folder.

@@ -1,5 +1,5 @@
-"""Converts the state of a car as BeamNG reports it, at a reference node, to the pose of the car's centre of
-gravity on the road."""
+"""Converts the state of a car, as BeamNG reports it, to a pose on the road. BeamNG reports the position of
+a reference node of the car; the pose is that of the centre of gravity."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -29,7 +29,7 @@ class CarGeometry(NamedTuple):
     and up of its centre of gravity."""
 
     node: tuple[float, float, float]
-    """Position of the reference node, whose position BeamNG reports as that of the car."""
+    """Position of the reference node; BeamNG reports the position of this node as the car's position."""
     rear: float
     front: float
     half: float
@@ -87,7 +87,8 @@ class CarGeometry(NamedTuple):
 
 
 def frame_of(state: Mapping[str, Any]) -> FloatArray:
-    """Returns the car's unit vectors ahead, to the left and up, from its state as BeamNG reports it, as rows.
+    """Returns the car's unit vectors ahead, to the left and up, as the rows of a (3, 3) array; ``state`` is
+    the car's state as BeamNG reports it.
 
     Raises:
         SimulationError: the state has no direction, which happens after the physics has failed.
@@ -202,8 +203,7 @@ def car_sample(
 
 
 def interpolate_samples(a: CarSample, b: CarSample, share: float) -> CarSample:
-    """Returns the sample at a share (0 to 1) of the time from sample ``a`` to sample ``b``, by
-    interpolation."""
+    """Interpolates between samples ``a`` and ``b`` at a fraction (0 to 1) of the time between them."""
     values = [p + share * (q - p) for p, q in zip(a, b, strict=True)]
     values[4] = a.heading + share * math.remainder(b.heading - a.heading, math.tau)
     return CarSample(*values)

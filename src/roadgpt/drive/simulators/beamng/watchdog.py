@@ -1,9 +1,10 @@
 """Ends calls to BeamNG that do not return.
 
-beamngpy blocks for ever if BeamNG hangs. Its timeouts do not help: after one, it silently reconnects without
-the first message (Hello), and waits again for an answer that is lost. A thread therefore watches the time:
-when a call is overdue, it kills BeamNG's process and closes the sockets, so that the blocked call raises an
-exception. If the call reconnects, the new socket is closed as well, until the call fails.
+beamngpy blocks for ever if BeamNG hangs. Its timeouts do not help: after a timeout it silently reconnects
+without sending the first message (Hello), and then waits again for an answer that will never come. A thread
+therefore watches the time: when a call is overdue, it kills BeamNG's process and closes the sockets, so that
+the blocked call raises an exception. If the call reconnects, the new socket is closed as well, until the call
+fails.
 """
 
 import socket
@@ -39,7 +40,8 @@ class Watchdog:
         messages.
 
         Raises:
-            OverdueError: in place of the exception that the ended call raised.
+            OverdueError: the call took too long. This error replaces the exception that the interrupted call
+                raised.
         """
         done = threading.Event()
         self.due_in(seconds)
@@ -56,11 +58,13 @@ class Watchdog:
             watcher.join()
 
     def due_in(self, seconds: float) -> None:
-        """Restarts the time limit with this number of seconds; for loops of short calls in one context."""
+        """Sets a new time limit of ``seconds``, which starts now, so that one ``within`` block can contain
+        a loop of short calls."""
         self._due = time.monotonic() + seconds
 
     def pause(self) -> None:
-        """Stops the clock while something other than BeamNG is working."""
+        """Suspends the time limit until the next ``due_in``, for example while the driver computes its
+        command."""
         self._due = None
 
     def _watch(self, done: threading.Event) -> None:

@@ -29,14 +29,14 @@ class Tyre:
     peak_friction_y: float = 1.02
     """Lateral peak friction at nominal load, on a road of friction 1."""
     friction_load_sensitivity: float = 0.12
-    """Share of the friction that is lost when the load doubles (typical 0.1 to 0.2)."""
+    """Share by which the friction coefficient decreases when the load doubles (typical 0.1 to 0.2)."""
     slip_stiffness: float = 24.0
-    """Longitudinal slip stiffness over load, dimensionless (typical 20 to 30)."""
+    """Longitudinal slip stiffness divided by the load, dimensionless (typical 20 to 30)."""
     cornering_stiffness: float = 18.0
-    """Cornering stiffness over load, 1/rad; an axle value that includes the compliance of suspension and
+    """Cornering stiffness divided by the load, 1/rad; it includes the compliance of suspension and
     steering."""
     stiffness_load_sensitivity: float = 0.15
-    """Share of the stiffness over load that is lost when the load doubles."""
+    """Share by which the ratio of stiffness to load decreases when the load doubles."""
     shape_factor_x: float = 1.6
     """Longitudinal shape factor C of the Magic Formula; 1.6411 in CommonRoad's PAC2002 set."""
     shape_factor_y: float = 1.35
@@ -56,9 +56,10 @@ class Tyre:
     camber_friction_loss: float = 0.0
     """Relative loss of lateral friction per rad^2 of camber (p_Dy3)."""
     horizontal_shift: float = 0.0
-    """Slip angle in rad that any camber adds, with the sign of the camber (p_Hy1)."""
+    """Slip angle in rad that is added with the sign of the camber, however small the camber is (p_Hy1)."""
     vertical_shift: float = 0.0
-    """Lateral force that any camber adds, with its sign, as a share of the load (p_Vy1)."""
+    """Lateral force, as a share of the load, that is added with the sign of the camber, however small the
+    camber is (p_Vy1)."""
     rolling_resistance: float = 0.011
     """Rolling resistance as a share of the load (typical 0.010 to 0.013)."""
     vertical_stiffness: float = 230e3

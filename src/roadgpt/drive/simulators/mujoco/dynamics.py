@@ -1,7 +1,8 @@
 """The inner loop: computes the forces on the car in steps of 2 ms, between MuJoCo's two half steps.
 
-The forces are passed to MuJoCo as generalised forces (``qfrc_applied``), computed by hand for this one tree
-of bodies. The result is the same as with forces at the wheel bodies, at a fraction of the cost.
+The forces are passed to MuJoCo as generalised forces (``qfrc_applied``), computed with formulas written for
+this one tree of bodies. The result is the same as with forces on the wheel bodies, but takes a fraction of
+the computing time.
 """
 
 import math
@@ -42,7 +43,8 @@ WHEEL_STATE = 8
 
 
 class MujocoHandles(NamedTuple):
-    """What compiled code needs to use MuJoCo: functions, model and data, and views of the data's arrays."""
+    """What compiled code needs to use MuJoCo: its functions, the model and the data, and array views into
+    the data."""
 
     first: Any
     second: Any
@@ -72,7 +74,7 @@ class Ground(NamedTuple):
 
 
 class CarState(NamedTuple):
-    """The parts of the car's state that MuJoCo does not store, and working memory."""
+    """The state variables of the car that MuJoCo does not store, and working memory."""
 
     state: FloatArray
     """State of the whole car, shape (STATE,)."""

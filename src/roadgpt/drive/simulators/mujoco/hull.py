@@ -40,7 +40,8 @@ def hull_points(car: Car) -> FloatArray:
 
 @inlined
 def normal_of(slope: float, lateral: float, heading: float) -> tuple[float, float, float]:
-    """Returns the unit normal of a surface from its slopes in the direction of a heading and to its left."""
+    """Returns the unit normal of a surface, given two slopes of the surface: one along a heading, and one
+    at a right angle to the left of that heading."""
     nz = 1.0 / math.sqrt(1.0 + slope * slope + lateral * lateral)
     cos, sin = math.cos(heading), math.sin(heading)
     return (lateral * sin - slope * cos) * nz, -(slope * sin + lateral * cos) * nz, nz

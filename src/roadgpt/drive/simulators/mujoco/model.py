@@ -33,7 +33,7 @@ _DISABLED = """constraint equality frictionloss limit contact spring damper clam
 
 
 def model_of(car: Car) -> Any:
-    """Returns the compiled MuJoCo model with the masses and positions of the car's parts."""
+    """Returns the compiled MuJoCo model of the car, with the masses and positions of its body and wheels."""
     flags = " ".join(f'{name}="disable"' for name in _DISABLED.split())
     wheels = "".join(
         _wheel(car, axle, name, side)
