@@ -121,8 +121,8 @@ def read(
         road_width: width of the carriageway in metres.
 
     Raises:
-        NoRoomError: the map is too small for such a road; the message says what would fit on this map, and
-            which size of map would hold the road.
+        NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
+            this map, and which size of map would hold the road.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -168,7 +168,7 @@ def alternatives(
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
 
     Raises:
-        BriefError: as in ``read``, for the likeliest reading.
+        BriefError: ``read`` would raise this error for the likeliest reading.
         PartError: no reader of that name is installed.
     """
     first = read(words, reader, map_size, min_radius, max_grade)

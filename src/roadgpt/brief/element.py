@@ -7,7 +7,7 @@ from roadgpt.brief.words import Range
 
 
 class Element(NamedTuple):
-    """One turn or one straight with constant grade; ``turn`` is 0 for a straight.
+    """One turn or one straight; its grade is constant, and ``turn`` is 0 for a straight.
 
     A turn consists of a clothoid, an arc and a second clothoid.
     """
@@ -26,10 +26,11 @@ class Element(NamedTuple):
     """Radius in metres of the vertical curve (a parabola) between the previous grade and this one; None
     leaves the choice to the design."""
     required_length: Range | None = None
-    """Range in metres that the length of a straight must lie in; None for a turn, and for a straight that was
-    added only to join other elements."""
+    """Allowed range of the length of a straight, in metres; None for a turn, and for a straight that was
+    added only to join other elements.
+    """
     required_grade: Range | None = None
-    """Range in percent that the mean grade must lie in; None if the description asks for no grade here."""
+    """Allowed range of the mean grade, in percent; None if the description asks for no grade here."""
 
     @property
     def length(self) -> float:

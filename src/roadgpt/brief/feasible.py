@@ -51,7 +51,7 @@ def check(
     """Checks, from the numbers of a Brief alone, whether some road could satisfy it.
 
     Args:
-        brief: the requirements, in normal form or not.
+        brief: the requirements; the Brief need not be in normal form.
         map_size: side of the square map in metres; None skips the check whether the road fits.
         min_radius: radius of the tightest turn allowed, in metres.
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %); values above 0.15 have no effect.

@@ -11,7 +11,7 @@ GAP = 16.0  # metres of straight between two turns to the same side
 
 
 def least_length(brief: Brief, min_radius: float) -> float:
-    """Returns the smallest length in metres of a road with the clauses and the number of turns of a Brief.
+    """Returns a lower bound in metres of the length of a road that has the clauses and turns of a Brief.
 
     Args:
         brief: the requirements.

@@ -6,9 +6,9 @@ smaller map, the turns are only sweeping ones, and ``remarks`` reports this. Req
 themselves ("a motorway with a hairpin") take precedence over those of the word "motorway".
 
 Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii of 2,040 ft or
-more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves of at least 15 ft for
-each mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of at least 900, 720, 470
-and 280 m, grades up to 4, 4.5, 4.5 and 6 percent.
+more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves at least 15 ft long per
+mph (1,050 ft, 320 m). RAA 2008, design classes EKA 1 A, 1 B, 2 and 3: radii of at least 900, 720, 470 and 280
+m, grades up to 4, 4.5, 4.5 and 6 percent.
 """
 
 import re

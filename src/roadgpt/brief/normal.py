@@ -4,8 +4,8 @@
   cleared.
 - A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
   without a slope means uphill.
-- Straights, crests and dips become one clause each, and so do turns that alternate from a known side. Other
-  equal neighbours are merged into one clause with a count.
+- Straights, crests and dips become one clause each, and so do alternating turns whose first direction is
+  known. Other equal neighbours are merged into one clause with a count.
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
@@ -114,7 +114,7 @@ def total(clauses: list[Clause] | tuple[Clause, ...]) -> Amount:
 
 
 def turns_of(clause: Clause) -> tuple[float, float]:
-    """Returns the least and largest number of turns in a clause; the largest may be ``inf``."""
+    """Returns the smallest and largest number of turns in a clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
     lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi

@@ -1,4 +1,4 @@
-"""Derives the sides of turns that follow from the other numbers.
+"""Derives the directions of turns that follow from the other numbers of a Brief.
 
 If 4 of 5 turns go left, 1 goes right; if none of 3 turns goes left, all go right.
 """

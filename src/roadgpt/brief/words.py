@@ -34,8 +34,8 @@ class Range:
         return f"{self.lo:g} or more" if self.hi == inf else f"{self.lo:g} to {self.hi:g}"
 
     def drawn_in(self, margin: float, share: float) -> Range:
-        """Returns the range, made narrower by ``margin`` at both ends, but by at most ``share`` of its
-        width at each end.
+        """Returns the range narrowed at both ends by ``margin``, or by the fraction ``share`` (0 to 1) of
+        its width if that is less.
         """
         edge = min(margin, share * (self.hi - self.lo))
         return Range(self.lo + edge, self.hi - edge)
@@ -150,8 +150,9 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees, or 10 degrees
-    for angles of 90 degrees or more.
+    """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees.
+
+    For angles of 90 degrees or more, the tolerance is at most 10 degrees.
     """
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 

@@ -1,4 +1,6 @@
-"""Varies hand-written pairs: mirrors them, changes a number, joins two pairs, or adds a requirement."""
+"""Varies hand-written pairs of description and plan: swaps left and right, changes a number, joins two
+pairs, or adds a requirement.
+"""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -50,7 +52,9 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with another count, if that count occurs once in both; else None."""
+    """Returns the text and plan with a different count of turns; None if the original count does not occur
+    exactly once in each.
+    """
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (
         len(counts) != 1
@@ -75,7 +79,8 @@ def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
 
 
 def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan of two pairs joined to one road; None if the pairs cannot be joined.
+    """Returns a text and plan that join the roads of two pairs into one road; None if the pairs cannot be
+    joined.
 
     Pairs with refusals or with requirements for the whole road cannot be joined.
     """

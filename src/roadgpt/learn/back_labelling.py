@@ -1,8 +1,8 @@
 """Back-labelling: designs and measures roads, and describes the measurements in several styles.
 
-The module ``generator`` draws phrases and derives plans from them; this module starts from the geometry. So
-the numbers of a description occur together as they do on roads: lengths that add up, radii that suit their
-angles.
+The module ``generator`` chooses phrases at random and derives plans from them; this module starts from the
+geometry. So the numbers of a description occur together as they do on roads: lengths that add up, radii that
+suit their angles.
 """
 
 from collections.abc import Iterator, Sequence
@@ -89,8 +89,9 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """Returns a description of some facts of a measured road, and its plan; None if the road has no clauses
-    or too many.
+    """Returns a description of randomly chosen facts in the Brief of a measured road, with its plan.
+
+    Returns None if the Brief has no clauses or too many.
     """
     kept = {fact for fact, share in FACTS.items() if rng.random() < share}
     style = STYLES[int(rng.integers(len(STYLES)))]

@@ -25,7 +25,9 @@ PULL = 0.01  # weight decay, so that few pairs do not lead to extreme weights
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The content of ``settings.json``: the threshold of refusals and the weights of the confidence model."""
+    """The content of ``settings.json``: the probability from which a refusal is accepted, and the weights
+    of the confidence model.
+    """
 
     refuse_from: float
     confidence: dict[str, float]

@@ -24,14 +24,16 @@ SAID_BACK = 0.06
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """A pair as numbers: the pieces of the text, and the tokens of the plan including start and end token."""
+    """A pair of description and plan as index numbers: the word pieces of the text, and the tokens of the
+    plan with start and end token.
+    """
 
     pieces: tuple[int, ...]
     tokens: tuple[int, ...]
 
 
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
-    """Returns a pair as numbers; None if its plan has a number that is not in the text, or is too long.
+    """Returns a pair as numbers; None if its plan is too long or has a number that is not in the text.
 
     With ``rng``, the slots are numbered at random, so that the network learns all slot tokens equally well.
     """
@@ -57,8 +59,8 @@ def _reslotted(
 
 
 def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPieces) -> Iterator[Example]:
-    """Yields an endless series of examples; the share ``hand_share`` of them is hand-written, with
-    variations.
+    """Yields an endless series of examples; a fraction ``hand_share`` (0 to 1) of them are variations of
+    hand-written pairs.
     """
     rng = np.random.default_rng([seed, 7])
     generated = pairs(seed)
@@ -89,11 +91,12 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
     Args:
         stream: the examples.
         size: number of examples in a batch.
-        pool: number of batches whose examples are sorted by length together.
-        seed: seed of the order of the batches.
+        pool: number of batches that are filled from one group of examples, sorted by length.
+        seed: seed of the random order of the batches.
 
     Yields:
-        The pieces, of shape (size, most pieces), and the tokens, of shape (size, most tokens).
+        The word pieces, of shape (size, length of the longest text), and the tokens, of shape (size, length
+        of the longest plan).
     """
     rng = np.random.default_rng([seed, 8])
     while True:

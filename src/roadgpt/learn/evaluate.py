@@ -43,7 +43,11 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Shares of readings that are right in some respect, each from 0 to 1, and the number of readings."""
+    """The number of readings, and shares from 0 to 1.
+
+    The shares are those of readings that are right as a whole or in one aspect, and of descriptions that were
+    refused, rightly or wrongly.
+    """
 
     number: int
     exact: float
@@ -75,7 +79,9 @@ HEAD = (
 
 
 def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
-    """Reads all descriptions and returns the results; a refusal also counts as a reading."""
+    """Reads each description with ``read`` and returns one Reading for each, also for those that were
+    refused.
+    """
     return [_reading(pair, read) for pair in pairs]
 
 
@@ -112,7 +118,7 @@ def _order(brief: Brief) -> tuple[object, ...]:
 
 
 def score(found: Sequence[Reading]) -> Score:
-    """Returns the shares of these readings that are right."""
+    """Returns the Score of these readings."""
     honest = [reading for reading in found if reading.is_honest]
     others = [reading for reading in found if not reading.is_honest]
     return Score(
@@ -141,7 +147,7 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """Counts, over all wrong readings, pairs of a word of the label's plan and the word written instead.
+    """Counts which words of the labels' plans were replaced by which other words, over all wrong readings.
 
     The words of a plan are compared without regard to their order, and those that differ are paired
     alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused').

@@ -58,7 +58,7 @@ class DecoderGraph(nn.Module):
     def forward(
         self, token: Tensor, place: Tensor, own: Tensor, across: Tensor, seen: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """Returns the scores of the next token and ``own`` extended by this token."""
+        """Returns the scores of the next token and ``own`` extended by the token that was put in."""
         reader = self.reader
         x = reader.tokens(token) + reader.plan_places(place)
         kept: list[Tensor] = []
@@ -123,7 +123,7 @@ def export_checkpoint(
         folder: where the graphs, the pieces, the learnt words and the settings are written.
         train_pairs: hand-written pairs that the model was trained on.
         held_back: pairs that the model was not trained on, for the calibration of the confidence.
-        seed: seed of the generated pairs from which the learnt words are found.
+        seed: seed of the generated pairs from which the learnt words are determined.
 
     Raises:
         LearnError: there is no checkpoint.

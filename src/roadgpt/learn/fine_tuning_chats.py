@@ -1,4 +1,6 @@
-"""Writes pairs as chats for fine-tuning a larger model: from description to Brief, or to Design."""
+"""Writes pairs as chats for fine-tuning a larger language model, which answers a description with a Brief
+or a Design.
+"""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -18,14 +20,17 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 
 
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
-    """Yields one line of JSON for each pair: a chat that asks for a description's Brief, and the answer."""
+    """Yields one line of JSON for each pair: a chat in which a description is answered with its Brief."""
     for pair in pairs:
         answer = ADVICE.get(pair.plan) or read_plan(pair.plan).model_dump_json(exclude_defaults=True)
         yield _chat(TO_BRIEF, pair.text, answer)
 
 
 def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
-    """Yields chats from description to Design, each as a line of JSON, if the road can be designed."""
+    """Yields chats in which a description is answered with a Design, one line of JSON each.
+
+    Descriptions for which no road can be designed are skipped.
+    """
     for number, pair in enumerate(pairs):
         if pair.plan in REFUSALS:
             continue

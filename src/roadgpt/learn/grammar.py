@@ -43,7 +43,9 @@ DEEPEST = 30
 
 
 class Discarded(Exception):  # noqa: N818 - not an error: another draw follows
-    """Raised if the parts that were drawn do not fit together; the caller draws again."""
+    """Raised if the randomly chosen parts of a description do not fit together; the caller then tries
+    again.
+    """
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,7 @@ class Grammar:
     language: str
     rules: Mapping[str, tuple[Production, ...]]
     weights: Mapping[str, tuple[float, ...]]
-    """The cumulative weights of the rules of each symbol, for drawing."""
+    """The cumulative weights of the rules of each symbol, for the random choice of a rule."""
 
 
 def read_grammar(text: str, language: str) -> Grammar:
@@ -113,7 +115,9 @@ def _name(part: str) -> tuple[str, str, int]:
 
 
 class Speaker:
-    """Draws descriptions from a grammar; each speaker writes all numbers as digits, or all as words."""
+    """Makes random descriptions from a grammar; each speaker writes all numbers as digits, or all as
+    words.
+    """
 
     def __init__(self, grammar: Grammar, rng: np.random.Generator) -> None:
         self.grammar = grammar
@@ -124,7 +128,7 @@ class Speaker:
         """Returns a random text for a symbol, and the plan of the text.
 
         Raises:
-            Discarded: the parts that were drawn do not fit together.
+            Discarded: the randomly chosen parts do not fit together.
         """
         if depth > DEEPEST:
             raise Discarded

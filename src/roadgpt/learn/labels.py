@@ -1,4 +1,4 @@
-"""Reads, checks and splits hand-written pairs; all pairs of a family of phrasing are in the same split."""
+"""Reads, checks and splits hand-written pairs; pairs of one family (similar wording) go to the same split."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -79,8 +79,8 @@ def split(
 
     Args:
         pairs: the hand-written pairs.
-        test: least number of pairs in the test set.
-        validation: least share of the pairs in the validation set, from 0 to 1.
+        test: smallest number of pairs in the test set.
+        validation: smallest fraction of the pairs in the validation set, from 0 to 1.
         seed: seed of the order in which families are assigned.
     """
     families: dict[str, list[Pair]] = {}

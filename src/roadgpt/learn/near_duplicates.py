@@ -1,4 +1,4 @@
-"""Finds descriptions that are nearly the same, which share more than 60 % of their 5-grams.
+"""Finds descriptions that are nearly the same: those that have more than 60 % of their 5-grams in common.
 
 Numbers, sides and synonyms are masked first, so that the same template with other words is also found.
 """
@@ -86,7 +86,9 @@ def _are_bare(one: Counter[tuple[str, ...]], other: Counter[tuple[str, ...]]) ->
 
 
 def report(texts: Mapping[str, Sequence[str]]) -> list[str]:
-    """Returns a sentence for each pair of near-duplicates; ``texts`` maps names of splits to texts."""
+    """Returns a sentence for each pair of near-duplicates; ``texts`` maps the name of each split to its
+    texts.
+    """
     side = [name for name, its in texts.items() for _ in its]
     every = [text for its in texts.values() for text in its]
     return [

@@ -20,7 +20,9 @@ BEYOND: dict[str, list[str]] = WORDS["beyond"]
 
 
 def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with a requirement that contradicts it; None if no such text is available."""
+    """Returns the description with a contradicting requirement added; None if no suitable wording is
+    available.
+    """
     kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
     if not kinds:
         return None
@@ -29,7 +31,9 @@ def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 
 def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with a requirement that no road can meet; None if no such text is available."""
+    """Returns the description with an impossible requirement added; None if no suitable wording is
+    available.
+    """
     if language not in BEYOND or plan.startswith("!"):
         return None
     ways = BEYOND[language]

@@ -51,8 +51,8 @@ class Attention(nn.Module):
 
         Args:
             x: input from which the queries are computed, (batch, queries, width).
-            key: keys, already split, (batch, heads, length, head size).
-            value: values, already split, (batch, heads, length, head size).
+            key: keys, already split into heads, (batch, heads, length, head size).
+            value: values, already split into heads, (batch, heads, length, head size).
             mask: added to the attention scores; None masks nothing.
         """
         query = self.split(self.query(x))
@@ -154,8 +154,8 @@ class ReaderNetwork(nn.Module):
             nn.init.normal_(embedding.weight, std=0.02)
 
     def encode(self, pieces: Tensor, seen: Tensor) -> Tensor:
-        """Encodes piece numbers (batch, length) to (batch, length, width); ``seen`` is added to attention
-        scores.
+        """Encodes piece numbers (batch, length) to (batch, length, width); the mask ``seen`` is added to
+        the attention scores.
         """
         places = self.places.weight[: pieces.shape[1]]
         x = self.dropout(self.norm(self.pieces(pieces) + places + self.kind))

@@ -37,7 +37,9 @@ class TrainingSettings:
     decoder_rate: float = 7e-4
     warm_up: int = 150
     cool_down: float = 0.3
-    """Share of the steps, from 0 to 1, at the end of training, in which the learning rate falls to zero."""
+    """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
+    zero.
+    """
     hand_share: float = 0.6
     seed: int = 1
     save_every: int = 100

@@ -1,4 +1,4 @@
-"""Resolves words with more than one meaning by the words next to them."""
+"""Chooses one meaning for each ambiguous word, judging by the words next to it."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import replace

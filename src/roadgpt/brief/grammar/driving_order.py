@@ -17,7 +17,9 @@ MOST = 200
 
 @dataclass(slots=True)
 class RoadWishes:
-    """The requirements of a description for the road as a whole; the fields are those of a Brief."""
+    """The requirements of a description for the road as a whole; each field means the same as the field of
+    that name in Brief.
+    """
 
     turns: Amount | None = None
     left: Amount | None = None
@@ -40,7 +42,11 @@ class RoadWishes:
 
 @dataclass(slots=True)
 class DrivingOrder:
-    """The features of a road in driving order; a slope without a feature ('uphill, then ...') has no kind."""
+    """The features of a road in driving order.
+
+    A slope that is mentioned without a turn or a straight ('uphill, then ...') is also an entry; its ``kind``
+    is None.
+    """
 
     things: list[Phrase] = field(default_factory=list)
     wishes: RoadWishes = field(default_factory=RoadWishes)
@@ -53,8 +59,9 @@ class DrivingOrder:
     says 'hilly'.
     """
     lists: list[tuple[Phrase, int]] = field(default_factory=list)
-    """Features that are followed by a list of their parts ('three turns: left, right, left'), each with the
-    number of features that precede the list."""
+    """Groups whose members are listed after them ('three turns: left, right, left'), each with the number of
+    features that come before the list.
+    """
 
     @property
     def last(self) -> Phrase | None:
@@ -266,8 +273,8 @@ class DrivingOrder:
 
 
 def turns(thing: Phrase) -> bool:
-    """Returns True if the phrase is a turn, or a side that stands for a turn, as in 'first left, then
-    right'.
+    """Returns True if the phrase is a turn, or only a direction that stands for one, as in 'first left,
+    then right'.
     """
     return thing.turning or (thing.kind is None and thing.side is not None)
 

@@ -2,8 +2,8 @@
 
 A key names one meaning, or several meanings in a row; its phrases are separated by '|'. Accents, case and
 hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number. ``handlers.py`` defines the effect of
-each meaning. If a phrase occurs under two keys, the first key is used, except that meanings that are bounds
-('over') are only used next to a number.
+each meaning. If a phrase occurs under two keys, the first key is used. Exception: a meaning that is a bound
+('over') is only used next to a number.
 """
 
 ROAD_WORDS: dict[str, str] = {

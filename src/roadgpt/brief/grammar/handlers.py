@@ -1,4 +1,6 @@
-"""Defines a handler for each meaning of a word; a handler enters the meaning into the current Phrase."""
+"""Defines a handler for each meaning of a word; a handler sets the fields of the current Phrase that this
+meaning affects.
+"""
 
 from collections.abc import Callable
 from typing import TypeGuard
@@ -31,7 +33,9 @@ KINDS: dict[str, tuple[Kind, bool]] = {
 
 
 def handle_kind(now: Phrase, item: Term) -> None:
-    """Sets the kind of feature of a phrase; 'hairpin bend' and 'zig-zag switchbacks' are single features."""
+    """Sets which feature a phrase describes, such as a hairpin; 'hairpin bend' and 'zig-zag switchbacks' name
+    one feature each.
+    """
     kind, many = KINDS[item.name]
     if now.kind in WAVY and kind not in STRAIGHT and kind not in ("turn", now.kind):
         now.alternating = now.kind != "winding"

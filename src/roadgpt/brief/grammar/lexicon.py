@@ -37,7 +37,7 @@ class Lexeme:
 
 @dataclass(frozen=True, slots=True)
 class Lexicon:
-    """A dictionary of phrases, as tuples of words, and their meanings."""
+    """A dictionary that maps phrases, as tuples of words, to their meanings."""
 
     phrases: dict[tuple[str, ...], tuple[Meanings, ...]]
     longest: dict[str, int]
@@ -45,8 +45,8 @@ class Lexicon:
 
     @classmethod
     def of(cls, vocabularies: Iterable[dict[str, str]]) -> "Lexicon":
-        """Builds a Lexicon from vocabularies; if a phrase is in several, its meaning in the earliest comes
-        first.
+        """Builds a Lexicon from vocabularies; if several contain a phrase, its meanings are listed in the
+        order of the vocabularies.
         """
         phrases: dict[tuple[str, ...], tuple[Meanings, ...]] = {}
         longest: dict[str, int] = {}
@@ -64,7 +64,9 @@ class Lexicon:
 
 @cache
 def lexicon() -> Lexicon:
-    """Returns the lexicon of all vocabularies; words that a Brief cannot express come first, then English."""
+    """Returns the lexicon built from all vocabularies: first the words that a Brief cannot express, then
+    English, then the other languages.
+    """
     return Lexicon.of((UNSUPPORTED_WORDS, ROAD_WORDS, FUNCTION_WORDS, GERMAN, ROMANCE))
 
 
@@ -134,7 +136,9 @@ def _is_number(token: Token) -> bool:
 
 
 def similar(word: str) -> str | None:
-    """Returns the word about roads that a mistyped word resembles: 'turns' for 'trns'; else None."""
+    """Returns the word about roads that a mistyped word resembles, such as 'turns' for 'trns'; None if
+    there is none.
+    """
     known = {w for listed in ROAD_WORDS.values() for w in listed.split() if len(w) > 3 and w.isalpha()}
     near = get_close_matches(word, sorted(known), n=1, cutoff=ALIKE)
     return near[0] if near else None

@@ -67,7 +67,7 @@ class Phrase:
     height: Amount | None = None
     height_said: str = ""
     turned: Amount | None = None
-    """The sum of the angles of all turns in degrees."""
+    """The required sum of the angles of all turns in degrees."""
     turned_said: bool = False
     incline: Amount | None = None
     highest: bool = False
@@ -90,7 +90,7 @@ class Phrase:
     relative: bool = False
     """True if the phrase is a relative clause: 'the last turn, which is downhill'."""
     slope_alone: bool = False
-    """True if the description gives only a slope at this place, and a straight was inserted for it."""
+    """True if the phrase is a straight that was inserted for a slope mentioned without a turn or straight."""
     free_turns: bool = False
     hard: bool = False
     mountain: bool = False

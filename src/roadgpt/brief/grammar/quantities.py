@@ -25,8 +25,9 @@ LOOK_BACK = 3  # items between a bound and its number: 'a minimum radius of 20 m
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """A meaning of one or more words; or a quantity: a number with an ``amount``, whose name is 'count' or
-    its unit.
+    """The meaning of one or more words, or a quantity, which is a number with its unit.
+
+    A quantity has an ``amount``, and its name is its unit or, if it has no unit, 'count'.
     """
 
     name: str

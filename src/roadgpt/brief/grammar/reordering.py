@@ -10,7 +10,7 @@ from roadgpt.brief.normal import STRAIGHT
 
 
 def in_driving_order(order: DrivingOrder) -> None:
-    """Moves features to the front that come first on the road, as in 'finally a left turn, but first two
+    """Moves features that come first on the road to the front, as in 'finally a left turn, but first two
     right turns'.
     """
     things = order.things
@@ -21,7 +21,9 @@ def in_driving_order(order: DrivingOrder) -> None:
 
 
 def place_picks(order: DrivingOrder) -> None:
-    """Applies phrases about single turns to these turns, as in 'the last turn is sharp; four turns'."""
+    """Applies phrases about single turns when the number of turns is known, as in 'the last turn is sharp;
+    four turns'.
+    """
     picked = [thing for thing in order.things if thing.pick is not None and turns(thing)]
     others = [
         thing for thing in order.things if turns(thing) and thing.pick is None and thing.scope != "rest"
@@ -65,8 +67,8 @@ def _alone(order: DrivingOrder, picked: list[Phrase]) -> None:
 
 
 def share_of_the_rest(order: DrivingOrder) -> None:
-    """Computes how many turns are 'the others': 'the first two turns are left, the others right; five in
-    total'.
+    """Computes how many turns 'the others' are, as in 'the first two turns are left, the others right;
+    five in total'.
     """
     rest = next((thing for thing in order.things if thing.scope == "rest"), None)
     if rest is None or rest.kind in WAVY:
@@ -121,8 +123,8 @@ def turns_left_open(order: DrivingOrder, road_said: bool) -> bool:
 
 
 def as_one_turn(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Adds the turn meant by 'one' in 'a long bend, then a short sharp one'; returns False if 'one' means no
-    turn.
+    """Adds the turn meant by 'one' in 'a long bend, then a short sharp one'; returns False if 'one' does
+    not stand for a turn.
     """
     last = order.last_turn
     said = phrase.sharpness or phrase.size or phrase.side

@@ -15,7 +15,9 @@ ATTRIBUTES = ("side", "sharpness", "degrees", "radius", "incline")
 
 
 def select(order: DrivingOrder, phrase: Phrase, after: Phrase | None) -> bool:
-    """Applies a phrase to the earlier features that it refers to; returns False if it was not used."""
+    """Applies a phrase to the earlier features that it refers to; returns False if the phrase was not
+    used.
+    """
     if phrase.pick is not None:
         return _pick(order, phrase)
     if (phrase.kind in STRAIGHT and phrase.scope == "each") or (
@@ -80,7 +82,9 @@ def _targets(order: DrivingOrder, phrase: Phrase) -> list[Phrase]:
 
 
 def give(thing: Phrase, phrase: Phrase) -> None:
-    """Copies the properties in ``phrase`` to the feature ``thing``; they replace those of ``thing``."""
+    """Gives the feature ``thing`` the properties that ``phrase`` states; they replace the earlier ones of
+    ``thing``.
+    """
     if phrase.kind not in (None, "turn"):
         thing.kind = phrase.kind
     for name in ATTRIBUTES:
@@ -154,7 +158,9 @@ def halve(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Applies 'two of them to the left' or 'one of which is a hairpin'; False if there are no turns."""
+    """Applies 'two of them to the left' or 'one of which is a hairpin'; returns False if no turn was
+    mentioned before.
+    """
     whole = order.last_turn
     if whole is None:
         return False
@@ -181,7 +187,9 @@ def take_some(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def negate(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Applies 'no left turns', 'not steep' or 'without hairpins'; False if a Brief cannot express this."""
+    """Applies 'no left turns', 'not steep' or 'without hairpins'; returns False if a Brief cannot express
+    this.
+    """
     wishes = order.wishes
     if phrase.hilly or phrase.slope_noun:
         wishes.slope = wishes.slope or "flat"

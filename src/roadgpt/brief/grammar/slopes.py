@@ -23,8 +23,8 @@ _WORDS: dict[tuple[str, str], Slope] = {
 
 
 def slope_of(phrase: Phrase) -> Slope | None:
-    """Returns the slope of a phrase as a value of a Brief; if the phrase gives a number, 'steeply' and
-    'gently' are dropped.
+    """Returns the slope of a phrase as a value of ``Brief.slope``; if the phrase gives the grade as a number,
+    'steeply' and 'gently' are dropped.
     """
     if not phrase.slope:
         return None
@@ -35,7 +35,9 @@ def slope_of(phrase: Phrase) -> Slope | None:
 
 
 def settle_slopes(order: DrivingOrder) -> None:
-    """Assigns each slope without a feature to earlier features or to the road, or inserts a straight."""
+    """Assigns each slope that is mentioned without a turn or straight ('then uphill') to earlier features
+    or to the whole road, or inserts a straight for it.
+    """
     alone = [thing for thing in order.things if _alone(thing)]
     if alone and not _shared_out(order, alone):
         only = len({_said(thing) for thing in order.things if thing.slope}) == 1 and not _rises_and_falls(

@@ -1,4 +1,5 @@
-"""Composes English descriptions of turns that are numbered, repeated, separated or counted by side.
+"""Composes English descriptions of turns that are numbered, repeated, separated by straights, or counted by
+side.
 
 The grammars write one feature after another. In these compositions, one sentence refers to many features at
 once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"), and the plan
@@ -48,7 +49,9 @@ SHARES = np.cumsum([share for _, share in WAYS])
 
 
 def composed(rng: np.random.Generator) -> Composition | None:
-    """Returns a random description and its plan in standard form; None if no such road is possible."""
+    """Returns a random description and its plan in standard form; None if the described road is
+    impossible.
+    """
     way = WAYS[int(np.searchsorted(SHARES, rng.random() * SHARES[-1], side="right"))][0]
     voice = Voice(rng)
     said = way(voice)

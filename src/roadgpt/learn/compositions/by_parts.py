@@ -16,8 +16,9 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
 
 
 def by_parts(voice: Voice) -> Composition:
-    """Returns a description of three to eight turns whose first and last part differ, sometimes with a
-    hairpin at one end.
+    """Returns a description of three to eight turns in which the first turns differ from the rest.
+
+    Sometimes the turn at one end is a hairpin.
     """
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)

@@ -43,7 +43,9 @@ def _joined(voice: Voice, parts: list[str]) -> str:
 
 
 def limited(voice: Voice) -> Composition:
-    """Returns a description of a number of turns and two to four requirements with numbers, in any order."""
+    """Returns a description that gives the number of turns and two to four numerical requirements, in any
+    order.
+    """
     number = voice.whole(2, 7)
     count, side = voice.pick((voice.turns(number), f"{voice.pick(NOUNS)}: {number}")), ""
     if voice.chance(0.2):

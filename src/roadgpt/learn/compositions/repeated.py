@@ -1,5 +1,6 @@
-"""Describes repeated patterns, and turns whose directions are given as letters, such as 'L, L, R', with one
-angle for all left turns and one for all right turns.
+"""Describes repeated patterns, and turns whose directions are given as letters, such as 'L, L, R'.
+
+Turns given as letters may have one angle for all left turns and one for all right turns.
 """
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
@@ -41,8 +42,9 @@ def _part(voice: Voice, may_be_straight: bool) -> tuple[str, str]:
 
 
 def lettered(voice: Voice) -> Composition:
-    """Returns a description whose turns are given as letters ('L, L, R'), sometimes with an angle for all
-    left turns, for all right turns, or one for each.
+    """Returns a description whose turns are given as letters ('L, L, R').
+
+    Sometimes it also states one angle for all left turns, one for all right turns, or both.
     """
     turns = [DescribedTurn(mods={"side": voice.pick(SIDES)}) for _ in range(voice.whole(3, 7))]
     text = voice.pick((", ", "-", " ", ", ")).join(turn.mods["side"][0].upper() for turn in turns)

@@ -1,11 +1,14 @@
-"""Descriptions with counts that add up: the number of turns, and how many go to each side or come first."""
+"""Descriptions with counts that add up: the number of all turns, and how many of them go left, go right or
+come first.
+"""
 
 from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses
 
 
 def sided_sum(voice: Voice) -> Composition:
-    """Returns a description with the number of turns and how many go to each side, sometimes with their
-    order.
+    """Returns a description that gives the number of turns and how many go left and right.
+
+    Sometimes it also says which of these come first or last.
     """
     total = voice.whole(2, 9)
     side = voice.pick(SIDES)

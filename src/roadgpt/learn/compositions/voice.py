@@ -75,11 +75,11 @@ class Voice:
         return ways[int(self.rng.integers(len(ways)))]
 
     def say(self, way: str, *parts: str, **named: str) -> str:
-        """Returns a random phrase of the kind ``way``, with its placeholders filled in."""
+        """Returns a random phrase from ``PHRASES[way]``, with its placeholders filled in."""
         return self.pick(PHRASES[way]).format(*parts, **named)
 
     def chance(self, share: float) -> bool:
-        """Returns True with probability ``share``, which is from 0 to 1."""
+        """Returns True with probability ``share`` (0 to 1)."""
         return bool(self.rng.random() < share)
 
     def whole(self, low: int, high: int) -> int:
@@ -125,7 +125,10 @@ class Voice:
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
-        """Returns the text with an opening, sometimes with a purpose and a requirement for the whole road."""
+        """Returns the composition, with an opening put before the text if it has none.
+
+        Sometimes a purpose or a requirement for the whole road is added.
+        """
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text
         wishes: list[str] = []

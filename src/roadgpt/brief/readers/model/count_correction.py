@@ -3,8 +3,8 @@
 A small network copies numbers well and calculates badly: for "seven turns, the first two uphill", it wrote
 counts of 2 and 4. If exactly one count of a plan is not in the text, and exactly one number in the text is
 not a count of the plan, the missing count is computed as a sum or difference. If every count is in the text,
-but a number of turns is no sum of the counts, that number is kept in the Brief as the total number of turns,
-so that the contradiction is reported.
+but the text also gives a number of turns that is not a sum of the counts, that number is kept in the Brief as
+the total number of turns, so that the contradiction is reported.
 """
 
 from collections.abc import Iterator

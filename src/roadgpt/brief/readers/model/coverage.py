@@ -1,5 +1,7 @@
-"""Finds words that had no effect on the plan: numbers and sides that it does not use, and words that are
-unknown from training.
+"""Finds words of a description that had no effect on its plan.
+
+These are numbers and sides (left, right) that the plan does not use, and words that the reader has not
+learnt.
 """
 
 from collections.abc import Sequence

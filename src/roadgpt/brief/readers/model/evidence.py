@@ -22,7 +22,9 @@ HILLY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """The kinds of numbers that a description can imply: angles, a grade ("mountain"), a number of hills."""
+    """Which numbers a description can imply: angles ("right angle"), a grade ("mountain road"), a number
+    of hills ("rolling").
+    """
 
     angles: bool = True
     mountains: bool = True
@@ -30,6 +32,8 @@ class Evidence:
 
     @classmethod
     def of(cls, text: str) -> "Evidence":
-        """Returns the evidence in a description; the text must be in lower case and without accents."""
+        """Returns which numbers a description can imply; the text must be in lower case and without
+        accents.
+        """
         patterns = (ANGLE, MOUNTAIN, HILLY)
         return cls(*(pattern.search(text) is not None for pattern in patterns))

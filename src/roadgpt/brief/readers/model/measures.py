@@ -13,7 +13,7 @@ SIDES = frozenset(["left", "right", "l", "r"])
 
 @dataclass(slots=True)
 class Number:
-    """A number, its position in the text, and what it measures."""
+    """A number, its position in the text, and its unit."""
 
     value: float
     first: int
@@ -22,11 +22,15 @@ class Number:
     is_bare: bool = True
     factor: float = 1.0
     spread: int = 0
-    """For a count: the tolerance; counts that differ by up to this many are acceptable."""
+    """Tolerance of a count: counts that differ from it by up to this number are accepted."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
-    """Returns the unit that begins at this token (measure, size, number of words); None if there is none."""
+    """Returns the unit that begins at token ``at``; None if no unit begins there.
+
+    A unit is returned as the unit used in plans (such as metres), the factor that converts to it, and the
+    number of words.
+    """
     for size in (2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))
         if found:
@@ -79,8 +83,8 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
-    """Assigns to numbers without a unit the unit announced for all of them, as in "lengths in feet: 250
-    straight".
+    """Assigns the unit that the description announces for all numbers to those without a unit, as in
+    "lengths in feet: 250 straight".
     """
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
     sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]

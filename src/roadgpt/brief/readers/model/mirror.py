@@ -26,7 +26,7 @@ TOKENS = {"left": "right", "right": "left", "lefts=": "rights=", "rights=": "lef
 
 
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
-    """Returns text and plan with left and right swapped; None if the plan has no side, or a word is
+    """Returns text and plan with left and right swapped; None if the plan names neither side, or a word is
     ambiguous.
     """
     if not re.search(r"\b(?:left|right|lefts|rights)\b", plan):
@@ -38,7 +38,7 @@ def mirrored(text: str, plan: str) -> tuple[str, str] | None:
 
 
 def in_mirror(text: str) -> str | None:
-    """Returns the text with left and right swapped; None if it names no side, or a word is ambiguous."""
+    """Returns the text with left and right swapped; None if it names neither side, or a word is ambiguous."""
     swapped = re.sub(r"[^\W\d_]+", lambda match: _other(match[0]), text)
     return None if swapped == text or UNSAFE.search(text) else swapped
 

@@ -32,7 +32,9 @@ class WrittenPlan:
 
     tokens: tuple[str, ...]
     log_chances: tuple[float, ...]
-    """The log-probability of each token, including the end token, among the tokens allowed there."""
+    """The log-probability of each token, including the end token, relative to all tokens allowed at its
+    position.
+    """
     refusal: float
     """The probability, at the first token, that the network refuses the description."""
 

@@ -289,8 +289,8 @@ def _spellings(number: int, language: str) -> Iterator[str]:
 
 @cache
 def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Returns the table of all spellings, each split into words, with the value in each language that uses
-    it.
+    """Returns a table that maps each spelling, as a tuple of words, to the number it stands for in each
+    language.
 
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
     """

@@ -23,20 +23,21 @@ BEFORE_NOUN = 3
 
 
 class OrdinaryNumbers(NamedTuple):
-    """A description with ordinary numbers, and the original count for each stand-in."""
+    """A description in which unusually large counts of turns are replaced by small ones.
+
+    ``counts`` maps each small count to the original one.
+    """
 
     text: SlottedText
     counts: dict[str, str]
 
     def restored(self, tokens: Sequence[str]) -> tuple[str, ...]:
-        """Returns a plan with the original counts in place of the stand-ins."""
+        """Returns a plan in which the replaced counts have their original values again."""
         return tuple(self.counts.get(token, token) for token in tokens)
 
 
 def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
-    """Returns the description with ordinary numbers; the text is unchanged if its numbers are ordinary
-    already.
-    """
+    """Returns the description with ordinary numbers; the text is returned unchanged if it has no others."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []

@@ -64,7 +64,7 @@ class VariantPlans:
 
     @property
     def least(self) -> float:
-        """The lowest score of the plans."""
+        """The lowest score among the plans of this variant."""
         return min(score for score, _ in self.plans.values())
 
     @property
@@ -89,7 +89,8 @@ def scored_plans(
         words: the description.
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
-        shown: applied to the text before the network reads it, for example to replace unusual numbers.
+        shown: function that is applied to the text before the network reads it, for example to replace
+            unusual numbers.
     """
     text = shown(slotted(words))
     variants = [_plans_of_variant(network, text, refuse_from, False)]
