@@ -1,5 +1,5 @@
-"""Writes a Brief as one short line, called a plan, and reads it back; for people who label data and for
-models.
+"""Writes a Brief as one short line, called a plan, and reads it back. Plans are written by models, and by
+people who label data.
 
     turn x3 left up; straight long down; hairpin right | len=300 hard
 

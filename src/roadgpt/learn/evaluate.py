@@ -28,7 +28,7 @@ class Reading:
     """The reason why the reader refused the description."""
     right: bool
     parts: frozenset[str]
-    """The aspects listed in PARTS that are right; all aspects if the description was rightly refused."""
+    """The aspects listed in PARTS that are right; if the description was rightly refused, all of them."""
 
     @property
     def is_honest(self) -> bool:

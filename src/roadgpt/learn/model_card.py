@@ -24,10 +24,11 @@ def card(
 
     Args:
         weights: folder of the exported model.
-        data: number of pairs in each part of the data.
+        data: number of pairs in each split of the data, by name of the split.
         found: the model's readings of the test split.
         others: readings of the same split by other readers, by name of the reader.
-        shown: the model's readings of the validation split, the source of the confusions and mistakes shown.
+        shown: the model's readings of the validation split; the card shows confusions and mistakes from
+            these.
         training: one paragraph on the training.
     """
     return "\n".join(

@@ -53,13 +53,14 @@ def grams(text: str) -> Counter[tuple[str, ...]]:
 
 
 def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
-    """Returns all pairs of texts that share more than ``most`` of the shorter one's 5-grams, worst first.
+    """Returns all pairs of texts that have too many 5-grams in common, worst first.
 
     Texts that consist of masked words only are skipped, since there are few ways to write "two left bends".
 
     Args:
         texts: the texts to compare.
-        most: the largest share of common 5-grams that is allowed, from 0 to 1.
+        most: the largest fraction (0 to 1) of the shorter text's 5-grams that may also occur in the other
+            text.
     """
     counted = [grams(text) for text in texts]
     places: dict[tuple[str, ...], list[int]] = defaultdict(list)

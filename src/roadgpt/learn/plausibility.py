@@ -1,4 +1,4 @@
-"""Checks whether a randomly drawn Brief makes sense: no contradictions, nothing too large for a map."""
+"""Checks whether a randomly generated Brief makes sense: no contradictions, nothing too large for a map."""
 
 from math import inf
 
@@ -77,7 +77,9 @@ def _counts_contradict(brief: Brief) -> bool:
 
 
 def impossibility(brief: Brief) -> bool:
-    """Returns True if the Brief asks for more than a map of 250 m holds, or breaks a rule for every road."""
+    """Returns True if the Brief asks for more than a map of 250 m holds, or for a length, grade or radius
+    that no road may have.
+    """
     turns = sum(clause.count.lo or 0 for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:
         return True

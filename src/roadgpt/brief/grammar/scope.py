@@ -144,8 +144,8 @@ def _pick(order: DrivingOrder, phrase: Phrase) -> bool:
 
 
 def halve(order: DrivingOrder, phrase: Phrase) -> bool:
-    """Applies a phrase such as 'the first half uphill' to that half of the turns; returns False if there are
-    none.
+    """Applies a phrase such as 'the first half uphill' to that half of the turns; returns False if there
+    are no turns.
     """
     order.expand()
     turning = [thing for thing in order.things if turns(thing)]

@@ -57,8 +57,8 @@ Sort = Literal["word", "number", "ratio", "sign"]
 
 @dataclass(frozen=True, slots=True)
 class Token:
-    """A piece of a description: ``raw`` is its original spelling, ``text`` the form to look up in
-    vocabularies.
+    """A word, number or punctuation mark: ``raw`` is its original spelling, ``text`` the spelling used for
+    look-up.
     """
 
     text: str

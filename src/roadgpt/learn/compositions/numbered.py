@@ -28,8 +28,10 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns a description of three to seven turns of different kinds; sometimes all of them go in the same
-    direction.
+    """Returns a description of three to seven turns that says by number which of them differ, such as
+    hairpins.
+
+    Sometimes all turns go in the same direction.
     """
     total = voice.whole(3, 7)
     names, chosen, is_one = _chosen(voice, total)

@@ -34,7 +34,10 @@ def _sided(voice: Voice, number: int, side: str) -> str:
 
 
 def ranged(voice: Voice) -> Composition:
-    """Returns a description with a range such as three to five turns, sometimes with one different turn."""
+    """Returns a description with a range of counts, such as three to five turns.
+
+    Sometimes it also says how the first or the last turn differs from the others.
+    """
     low = voice.whole(2, 5)
     high = low + voice.whole(1, 3)
     numbers = {"low": low, "high": high, "less": low - 1, "more": high + 1}

@@ -92,7 +92,7 @@ def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
 
 
 def bound_before(words: Sequence[str], at: int) -> Bound | None:
-    """Returns the bound given by the words right before a number ("at least"); None if none is certain."""
+    """Returns the bound given by the words right before a number ("at least"); None if they give none."""
     last = at - 1
     while last >= 0 and words[last] in FILLERS and at - 1 - last < MOST_FILLERS:
         last -= 1

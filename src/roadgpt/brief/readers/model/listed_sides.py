@@ -17,7 +17,8 @@ JOINTS = frozenset(
 
 
 def listed_sides(text: SlottedText) -> tuple[str, ...]:
-    """Returns the sides of the only list of sides in the text; empty if it has fewer than FEWEST sides.
+    """Returns the sides of the only list of sides in the text; empty if this list has fewer than FEWEST
+    sides.
 
     The result is also empty if the text contains another number or a word like "twice", since one side may
     then stand for several turns.

@@ -51,7 +51,7 @@ THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """A word of a description: ``text`` is the form for the model, ``written`` the original spelling."""
+    """A word of a description: ``text`` is what the model reads, ``written`` the original spelling."""
 
     text: str
     written: str
@@ -74,7 +74,7 @@ class SlottedText:
 
     @property
     def text(self) -> str:
-        """The words in the form that the model reads, joined by spaces."""
+        """The words as the model reads them, joined by spaces."""
         return " ".join(word.text for word in self.words)
 
 

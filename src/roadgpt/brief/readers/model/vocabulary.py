@@ -56,7 +56,9 @@ UNIT_OF = {
 
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
-    """Returns the tokens of a plan; None if one of its numbers has neither a slot nor a token of its own."""
+    """Returns the tokens of a plan; None if the plan has a number for which there is neither a slot nor a
+    token.
+    """
     out: list[str] = []
     key = ""
     taken: set[int] = set()
