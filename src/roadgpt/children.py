@@ -57,9 +57,8 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """Kills a process and its children, without waiting until they have ended.
-
-    It may be called again for a process that has already ended.
+    """Kills a process and its child processes, without waiting until they have ended. It may also be
+    called for a process that has already ended.
     """
     if os.name == "posix":
         # its group may outlive it, so it is signalled even if the process has ended
@@ -73,10 +72,9 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
-    """Asks a process that called ``ends_its_own`` to end itself and its child processes, without waiting.
-
-    The child processes of such a process run in separate sessions, where ``kill`` does not reach them, except
-    on Windows.
+    """Asks a process that has called ``ends_its_own`` to end itself and its child processes; does not wait
+    for them. ``kill`` would not reach these child processes (except on Windows), because they run in
+    separate sessions.
     """
     if os.name == "posix" and process.poll() is None:
         with suppress(OSError):
@@ -94,7 +92,9 @@ def _end_all(number: int, frame: object) -> None:
 
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
-    """Ends a process and its children. Returns its exit status; None if it has not ended in time."""
+    """Ends a process and its child processes. Returns the exit status of the process; None if it has not
+    ended in time.
+    """
     kill(process)
     with suppress(subprocess.TimeoutExpired):
         process.wait(patience)
@@ -109,7 +109,9 @@ def kill_all() -> None:
 
 
 def ending(status: int | None) -> str:
-    """Returns how a process ended as words that can follow its name, such as 'was ended by signal 9'."""
+    """Returns how a process ended, in words that can follow the name of the process, such as 'was ended by
+    signal 9'.
+    """
     if status is not None and status < 0:
         return f"was ended by signal {-status}"
     return f"ended with status {status}"

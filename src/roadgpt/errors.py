@@ -56,11 +56,13 @@ class GivenUpError(RoadGPTError):
 
 
 class PartError(UsageError):
-    """A plug-in was requested by a name that no installed package registers, or cannot be loaded."""
+    """A plug-in cannot be loaded, or no installed package registers a plug-in of the requested name."""
 
 
 class ExportError(RoadGPTError):
-    """A format cannot hold this road, something it needs is not installed, or its file cannot be written."""
+    """A road cannot be exported: the format cannot represent it, something that the export needs is not
+    installed, or the file cannot be written.
+    """
 
 
 class LearnError(UsageError):
@@ -68,17 +70,19 @@ class LearnError(UsageError):
 
 
 class ChatError(RoadGPTError):
-    """The server of a language model could not be reached, or did not do what it was asked to do."""
+    """The server of a language model could not be reached, or did not do what was requested."""
 
     exit_status = 4
 
 
 class BudgetError(ChatError):
-    """The next request to a language model would exceed the limit of tokens or cost."""
+    """The next request to a language model could exceed the limit of tokens or cost."""
 
 
 class ReplyError(ChatError):
-    """The server answered, but not with what was asked for. Only one road fails, and a campaign continues."""
+    """The server answered, but the answer is not usable. Only the current road fails; a campaign
+    continues.
+    """
 
     def __init__(self, sentence: str, text: str = "") -> None:
         super().__init__(sentence)
@@ -91,17 +95,20 @@ class RefusedError(ReplyError):
 
 
 class UnparsableError(ReplyError):
-    """None of the model's replies matches the requested schema, in whichever way it was requested."""
+    """None of the model's replies matches the requested schema, in any of the response formats that were
+    tried.
+    """
 
 
 @contextmanager
 def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None]:
-    """Turns an error of the operating system in a ``with`` block into one sentence.
+    """Catches an OSError that is raised in a ``with`` block, and raises an error with a one-sentence message
+    instead.
 
     Args:
         kind: the class of the error to raise.
-        what: what cannot be done, such as "cannot write FILE"; the reason follows it.
-        advice: what the user can do.
+        what: says what cannot be done, such as "cannot write FILE"; the message continues with the reason.
+        advice: what the user can do; it ends the message.
     """
     try:
         yield

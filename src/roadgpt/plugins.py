@@ -35,7 +35,7 @@ def _registered(kind: str) -> dict[str, list[EntryPoint]]:
 
 
 def names(kind: str) -> list[str]:
-    """Returns the sorted names of the plug-ins of a kind.
+    """Returns the sorted names of the plug-ins of one kind, such as "rules".
 
     Raises:
         PartError: No plug-ins of this kind are installed. This is an error because, for example, every road
@@ -72,14 +72,16 @@ def find(kind: str, name: str) -> Any:
 
 
 def module_of(kind: str, name: str) -> str:
-    """Returns the name of a plug-in's module without importing it; an empty string if there is none."""
+    """Returns the name of the module that defines a plug-in, without importing the module; an empty string
+    if there is no such plug-in.
+    """
     return next((part.module for part in _registered(kind).get(name, ())), "")
 
 
 def origin(kind: str, name: str) -> str:
     """Returns the distribution that provides a plug-in, as 'name version'.
 
-    If several distributions provide it, all are returned in one string.
+    If several distributions provide it, the string lists all of them.
     """
     parts = _registered(kind)[name]
     return ", ".join(f"{part.dist.name} {part.dist.version}" if part.dist else "unknown" for part in parts)

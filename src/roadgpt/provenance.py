@@ -1,10 +1,10 @@
-"""Records whether drivers and servers were named by the user or by a file. Only the former are trusted.
-
-A run, a campaign, a plan or a folder may have been made by somebody else. Code that reads such a
-file records the drivers and servers that the file names (``add_from_file``). Code that reads the user's
-options records those that the user names (``add_from_user``). Before the code of a driver is run, or a key is
-sent to a server, ``untrusted_file`` tells whether only a file names it. Names in the user's own Python
-programs are trusted, because no file is recorded for them.
+"""Records whether drivers and servers were named by the user or only by a file. A driver or server is
+trusted only if the user named it, because somebody else may have made a run, a campaign, a plan or a
+folder. Code that reads such a file records the drivers and servers that the file names
+(``add_from_file``). Code that reads the user's options records those that the user names
+(``add_from_user``). Before the code of a driver is run, or a key is sent to a server, ``untrusted_file``
+tells whether it was named only by a file. If the user's own Python program names a driver or server, no
+file is recorded for it, so it is trusted.
 """
 
 from collections.abc import Callable
@@ -25,19 +25,25 @@ class NameOrigins:
         self._named[key] = name or key
 
     def given_as(self, key: str) -> str | None:
-        """Returns the user's spelling of a key; None if the user did not name it."""
+        """Returns the user's spelling of the driver or server with this key; None if the user did not name
+        it.
+        """
         return self._named.get(key)
 
     def add_from_file(self, key: str, file: object) -> None:
-        """Records that a file names a key. If several files name it, only the first is recorded."""
+        """Records that a file names the driver or server with this key. If several files name it, only the
+        first file is recorded.
+        """
         self._files.setdefault(key, str(file))
 
     def untrusted_file(self, key: str) -> str | None:
-        """Returns the file that names a key, if the user did not name it; None otherwise."""
+        """Returns the file that names the driver or server with this key; None if the user named it too,
+        or if no file names it.
+        """
         return None if key in self._named else self._files.get(key)
 
     def join(self, others: "NameOrigins") -> None:
-        """Adds the names that another process has recorded to those of this one."""
+        """Adds the names that were recorded in another process."""
         self._named.update(others._named)
         self._files.update(others._files)
 
@@ -52,7 +58,9 @@ def _nobody(question: str) -> bool:
 
 
 class Confirmation:
-    """Asks the user to confirm something. Unless a program sets ``ask``, the answer is no."""
+    """Asks the user to confirm something. Unless a program has set ``ask``, nobody is asked and the answer
+    is no.
+    """
 
     def __init__(self) -> None:
         self.ask: Callable[[str], bool] = _nobody

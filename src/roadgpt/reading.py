@@ -29,9 +29,10 @@ def opened(path: Path, most: int = LARGEST, what: str = ANY, called: str = "") -
     """Returns a regular file of limited size, opened for reading.
 
     Args:
-        path: The file, or a link to one.
-        most: Greatest size in bytes.
-        what: What the file should be, for the error message if it is too large.
+        path: Path of the file, or of a link to it.
+        most: The largest size that is allowed, in bytes.
+        what: What the file should contain, such as "a recording"; it is part of the error message if the file
+            is too large.
         called: Name of the file in error messages; empty to use its path.
 
     Raises:
@@ -108,17 +109,17 @@ def json_of(text: str) -> Any:
 
 
 def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
-    """Checks the unpacked size of a zip archive.
+    """Checks that a zip archive does not unpack to more than ``most`` bytes.
 
     Raises:
-        ValueError: The archive would unpack to more than ``most`` bytes.
+        ValueError: It would unpack to more.
     """
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")
 
 
 def strictly(kind: type[T], data: Any) -> T:
-    """Converts data from a file to an instance of a dataclass, without converting the types of fields.
+    """Makes an instance of a dataclass from the data in a file; no value is converted to another type.
 
     Raises:
         ValueError: A field is missing, has another type, or is a number that is not finite.

@@ -2,8 +2,8 @@
 
 A signal raises KeyboardInterrupt, so that waiting ends, files are closed and finished work is kept. However,
 Python drops exceptions that are raised in a ``__del__`` method or in the callback of a weak reference. The
-signal is therefore recorded as well: long computations call ``look`` between their steps, and if Python
-reports a dropped KeyboardInterrupt, it is raised again.
+signal is therefore recorded as well: long computations call ``look`` between their steps, and a
+KeyboardInterrupt that Python reports as dropped is raised again.
 """
 
 import _thread
@@ -55,7 +55,8 @@ def look() -> None:
     """Checks whether the program should stop; long computations call it between their steps.
 
     Raises:
-        KeyboardInterrupt: A signal was received, and no caller has been interrupted yet.
+        KeyboardInterrupt: A signal was received, and this function has not raised the exception for it
+            before.
     """
     if _State.number and not _State.is_raised and threading.current_thread() is threading.main_thread():
         _State.is_raised = True
@@ -63,18 +64,16 @@ def look() -> None:
 
 
 def status() -> int:
-    """Returns the exit status that shells use for a program that was stopped by the received signal.
-
-    It is 0 if no signal was received.
+    """Returns the exit status that shells use for a program that was stopped by the received signal, such
+    as 130 for Ctrl-C; 0 if no signal was received.
     """
     return 128 + _State.number if _State.number else 0
 
 
 @contextmanager
 def shielded() -> Iterator[None]:
-    """Returns a context manager; processes started in the context do not receive Ctrl-C from the terminal.
-
-    This process must end them instead.
+    """Returns a context manager. Processes that are started inside its ``with`` block do not receive
+    Ctrl-C from the terminal, so this process must end them itself.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield
@@ -99,8 +98,8 @@ def finish() -> None:
 def leave() -> None:
     """Ends the process at once with the exit status of the received signal, without waiting for threads.
 
-    It does nothing if no signal was received. The call is needed because Python would end the process by
-    SIGINT, whatever its exit status, if a C library has seen the KeyboardInterrupt.
+    It does nothing if no signal was received. It is needed because, after a KeyboardInterrupt inside a C
+    library, Python would end the process by SIGINT and ignore the exit status.
     """
     if not status():
         return

@@ -45,11 +45,11 @@ __all__ = [
 
 
 class Chat(Protocol):
-    """A language model that can be asked."""
+    """A language model to which questions can be sent."""
 
     @property
     def spent(self) -> Spent:
-        """The total cost so far of all questions to this Chat, including those without a usable answer."""
+        """The total cost of all questions to this Chat so far, including those that got no usable answer."""
         ...
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
@@ -66,7 +66,7 @@ class Chat(Protocol):
 
 
 def open_chat(settings: ChatSettings) -> Chat:
-    """Returns a Chat with the model in the settings, which counts its costs.
+    """Returns a Chat with the model that the settings name. The Chat counts what its questions cost.
 
     If the settings name a folder for recording, all exchanges are stored there; if they name a folder to
     replay, the answers come from that folder instead of a server.
@@ -103,8 +103,8 @@ def asks_a_model(part: Any) -> bool:
 
 
 def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """Returns the settings for creating a plug-in: those given, else the user's; None if it takes no
-    settings.
+    """Returns the ChatSettings for creating a plug-in: those given, else those that the user has
+    configured. Returns None if the plug-in takes no ChatSettings.
     """
     return (settings or configured()) if asks_a_model(part) else None
 

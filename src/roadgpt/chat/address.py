@@ -12,7 +12,7 @@ Origin = tuple[str, str, int | None]
 
 
 def address_of(base_url: str | None) -> str:
-    """Returns the URL of a server, with the usual path appended if ``base_url`` has no path."""
+    """Returns the URL of a server; if ``base_url`` has no path, the usual path is appended."""
     place = (base_url or OPENAI).rstrip("/")
     for door in DOORS:
         place = place.removesuffix(door)
@@ -23,7 +23,9 @@ def address_of(base_url: str | None) -> str:
 
 
 def origin_of(base_url: str | None) -> Origin:
-    """Returns the scheme, host and port of a URL in normal form; those of OpenAI's server for None."""
+    """Returns the scheme, host and port of a URL, in normal form. For None, they are those of OpenAI's
+    server.
+    """
     parts = urlsplit((base_url or OPENAI).strip())
     scheme = parts.scheme.lower()
     try:

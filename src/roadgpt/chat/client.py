@@ -1,8 +1,8 @@
 """Sends requests through the library ``openai``, and turns its errors into plain sentences.
 
-The library repeats requests that failed. The answer is read as bytes under limits of time and size, and
-parsed by RoadGPT's own rules, because servers that claim to be compatible omit fields and add others. The API
-key is removed from everything that a server returns.
+The library repeats requests that failed. RoadGPT reads the answer as bytes, with limits of time and size.
+RoadGPT also parses the answer itself, because servers that claim to be compatible omit fields and add others.
+The API key is removed from everything that a server returns.
 """
 
 import json
@@ -77,9 +77,7 @@ class ApiClient:
         return self._sent(self._client.responses.with_raw_response.create, body)
 
     def begin_conversation(self) -> dict[str, Any]:
-        """Starts a conversation that the server stores, and returns the server's answer, which describes
-        it.
-        """
+        """Starts a conversation that the server stores; returns the server's description of it."""
         return self._sent(self._client.conversations.with_raw_response.create, {})
 
     def models(self) -> list[dict[str, Any]]:

@@ -1,4 +1,5 @@
-"""Looks up settings in options, the environment, .env and TOML files, in this order, with their origin.
+"""Looks up each setting in options, the environment, .env and TOML files, in this order, and notes where it
+was found.
 
     option        --model gpt-5-mini
     environment   ROADGPT_MODEL=gpt-5-mini       also OPENAI_BASE_URL and OPENAI_API_KEY
@@ -7,9 +8,9 @@
 
 The plan file of a campaign (its table [chat]) comes between the options and the environment. An API key is
 not a setting: it has no option, is not part of ChatSettings, and is only shown masked. The user's key is sent
-to OpenAI and to servers that the user names by an option, the environment or the user's own file. It is not
-sent to other servers that are named in other files, because somebody else may have written these files.
-``key_for`` has the exact rules.
+to OpenAI, and to servers that the user names by an option, in the environment or in the user's own settings
+file. If only another file names a server, the key is not sent there, because somebody else may have written
+that file. ``key_for`` has the exact rules.
 """
 
 import os
@@ -55,13 +56,14 @@ class Layer(NamedTuple):
 
     name: str
     found: dict[str, Any]
-    """Values by field, or by the name of the variable if the source is the environment."""
+    """Values by field. If the source is the environment, values by name of the variable."""
     tables: Mapping[str, Any] = MappingProxyType({})
     """All tables of a TOML file, by name; ``roadgpt.cli.configuration`` reads those other than ``[chat]``."""
 
 
 def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None) -> ChatSettings:
-    """Returns the current settings from all sources, in order of precedence.
+    """Returns the current settings. If several sources have a setting, the one with the highest precedence
+    applies.
 
     Args:
         flags: the user's options by field; a value of None means that the option was not given.
@@ -76,7 +78,8 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
-    """Returns every setting with its origin; the first source that has a setting takes precedence.
+    """Returns the value and the origin of every setting; if several sources have a setting, the first one
+    applies.
 
     Raises:
         UsageError: a settings file cannot be read, or has a setting that does not exist.
@@ -135,9 +138,9 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    A server that is named only by a file in the working folder gets a key only from such a file, unless the
-    server runs on this computer. A server that is named only by a plan, a campaign or a run gets no key.
-    Somebody else may have written these files.
+    If a server is named only by a file in the working folder, it gets a key only if such a file also contains
+    the key, unless the server runs on this computer. If a server is named only by a plan, a campaign or a
+    run, it gets no key. The reason is that somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
@@ -173,7 +176,7 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
     Args:
         base_url: the server that the user names.
         wanted: the server that the file names; None if it names no server.
-        place: the file or folder, for the message.
+        place: the file, or the folder it is in, for the error message.
 
     Raises:
         UsageError: the file names another server, or none.
@@ -205,8 +208,7 @@ def untrusted_source(base_url: str | None) -> str:
 
 
 def layers() -> list[Layer]:
-    """Returns all sources of settings other than options and plan files, in order of precedence, highest
-    first.
+    """Returns all sources of settings except options and plan files, beginning with the highest precedence.
 
     Raises:
         UsageError: A file of settings cannot be read, or its table ``[chat]`` has an unknown key.
@@ -301,7 +303,8 @@ def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
 
 
 def unknown_variables(others: Collection[str] = ()) -> list[str]:
-    """Returns the names, with origin, of variables that look like settings of RoadGPT but are not.
+    """Returns the variables whose names begin with ``ROADGPT_`` but are unknown, as texts such as
+    "ROADGPT_MODLE in .env".
 
     Args:
         others: Names of variables that set options other than those of a language model.

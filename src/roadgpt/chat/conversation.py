@@ -1,7 +1,7 @@
 """One conversation through the Responses API, which replaces the discontinued Assistants API.
 
-If the server can store the conversation, the model remembers the earlier roads of a campaign. If the server
-cannot, the most recent messages are sent with each request.
+If the server can store the conversation, the model remembers the earlier roads of a campaign. Otherwise, the
+most recent messages are sent again with each request.
 """
 
 from collections.abc import Sequence

@@ -1,9 +1,9 @@
 """Converts a pydantic model to a flat JSON schema that uses only the keywords that all servers accept.
 
-The schema has objects with every field required and no others, strings, numbers, booleans, lists,
-enumerations and null. Patterns, lengths, numeric limits, defaults and tuples are left out: some servers
-ignore them, some reject them, and some then answer without any constraint. The limits still hold, because
-every reply is validated against the pydantic model.
+The schema consists of strings, numbers, booleans, null, enumerations, lists and objects. In an object, every
+field is required, and no other fields are allowed. Patterns, lengths, numeric limits, defaults and tuples are
+left out. Some servers ignore these keywords, some reject them, and some then ignore the whole schema. The
+limits still hold, because every reply is validated against the pydantic model.
 """
 
 from typing import Any
@@ -18,8 +18,8 @@ def fixed_description(text: str) -> ConfigDict:
     """Returns a pydantic configuration with which ``text``, instead of the docstring, describes a model in
     its schema.
 
-    Recorded answers are found by a hash of the question, which includes the schema. So the docstring of a
-    model may change, but the description in its schema may not.
+    A recorded answer is found by a hash of the question, and the question includes the schema. So the
+    docstring of a model can be edited, but the description in its schema must stay the same.
     """
     return ConfigDict(json_schema_extra={"description": text})
 

@@ -21,17 +21,19 @@ LEAST_REPLY = 64  # tokens; a shorter answer is of no use
 
 
 class Meter:
-    """Counts tokens, seconds and money, and compares them with the limits of a campaign."""
+    """Counts tokens, seconds and money, and compares tokens and money with the limits of a campaign."""
 
     def __init__(self, max_tokens: int | None = None, max_cost: float | None = None) -> None:
         self.max_tokens, self.max_cost = max_tokens, max_cost
         self.spent = Spent()
         self.turns: Counter[tuple[str, str, str]] = Counter()
-        """How often a question was asked on an occasion, as recordings count."""
+        """How many answers to a question on an occasion were recorded or replayed; used by recordings."""
 
     @classmethod
     def of(cls, settings: ChatSettings | None) -> "Meter":
-        """Returns a Meter with the limits in the settings; without limits if ``settings`` is None."""
+        """Returns a Meter with the limits in the settings; if ``settings`` is None, the Meter has no
+        limits.
+        """
         return cls() if settings is None else cls(settings.max_tokens, settings.max_cost)
 
     def add(self, spent: Spent) -> None:
@@ -97,8 +99,8 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
     Args:
         meter: the meter.
-        occasion: a label for the road that the questions are about; recordings use it to tell equal questions
-            apart.
+        occasion: a label for the road that the questions are about; recordings use it to distinguish a
+            question about one road from the same question about another.
     """
     before = _now.set(_Now(meter, occasion))
     try:
@@ -114,7 +116,9 @@ def occasion() -> str:
 
 
 class Account:
-    """Counts what one Chat spends, with the campaign's meter or, without a campaign, with its own meter."""
+    """Counts what one Chat spends. It also adds this to the campaign's meter or, without a campaign, to a
+    meter of its own.
+    """
 
     def __init__(self, settings: ChatSettings) -> None:
         self.settings = settings

@@ -44,7 +44,7 @@ class Usage(ChatValue):
 
 
 class Reply(ChatValue):
-    """The answer to one question; usage, seconds and cost cover all attempts."""
+    """The answer to one question; its tokens, seconds and cost include failed attempts."""
 
     text: str
     """The text as the model wrote it; it may be shown but never executed."""
@@ -81,7 +81,7 @@ class Spent(ChatValue):
         )
 
     def since(self, before: "Spent") -> "Spent":
-        """Returns the costs that were added since ``before``, an earlier state of the same costs."""
+        """Returns what was spent after ``before``, an earlier value of this total."""
         cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
@@ -95,17 +95,22 @@ class Spent(ChatValue):
 
 
 class ChatSettings(ChatValue):
-    """The language model to ask and how to ask it; stored in run folders, and never contains an API key."""
+    """Which language model to ask, and how. The settings are stored in run folders and never contain an
+    API key.
+    """
 
     provider: str = "openai"
     """Name of an installed provider."""
     model: str | None = None
-    """The server's name of the model; None uses the server's only model."""
+    """The name by which the server knows the model; with None, the server must have only one model, which
+    is used.
+    """
     base_url: str | None = None
-    """Address of the server up to ``/v1``; None means OpenAI's server."""
+    """Address of the server, up to and including ``/v1``; None means OpenAI's server."""
     api: Api = "chat"
-    """'chat' is the Chat Completions API; 'responses' is the Responses API, whose conversation the server
-    stores."""
+    """'chat' selects the Chat Completions API; 'responses' selects the Responses API, with which the
+    server stores the conversation.
+    """
     temperature: Annotated[float, Field(ge=0, le=2)] | None = None
     """The sampling temperature, from 0 to 2; None uses the server's default."""
     timeout: Annotated[float, Field(gt=0, le=86_400)] = 60.0
@@ -121,8 +126,9 @@ class ChatSettings(ChatValue):
     price: str | None = None
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
-    """Folder in which every exchange is stored; left out of saved files, so that a replay writes the same
-    files."""
+    """Folder in which every exchange is stored. This setting is left out of saved files, so that a replay
+    writes the same files.
+    """
     replay: str | None = Field(default=None, exclude=True)
     """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""
     rounds: Annotated[int, Field(ge=1, le=20)] = 3
@@ -157,19 +163,18 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Returns the settings, with default values for those that may change when a campaign is resumed.
-
-        These are the limits of tokens and money, the price, the time-out, the retries and the folders of
-        recordings.
+        """Returns the settings that must stay the same when a campaign is resumed; all others are set to
+        their defaults. Those others are the limits of tokens and money, the price, the time-out, the
+        retries and the folders of recordings.
         """
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns the settings without folders, and notes that ``file``, not the user, names their server.
-
-        This is for settings from somebody else's file: the user's API key is then not sent to the server.
+        """Returns the settings without the folders of recordings, and notes that their server is named by
+        ``file`` and not by the user. It is used for settings from a file that somebody else may have
+        written; it prevents the user's API key from being sent to that server.
         """
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)
@@ -177,7 +182,7 @@ class ChatSettings(ChatValue):
 
 
 def two_prices(text: str) -> tuple[float, float]:
-    """Parses a text like "0.15/0.60" to two prices: USD per million tokens of prompt and of completion.
+    """Parses a text such as "0.15/0.60" into two prices: USD per million tokens of prompt and of completion.
 
     Raises:
         ValueError: the text is not two numbers.

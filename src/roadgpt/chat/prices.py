@@ -2,8 +2,8 @@
 
 Source: OpenAI's price page as stored in the package genai-prices 0.2.3, standard rates for prompts below
 272,000 tokens, taken on 2026-11-20. Discounts for cached prompts are not counted, so a computed cost may be
-too high, but not too low. Models that are not in the table, and all models on other servers, have no known
-price: use ``--price``.
+too high, but not too low. No price is known for models that are not in the table, nor for any model on a
+server other than OpenAI's. For these, the user gives the price with ``--price``.
 """
 
 import re

@@ -46,7 +46,7 @@ class Recorder:
         return spent
 
     def ask(self, messages: Sequence[Message], schema: type[BaseModel] | None = None) -> Reply:
-        """Returns the answer of the wrapped Chat; raises the same errors as ``Chat.ask``."""
+        """Asks the wrapped Chat, stores its answer and returns it; raises the same errors as ``Chat.ask``."""
         question = question_of(self._settings, messages, schema)
         before = self.spent
         try:

@@ -8,7 +8,7 @@ SPENT_UP = ("insufficient_quota", "billing", "credit")  # words in a 429 for whi
 
 @dataclass
 class RequestError(Exception):
-    """Raised if a request to a server failed."""
+    """Raised if a request to a server fails."""
 
     sentence: str
     status: int | None = None

@@ -1,8 +1,9 @@
 """An HTTP client that limits the size and time of every response and refuses redirects to other servers.
 
-A server may answer with a gigabyte even when it reports an error, and a compressed megabyte may contain a
-gigabyte. So every response is decompressed piece by piece, and only up to the limit. The library ``openai``
-uses this client and repeats requests that failed; a response header tells it which failures may be temporary.
+Any response, even an error message, may be a gigabyte long, and a compressed response of a megabyte may
+unpack to a gigabyte. So every response is decompressed piece by piece, and only up to the limit. The library
+``openai`` uses this client and repeats requests that failed; a response header, added by this client, tells
+the library which failures may be temporary.
 """
 
 import contextvars
@@ -42,12 +43,15 @@ class LimitedClient(DefaultHttpxClient):
         super().__init__(event_hooks={"response": [self._limited]})
 
     def send(self, request: httpx2.Request, **how: Any) -> httpx2.Response:
-        """Sends one request, and gives up after the time limit even if bytes still trickle in.
+        """Sends one request and returns the response; gives up at the time limit, even if data are still
+        arriving slowly.
 
         Raises:
-            httpx2.TransportError: there is no complete response; the library may send the request again.
-            RequestError: the server redirects to another server, or compresses its answer in another way.
-            NotReadableError: the response exceeds the limit of size.
+            httpx2.TransportError: the response is missing or incomplete; the library ``openai`` may send the
+                request again.
+            RequestError: the server redirects to another server, or compresses its answer by a method that
+                was not requested.
+            NotReadableError: the response is larger than the size limit.
         """
         box: list[Any] = []
         context, send = contextvars.copy_context(), super().send

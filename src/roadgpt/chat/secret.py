@@ -1,4 +1,4 @@
-"""API keys: shown only masked, and removed from every text that a server returns."""
+"""Handles API keys: they are only shown masked, and are removed from every text that a server returns."""
 
 import re
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ SHORTEST = 8  # characters of a key that is searched for in texts; shorter ones 
 
 @dataclass(frozen=True)
 class Key:
-    """An API key and its origin; converted to text, the key is masked."""
+    """An API key and its origin. If a Key is converted to text, the text is masked."""
 
     value: str = field(repr=False)
     origin: str

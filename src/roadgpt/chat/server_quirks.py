@@ -1,4 +1,5 @@
-"""Remembers what a server accepts, so that each process has to find it out only once.
+"""Remembers which parameters and response formats a server accepts, so that each process has to find this out
+only once.
 
 There are three ways of asking for JSON, from the strictest to the loosest: with a schema that the server
 enforces; as any JSON object, with the schema in the prompt; as plain text, from which the JSON is extracted.
@@ -26,19 +27,21 @@ class ServerQuirks:
     """What has been found out about one model on one server."""
 
     caps: tuple[str, ...]
-    """Possible names of the parameter for the length limit of a reply; the first is in use."""
+    """Names that the server may use for the parameter that limits the length of a reply; the first is
+    tried first.
+    """
     response_format: ResponseFormat = ResponseFormat.SCHEMA
     takes_temperature: bool = True
     unusable: dict[ResponseFormat, int] = field(default_factory=dict)
     keeps_conversations: bool = True
 
     def failed(self, response_format: ResponseFormat) -> None:
-        """Counts a reply in this format that was not usable."""
+        """Counts an unusable reply in this response format."""
         self.unusable[response_format] = self.unusable.get(response_format, 0) + 1
 
     def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
-        """Makes this format the first to try from now on, if all stricter ones were rejected or failed
-        repeatedly.
+        """Notes that a reply in this response format was usable. From now on, this format is tried first,
+        if all stricter ones were rejected or failed repeatedly.
         """
         self.unusable[response_format] = 0
         above = range(self.response_format, response_format)

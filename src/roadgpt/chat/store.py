@@ -30,8 +30,8 @@ class ExchangeStore:
         self.folder = Path(folder)
 
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
-        """Stores an answer; a campaign's first answer for an occasion replaces answers from earlier
-        campaigns.
+        """Stores an answer to a question on an occasion. The first answer that a campaign stores for this
+        question and occasion replaces all answers from earlier campaigns.
 
         Raises:
             ChatError: the folder cannot be written to.
@@ -51,8 +51,8 @@ class ExchangeStore:
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
         """Returns the next recorded answer to a question on an occasion; None if no answer is left.
 
-        Answers that were recorded outside a campaign are used for every occasion that has no answers of its
-        own. Outside a campaign, the answers of all occasions are used.
+        If an occasion has no recorded answers, those that were recorded outside a campaign are used. Outside
+        a campaign, if no such answers are recorded, those of all occasions are used.
         """
         name = name_of(question)
         answers = self._answers(name)

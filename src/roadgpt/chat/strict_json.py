@@ -1,4 +1,4 @@
-"""Reads JSON from the text that a model wrote: strictly, but ignoring any text around it.
+"""Reads JSON from the text that a model wrote. The JSON is read strictly, but any text around it is ignored.
 
 Code fences, text before and after, and a model's reasoning are skipped. NaN and infinities, keys that occur
 twice with different values, extreme nesting and extreme length are rejected with one sentence. Nothing is
@@ -31,9 +31,7 @@ class NotReadableError(ValueError):
 
 
 def plain(text: str, most: int = 80) -> str:
-    """Returns text from a model or a server as one line of printable characters, shortened to ``most``
-    characters.
-    """
+    """Returns text from a model or a server as one line of printable characters, at most ``most`` of them."""
     shown = "".join(letter if letter.isprintable() else " " for letter in text[: 4 * most])
     shown = " ".join(shown.split())
     return shown if len(shown) <= most else f"{shown[:most].rstrip()} ..."

@@ -1,12 +1,13 @@
 """Runs generators of the SBFT tool competition in RoadGPT, and RoadGPT in the competition. Main function:
 ``compete``.
 
-The competition's generators run in RoadGPT's simulator: ``compete`` starts a generator in a process of its
-own, passes it an executor under the competition's names, and drives the roads that it submits. RoadGPT runs
-in the competition's pipeline: ``RoadGPTTestGenerator``. The package ``sdc`` serves the competition on test
-selection.
+``compete`` runs the competition's generators with RoadGPT's simulators: it starts a generator in a process of
+its own, passes it an executor with the same classes and methods as the competition's, and drives the roads
+that the generator submits. In the other direction, the class ``RoadGPTTestGenerator`` runs RoadGPT in the
+competition's pipeline. The package ``sdc`` serves the competition on test selection.
 
-Names of this package are imported lazily, because a generator's own process needs few of them.
+The public classes and functions of this package are imported only when they are first used, because a
+generator's own process needs few of them.
 """
 
 from importlib import import_module

@@ -1,5 +1,5 @@
-"""Answers requests from other Python interpreters for calculations and roads; each message is one line of
-JSON.
+"""Computes results and designs roads for test generators that run in other Python interpreters. Each request
+and each answer is one line of JSON.
 
 The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If RoadGPT
 is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
@@ -27,8 +27,9 @@ Points = list[list[float]]
 
 
 def answer(asked: Message) -> Message:
-    """Returns a message with the result under the key ``answer``, or an error message under the key
-    ``error``."""
+    """Carries out a request; returns its result under the key ``answer``, or an error message under the
+    key ``error``.
+    """
     values = dict(asked)
     op = values.pop("op", None)
     if op not in OPS:
@@ -42,7 +43,8 @@ def answer(asked: Message) -> Message:
 
 
 def nodes(points: Any) -> Points:
-    """Returns the competition's interpolated points ``(m, 2)`` for control points ``(n, 2)``, metres.
+    """Returns the points ``(m, 2)`` that the competition interpolates through control points ``(n, 2)``, in
+    metres.
 
     Raises:
         UsageError: there is no spline through the points.
@@ -70,7 +72,8 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Returns the mean and the standard deviation of the competition's sparseness of failures.
+    """Returns the mean and the standard deviation of sparseness, the competition's measure of how different
+    the roads at the failures are.
 
     Args:
         segments: points ``(n, 2)`` of the road around each failure, in the order of the tests.
@@ -87,8 +90,8 @@ _ROADS: list[Iterator[Any]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description; environment variables take precedence over the settings
-    in ``asked``.
+    """Starts a sequence of roads for a description. ``asked`` has the description and other settings;
+    environment variables take precedence over it.
 
     Raises:
         UsageError: a setting is unknown or invalid.

@@ -33,8 +33,9 @@ OVER: Message = {"is_over": True}
 
 @dataclass
 class Competition:
-    """A generator and its tests. Iterate over it to run the generator; each Run is on disk when it is
-    yielded."""
+    """A generator and its tests. Iterate over it to run the generator: each test is yielded as a Run,
+    after its files have been written.
+    """
 
     experiment: Experiment
     request: Request
@@ -197,11 +198,12 @@ def compete(
 
     Args:
         experiment: the generator and its budget.
-        world: map, speed limit and tolerance; all roads are level.
-        setup: driver and simulator; its rules are ignored, because the competition's rules apply.
+        world: the map, the speed limit and the out-of-bounds tolerance; all roads are level.
+        setup: the driver and the simulator. Rules in the setup are ignored, because the competition's rules
+            apply.
         seed: the driver's seed.
-        out: an empty or new folder for the results; None: a new folder under ``results`` with the name that
-            the competition would give it.
+        out: an empty or new folder for the results. If None, a new folder is made under ``results``, with the
+            name that the competition would give it.
         draw: draws pictures of every test, as ``report.drawing()`` does; None: no pictures.
 
     Raises:

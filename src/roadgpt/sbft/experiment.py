@@ -1,5 +1,4 @@
-"""Defines the Experiment, which is a generator with its budget, and the Ending, which says how the generator
-ended."""
+"""Defines the Experiment (a generator with its budget) and the Ending (how and why the generator ended)."""
 
 from typing import Annotated, Literal
 
@@ -22,12 +21,12 @@ class Experiment(Frozen):
     module_path: str | None = None
     """An additional folder in which Python searches for modules."""
     python: str | None = None
-    """The interpreter that the generator runs in; None: RoadGPT's own."""
+    """The Python interpreter in which the generator runs; None is the one that runs RoadGPT."""
     time_budget: Positive | None = None
     """Seconds of wall time for generating and driving."""
     test_budget: Annotated[int, Field(ge=1)] | None = None
-    """Number of tests, including invalid ones; unlike time, this budget does not depend on the speed of the
-    machine.
+    """Number of tests, including invalid ones. Unlike a time budget, this number does not depend on the
+    speed of the machine.
     """
     patience: Positive = 600.0
     """Seconds of wall time within which the generator must submit its next test."""

@@ -1,4 +1,4 @@
-"""RoadGPT's generator for the competition's own pipeline: it makes tests from a description.
+"""RoadGPT as a generator in the competition's own pipeline; it designs roads that meet a description.
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 
@@ -71,8 +71,8 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Yields the control points of one road after another, without end; they are in metres, at most 2 m
-        apart, at most 500 per road, and valid for the competition.
+        """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
+        there are at most 500 per road, and every road is valid in the competition.
 
         Raises:
             BriefError, DesignError: as for ``start``.

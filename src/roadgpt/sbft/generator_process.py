@@ -1,7 +1,7 @@
 """Starts a generator's process, exchanges messages with it under time limits, and makes sure that it ends.
 
-One thread reads and another one writes, so that a process that neither reads nor writes does not block
-RoadGPT.
+One thread reads messages and another one writes them, so that RoadGPT is not blocked if the generator stops
+reading or writing.
 """
 
 import os

@@ -31,7 +31,7 @@ HEIGHT = -28.0  # m, of the ground of the competition's level
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
-    """Makes the folder for results, by default under the competition's name for it.
+    """Creates the folder for results; by default, it has the name that the competition would give it.
 
     Returns:
         The folder, and all folders that were created for it, the innermost first.
@@ -53,7 +53,7 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
 
 
 class Results:
-    """Writes the results after each test; the files are complete at any time."""
+    """Writes the result files after each test, so that they are complete at any time."""
 
     def __init__(
         self, folder: Path, request: Request, draw: Draw | None = None, made: tuple[Path, ...] = ()
@@ -77,7 +77,7 @@ class Results:
         return test
 
     def describe(self, experiment: Experiment) -> None:
-        """Writes the settings and the empty tables."""
+        """Writes the settings, and the tables of results without any rows."""
         self._tally.write(self.folder)
         self._write_card(is_finished=False)
         setup, told = self._request.setup, experiment.model_dump()
@@ -96,7 +96,7 @@ class Results:
         self._write_card(is_finished=True)
 
     def discard(self) -> None:
-        """Removes all files that were written, for a generator that did not start."""
+        """Removes all files that were written; called if the generator could not be started."""
         names = (CARD, DESCRIPTION, *TABLES, LOG)
         take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
 
@@ -106,7 +106,8 @@ class Results:
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """Returns a test as the competition writes it; an invalid test has only the first five fields.
+    """Returns the fields of the competition's file for a test. An invalid test has only the fields up to
+    ``id``.
 
     Heights are shifted to those of the competition's level, whose ground is at -28 m.
     """

@@ -1,8 +1,8 @@
 """Asks any server with OpenAI's protocol: OpenAI, Azure, Ollama, llama.cpp, vLLM, LM Studio and others.
 
-A server may not support schemas, may silently ignore them, or may reject a parameter. The provider finds out
-by trying response formats, starting with the strictest, and remembers what the server supports. The reply is
-always validated.
+A server may not support schemas, may silently ignore them, or may reject a parameter. The provider tries one
+response format after another, beginning with the strictest, and remembers which of them the server supports.
+The reply is always validated.
 """
 
 import json
@@ -178,10 +178,11 @@ class FormatFallback:
     """The reason why the last answer was not usable."""
 
     def goes_down(self, fault: RequestError) -> bool:
-        """Moves on to the next looser format after a failed request, if the format may be the cause.
+        """Changes to the next looser format after a failed request, if the server may have rejected the
+        request because of its format.
 
         Returns:
-            False if the format is not the cause, or if there is no looser format.
+            True if the format was changed; False if the format was not the cause or there is no looser one.
         """
         if self.response_format == ResponseFormat.TEXT or not _is_about_format(fault):
             return False
@@ -195,7 +196,7 @@ class FormatFallback:
 
         Args:
             messages: the original question.
-            why: why the answer was not usable; the model is shown this reason.
+            why: the reason why the answer was not usable; it is included in the next request to the model.
 
         Returns:
             False if no attempt is left.

@@ -1,5 +1,5 @@
-"""Returns recorded answers instead of asking a server: always the same bytes, without a network or an API
-key.
+"""Returns recorded answers instead of asking a server. It needs no network and no API key, and always
+returns the same bytes.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, Repl
 
 
 class Replay:
-    """Answers from a folder that was recorded with ``--record``."""
+    """A provider that takes its answers from a folder that was recorded with ``--record``."""
 
     def __init__(self, settings: ChatSettings) -> None:
         if settings.replay is None:

@@ -1,4 +1,4 @@
-"""RoadGPT as a test generator in the SBFT tool competition's own environment, and in any other.
+"""RoadGPT as a test generator for the SBFT tool competition's own Python environment, or for any other.
 
 The competition requires Python below 3.11 and libraries that do not work with RoadGPT, so RoadGPT is
 installed in an environment of its own. The competition's environment needs only this file: it uses the
@@ -67,7 +67,7 @@ def plain(value: Any) -> Any:
 
 
 class RoadGPT:
-    """A RoadGPT process in its own environment, which answers requests."""
+    """A process that runs RoadGPT in its own Python environment and answers requests."""
 
     def __init__(self, python: Optional[str] = None) -> None:
         """Starts the process.
@@ -181,8 +181,8 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
 
     def roads(self) -> Iterator[Points]:
-        """Yields the control points of one road after another, without end; they are in metres, at most 2 m
-        apart, at most 500 per road, and valid for the competition.
+        """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
+        there are at most 500 per road, and every road is valid in the competition.
 
         Raises:
             RoadGPTError: as for ``start``.

@@ -1,5 +1,5 @@
-"""Defines the messages of the SDC testing competition's service, as in ``competition.proto`` in the same
-folder.
+"""Defines the messages of the SDC testing competition's gRPC service; they are those of ``competition.proto``
+in this folder.
 
 The messages are built from a table in a separate descriptor pool. Nothing needs to be compiled, and the
 messages do not conflict with compiled messages of the same names in the same process.

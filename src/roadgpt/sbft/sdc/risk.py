@@ -1,10 +1,11 @@
 """Predicts how likely a road is to make the car leave its lane, from the line that the driver plans.
 
 In the competition, BeamNG's AI drives at risk 1.5 and up to 120 km/h; a test fails if more than half of the
-car is outside its lane. RoadGPT imitates that driver by ``beamng_like``, without simulating a drive: the
-distance between the driver's planned line and the middle of the lane predicts recorded failures no worse than
-a simulated drive does (docs/reference/benchmarks.md), in a fortieth of the time. If outcomes of tests are
-known, all features are weighted by logistic regression; else only this distance is used.
+car is outside its lane. RoadGPT's driver ``beamng_like`` imitates BeamNG's AI. No drive is simulated; only
+the line that this driver plans is computed. The distance between this line and the middle of the lane
+predicts recorded failures at least as well as a simulated drive does (docs/reference/benchmarks.md), and
+computing it takes a fortieth of the time. If outcomes of tests are known, all features are weighted by
+logistic regression; else only this distance is used.
 """
 
 import logging
@@ -42,11 +43,11 @@ class RiskFeatures(NamedTuple):
     """Features of a road; larger values make a failure more likely."""
 
     near: float
-    """Largest distance of the car from the middle of the lane, metres."""
+    """Largest predicted distance of the car from the middle of the lane, metres."""
     wander: float
-    """Mean distance of the car from the middle of the lane, metres."""
+    """Mean predicted distance of the car from the middle of the lane, metres."""
     swing: float
-    """Largest rate of change of the planned offset, metres per metre of road."""
+    """Largest change of the planned offset from the middle of the lane, in metres per metre of road."""
     tightest: float
     """Largest curvature, 1/m."""
     bends: float
@@ -104,9 +105,9 @@ class RiskModel:
     mean: Array
     scale: Array
     weights: Array
-    """One weight per feature, and a constant."""
+    """The weights of the features, in their order, followed by the constant term."""
     share: float | None = None
-    """Share of failures among the tests with known outcomes, 0 to 1; None if no outcomes are known."""
+    """Fraction of failures among the tests with known outcomes, 0 to 1; None if no outcomes are known."""
 
     def scores(self, features: Sequence[RiskFeatures]) -> Array:
         """Returns scores ``(n,)``, larger if a failure is more likely; roads with UNKNOWN features get the
@@ -118,9 +119,9 @@ class RiskModel:
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
         """Returns the indices of the tests to select: the tests most likely to fail.
 
-        Selects the riskiest 5 % of all tests, then adds tests in order of risk until three failures are
-        expected or the next test is no more likely to fail than the average test. If no outcomes are known,
-        10 % of all tests are selected.
+        First selects the riskiest 5 % of all tests. Then adds tests in order of risk, until the selection is
+        expected to contain three failures, or until the next test is no more likely to fail than the average
+        test. If no outcomes are known, 10 % of all tests are selected.
         """
         scores = self.scores(features)
         first = order(scores)

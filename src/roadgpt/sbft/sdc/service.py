@@ -19,7 +19,7 @@ WORKERS = 4
 
 
 class Service:
-    """Serves one evaluator; each public method is an RPC."""
+    """Serves one client, the competition's evaluator; each public method is a remote procedure call (RPC)."""
 
     def __init__(self) -> None:
         """Makes a service without knowledge of any outcomes."""
@@ -60,7 +60,7 @@ def _features_of(test: Any) -> RiskFeatures:
 
 
 def serve(host: str, port: int) -> tuple[Any, int]:
-    """Starts a server; returns it with its port. Port 0 stands for any free port.
+    """Starts a server; returns the server and its port. If ``port`` is 0, any free port is used.
 
     Raises:
         UsageError: the port is not available.

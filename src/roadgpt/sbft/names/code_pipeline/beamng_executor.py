@@ -1,4 +1,5 @@
-"""Defines the executor that a generator receives; it has the name of the competition's executor for BeamNG.
+"""Defines the executor that a generator receives. Its class has the same name as the competition's executor
+for BeamNG.
 
 It sends road points to RoadGPT, which validates and drives the road, and returns the results to the
 generator. Only ``validate_test`` works without sending anything.
@@ -18,8 +19,9 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """Sends tests to ``roadgpt compete sbft``. A deep copy shares the connection, but counts its tests
-    separately."""
+    """Sends tests to ``roadgpt compete sbft``. A deep copy of the executor uses the same connection, but
+    counts its tests separately.
+    """
 
     def __init__(
         self,

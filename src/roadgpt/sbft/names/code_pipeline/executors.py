@@ -50,7 +50,7 @@ for _name in ("__lt__", "__le__", "__gt__", "__ge__", "__sub__", "__rsub__"):
 
 
 class SharedCounter:
-    """A count that is shared by all copies of a budget."""
+    """A number of tests that all copies of a budget share."""
 
     tests = 0
 
@@ -61,9 +61,9 @@ class SharedCounter:
 class Budget:
     """A budget: seconds of wall time, a number of tests, or both.
 
-    If only the number of tests is limited, the remaining time is 35 s per remaining test, which is what a
-    test takes in the competition. A generator that plans by the remaining time then behaves as in the
-    competition.
+    If only the number of tests is limited, the remaining time is computed as 35 s per remaining test, which
+    is how long a test takes in the competition. So a generator that plans by the remaining time behaves as it
+    would in the competition.
     """
 
     def __init__(
@@ -194,7 +194,9 @@ class AbstractTestExecutor(ABC):
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns (is valid, message of the first broken rule); it uses no budget except time."""
+        """Returns whether the test is valid, and the message of the first rule that it breaks. Validation
+        takes time, but is not counted as a test.
+        """
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
@@ -219,7 +221,7 @@ class AbstractTestExecutor(ABC):
         return time.monotonic() - self.time_budget.get_start_time()
 
     def get_stats(self) -> TestGenerationStatistic:
-        """Returns the counts of tests so far."""
+        """Returns the numbers of tests so far, by outcome."""
         return self.stats
 
     def close(self) -> None:

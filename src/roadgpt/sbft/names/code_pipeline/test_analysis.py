@@ -1,5 +1,6 @@
-"""Computes features of tests; each function returns a feature with its name, as the competition's functions
-do."""
+"""Computes features of tests. Each function returns the name of a feature and its value, as the
+competition's functions do.
+"""
 
 from __future__ import annotations
 
@@ -26,16 +27,19 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[s
 
 
 def max_curvature(the_test: Any, w: int = 5) -> Feature:
-    """Returns the largest curvature of the road in 1/m; for the default window ``w`` = 5 it uses circles
-    through nodes i, i + 2 and i + 4, as the competition does."""
+    """Returns the largest curvature of the road in 1/m. With the default window ``w`` = 5, curvature is
+    that of the circle through nodes i, i + 2 and i + 4, as in the competition.
+    """
     from code_pipeline.validation import smallest_circle
 
     return "MAX_CURV", 1 / smallest_circle(_nodes(the_test), w)
 
 
 def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
-    """Returns the share of direction bins that the road uses, with angles to north from 0 to 180 degrees; as
-    in the competition, it divides by the number of bin edges."""
+    """Returns the direction coverage: the fraction of direction bins that occur on the road. Directions
+    are angles to north, from 0 to 180 degrees. As in the competition, the number of bins that occur is
+    divided by the number of bin edges.
+    """
     edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
     nodes = _nodes(the_test)
     covered = set()
@@ -58,8 +62,9 @@ def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
 
 
 def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
-    """Returns the share of direction bins that the road uses, with angles to the x-axis from -180 to 180
-    degrees."""
+    """Returns the direction coverage: the fraction of direction bins that occur on the road. Directions
+    are angles to the x-axis, from -180 to 180 degrees.
+    """
     edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
     nodes = _nodes(the_test)
     ways = [(after[0] - one[0], after[1] - one[1]) for one, after in zip(nodes, nodes[1:])]

@@ -36,13 +36,16 @@ class RoadTestEvaluator:
     def identify_interesting_road_segments(
         self, road_nodes: Sequence[Sequence[float]], execution_data: Sequence[Any]
     ) -> Tuple[Any, ...]:
-        """Returns the place where the car left its lane, the road before and after that place, the side, the
-        index of the record, and the records before it.
+        """Returns where the car left its lane, and the road around that point.
 
-        All values are None if the car did not leave its lane.
+        Returns:
+            Six values: the point where the car left its lane; the road before that point; the road after it;
+            the side on which the car left ("LEFT" or "RIGHT"); the index of the first record outside the
+            lane; and the records before that one, from where the car entered the returned piece of road. All
+            six are None if the car did not leave its lane.
 
         Raises:
-            AssertionError: the road around the place cannot be cut out.
+            AssertionError: the road around that point cannot be cut out.
         """
         from shapely.geometry import LineString, Point
 
@@ -99,7 +102,7 @@ class OOBAnalyzer:
         }
 
     def create_summary(self) -> str:
-        """Returns the text of the competition's oob_stats.csv."""
+        """Returns the content of the competition's file oob_stats.csv."""
         left = sum(oob["oob side"] == "LEFT" for oob in self.oobs)
         segments = [oob["interesting segment"] for oob in self.oobs if oob["oob point"] is not None]
         mean, deviation = ask("spread", segments=segments)

@@ -1,4 +1,4 @@
-"""Defines the tests that generators make, and statistics of them."""
+"""Defines the tests that generators make, and counts them by outcome."""
 
 from __future__ import annotations
 
@@ -72,8 +72,10 @@ class RoadTestFactory:
             return self.road_polygon
 
         def get_road_length(self, interpolate_road_points: bool = False) -> float:
-            """Returns the road's length in metres along its interpolated points; with
-            ``interpolate_road_points``, these are interpolated once more first, as the validator does."""
+            """Returns the road's length in metres along its interpolated points. If
+            ``interpolate_road_points`` is true, these points are interpolated a second time before, as the
+            competition's validator does.
+            """
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)
@@ -84,7 +86,7 @@ class RoadTestFactory:
             self.is_valid, self.validation_message = is_valid, validation_message
 
         def to_json(self) -> str:
-            """Returns the test in the form of the competition's files."""
+            """Returns the test as JSON, with the fields of the competition's test files."""
             data = {name: getattr(self, name) for name in ALWAYS}
             data["interpolated_points"] = [node[:2] for node in self.interpolated_points]
             data.update({name: getattr(self, name) for name in ONCE_DRIVEN if hasattr(self, name)})
@@ -172,6 +174,6 @@ class TestGenerationStatistic:
         return "\n".join(f"{name.replace('_', ' ')}: {value:g}" for name, value in self._row().items())
 
     def as_csv(self) -> str:
-        """Returns the text of the competition's generation_stats.csv."""
+        """Returns the content of the competition's file generation_stats.csv."""
         row = self._row()
         return ",".join(row) + "\n" + ",".join(f"{value:g}" for value in row.values())

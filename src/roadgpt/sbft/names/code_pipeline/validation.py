@@ -54,7 +54,7 @@ def min_radius(x: Sequence[Sequence[float]], w: int = 5) -> float:
 
 
 class TestValidator:
-    """Validates tests as the competition's validator does, including its errors."""
+    """Validates tests as the competition's validator does, and reproduces its errors."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 
@@ -75,16 +75,17 @@ class TestValidator:
         return type(the_test) is RoadTestFactory.RoadTest
 
     def is_enough_road_points(self, the_test: Any) -> bool:
-        """Returns whether there are two points or more."""
+        """Returns whether the road has at least two points."""
         return len(the_test.road_points) > 1
 
     def is_too_many_points(self, the_test: Any) -> bool:
-        """Returns whether there are more than 500 points."""
+        """Returns whether the road has more than 500 points."""
         return len(the_test.road_points) > self.max_points
 
     def is_inside_map(self, the_test: Any) -> bool:
-        """Returns the result of the competition's check that the road is on the map; because of an error in
-        its logic, a road wholly outside can pass."""
+        """Checks whether the road is inside the map, in the same way as the competition. Because of an
+        error in the competition's logic, a road that is wholly outside can pass.
+        """
         xs = [node[0] for node in the_test.interpolated_points]
         ys = [node[1] for node in the_test.interpolated_points]
         size = self.map_size
@@ -117,8 +118,9 @@ class TestValidator:
         return TSHD_RADIUS > min_radius(the_test.interpolated_points) > 0.0
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns (is valid, message of the first broken rule); never raises an exception because of a
-        test."""
+        """Returns whether the test is valid, and the message of the first rule that it breaks; never
+        raises an exception because of a test.
+        """
         if not self.is_right_type(the_test):
             return False, WRONG_TYPE
         if type(self) is not TestValidator or self.min_road_length != 20 or self.max_points != 500:

@@ -1,7 +1,7 @@
 """RoadGPT's code that runs in a generator's process; it uses only the standard library and the syntax of
 Python 3.8.
 
-It runs in the generator's interpreter, which has libraries of its own. Whatever needs more than the standard
-library is requested from RoadGPT, which runs in the generator's interpreter if it is installed there, else in
-an interpreter of its own.
+The generator's interpreter may lack the libraries that RoadGPT needs. So whatever needs more than the
+standard library is requested from RoadGPT, which runs in the generator's interpreter if it is installed
+there, else in an interpreter of its own.
 """

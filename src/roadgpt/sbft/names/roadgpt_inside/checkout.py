@@ -1,8 +1,8 @@
-"""Imports modules by the competition's names: RoadGPT's modules where they exist, else those in a checkout of
-the competition's code.
+"""Imports the modules that have the competition's module names: those that RoadGPT provides, and all others
+from a checkout of the competition's code.
 
-A name that a module of RoadGPT lacks is taken from the same module of the checkout. Most of these names
-control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
+A class or function that is missing in RoadGPT's module is taken from the module of the same name in the
+checkout. Most of these control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Finder:
 
 
 def watch() -> None:
-    """Installs the finder."""
+    """Makes Python use the Finder for all imports from now on."""
     finders: List[Any] = sys.meta_path
     if Finder not in finders:
         finders.insert(0, Finder)

@@ -1,8 +1,8 @@
 """Main program of a generator's own process: imports the generator's class, passes it an executor, and
 reports how the generator ended.
 
-``roadgpt.sbft.generator_process`` starts it. Standard input and output are the connection to RoadGPT; what
-the generator prints goes to standard error, which is its log.
+``roadgpt.sbft.generator_process`` starts it. Messages to and from RoadGPT go through standard input and
+output. What the generator prints goes to standard error, which is written to its log.
 """
 
 from __future__ import annotations

@@ -1,5 +1,6 @@
-"""Provides the names that generators of the SBFT tool competition import; other names are taken from a
-checkout of the competition's code, if Python finds one."""
+"""Provides the classes and functions that generators of the SBFT tool competition import. Any others are
+imported from a checkout of the competition's code, if one is on Python's search path.
+"""
 
 from pkgutil import extend_path
 

@@ -47,7 +47,7 @@ class RoadBoundingBox:
         return any(corner.intersects(point) for corner in self.get_vertices())
 
     def intersects_boundary(self, other: Any) -> bool:
-        """Returns whether an area touches the border of the rectangle."""
+        """Returns whether an area, such as that of a road, touches the border of the rectangle."""
         return bool(other.intersects(self.bbox.boundary))
 
     def contains(self, other: Any) -> bool:

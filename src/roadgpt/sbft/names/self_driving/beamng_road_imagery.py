@@ -17,7 +17,7 @@ class BeamNGRoadImagery:
 
     @classmethod
     def from_sample_nodes(cls, sample_nodes: Any) -> BeamNGRoadImagery:
-        """Returns an object for the picture of a road with nodes [x, y, height, width]."""
+        """Returns an object that can draw the road with these nodes, each [x, y, height, width] in metres."""
         return cls(RoadPoints().add_middle_nodes(sample_nodes))
 
     def plot(self) -> None:

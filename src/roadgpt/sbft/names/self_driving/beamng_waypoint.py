@@ -1,4 +1,4 @@
-"""Defines a goal in BeamNG's file format."""
+"""Defines the goal of a drive, as it is written in BeamNG's files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Optional, Sequence
 
 
 class BeamNGWaypoint:
-    """A goal (waypoint) in BeamNG, which is one line of a level's file."""
+    """A goal (waypoint) in BeamNG; it is written as one line of a level's file."""
 
     def __init__(self, name: str, position: Sequence[float], persistentId: Optional[str] = None) -> None:
         """Takes a position in metres."""
@@ -16,7 +16,7 @@ class BeamNGWaypoint:
         self.persistentId = persistentId or str(uuid.uuid4())
 
     def to_json(self) -> str:
-        """Returns the line of the level's file."""
+        """Returns the line to be written to the level's file."""
         told = {
             "name": self.name,
             "class": "BeamNGWaypoint",

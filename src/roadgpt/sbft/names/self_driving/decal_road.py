@@ -1,4 +1,4 @@
-"""Defines a road in BeamNG's file format."""
+"""Defines a road as it is written in BeamNG's files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 
 class DecalRoad:
-    """A decal road in BeamNG, which is one line of a level's file."""
+    """A decal road in BeamNG; it is written as one line of a level's file."""
 
     DEFAULT_MATERIAL = "tig_road_rubber_sticky"
 
@@ -46,7 +46,7 @@ class DecalRoad:
         return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
 
     def to_json(self) -> str:
-        """Returns the line of the level's file.
+        """Returns the line to be written to the level's file.
 
         Raises:
             AssertionError: the road has no nodes.

@@ -13,6 +13,7 @@ ListOfPoints = List[Point]
 
 
 def iterative_levenshtein(s: Sequence[Sequence[float]], t: Sequence[Sequence[float]]) -> float:
-    """Returns the weighted Levenshtein distance between two sequences of steps (change of direction,
-    length)."""
+    """Returns the weighted Levenshtein distance between two sequences of steps; a step is a pair (change
+    of direction, length).
+    """
     return float(ask("distance", one=[p[:2] for p in s], other=[p[:2] for p in t]))

@@ -21,8 +21,13 @@ class OutOfBoundsMonitor:
         self.tolerance = tolerance
 
     def get_oob_info(self, wrt: str = "right", oob_bb: bool = True) -> Tuple[bool, int, float, float, float]:
-        """Returns (is outside, number of departures so far, largest share outside, distance inside in metres,
-        current share outside)."""
+        """Returns the state of the car relative to its lane.
+
+        Returns:
+            Five values: whether the car is outside, the number of times that it has left the lane, the
+            largest fraction of the car that has been outside since it last left the lane, the distance to the
+            lane edge in metres (negative outside), and the fraction of the car that is outside now.
+        """
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
             self.update_oob_percentage(is_oob)
@@ -36,7 +41,9 @@ class OutOfBoundsMonitor:
         self.last_is_oob = is_oob
 
     def update_oob_percentage(self, is_oob: bool) -> None:
-        """Updates the largest share outside since the car left its lane."""
+        """Updates the largest fraction of the car that has been outside the lane since the car last left
+        it.
+        """
         if is_oob:
             share = self.oob_percentage()
             self.last_max_oob_percentage = (
@@ -44,26 +51,29 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Returns the share of the car's box, 0 to 1, that is outside the lane or the road; ``wrt`` selects
-        which.
+        """Returns the fraction of the car's bounding box, 0 to 1, that is outside the lane, or outside the
+        road; ``wrt`` is "right" or "left" for a lane, and any other value for the road.
         """
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
     def is_oob_bb(self, wrt: str = "right") -> bool:
-        """Returns whether the share of the car's box that is outside exceeds the tolerance."""
+        """Returns whether the fraction of the car's bounding box that is outside exceeds the tolerance."""
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:
-        """Returns the distance in metres from the car to the edge of the lane or road, negative if the car is
-        outside. It is half the width minus the distance from the centre line, both of the lane that ``wrt``
-        names ("right" or "left"), or of the road for any other value.
+        """Returns the distance in metres from the car to the edge of the lane or road, negative if the car
+        is outside. It is half the width minus the distance from the car to the centre line. Width and
+        centre line are those of the lane that ``wrt`` names ("right" or "left"), or those of the road for
+        any other value.
         """
         share = 4.0 if wrt in ("right", "left") else 2.0
         return float(self.road_polygon.road_width / share - self._of(wrt, "polyline").distance(self._place()))
 
     def is_oob(self, wrt: str = "right") -> bool:
-        """Returns whether the car's centre is outside the lane or the road; ``wrt`` selects which."""
+        """Returns whether the car's centre is outside the lane or the road; ``wrt`` has the same values as
+        in ``oob_percentage``.
+        """
         return not self._of(wrt, "polygon").contains(self._place())
 
     def _of(self, wrt: str, kind: str) -> Any:

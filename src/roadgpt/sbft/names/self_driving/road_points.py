@@ -13,7 +13,9 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """The nodes of a road's centre line, and edge points perpendicular to the direction to the next node."""
+    """The nodes of a road's centre line and its edge points. The edge points of a node lie perpendicular
+    to the direction towards the next node.
+    """
 
     def __init__(self) -> None:
         """Makes a road without nodes."""
@@ -56,7 +58,7 @@ class RoadPoints:
 
     @staticmethod
     def angle_to_quat(angle: Sequence[float]) -> Tuple[float, float, float, float]:
-        """Returns the quaternion (x, y, z, w) of the angles roll, pitch and yaw in degrees."""
+        """Converts the angles roll, pitch and yaw in degrees to a quaternion (x, y, z, w)."""
         roll, pitch, yaw = (math.radians(a) / 2 for a in angle)
         sr, cr, sp, cp = math.sin(roll), math.cos(roll), math.sin(pitch), math.cos(pitch)
         sy, cy = math.sin(yaw), math.cos(yaw)

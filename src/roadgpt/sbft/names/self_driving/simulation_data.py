@@ -61,7 +61,7 @@ class SimulationInfo:
 
 
 class SimulationData:
-    """A drive in the competition's form, stored in ``simulations/NAME`` of the generator's folder."""
+    """A drive with the competition's fields, stored in ``simulations/NAME`` of the generator's folder."""
 
     f_info = "info"
     f_params = "params"
@@ -145,7 +145,7 @@ class SimulationData:
         return self.path_json.exists()
 
     def min_oob_distance(self) -> float:
-        """Returns the smallest ``oob_distance`` of all records, metres."""
+        """Returns the smallest ``oob_distance`` of all records, in metres."""
         return float(min(state.oob_distance for state in self.states))
 
     def start(self) -> None:

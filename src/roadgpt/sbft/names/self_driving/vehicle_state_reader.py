@@ -1,4 +1,6 @@
-"""Takes the reader of a car's state from a checkout of the competition's code, because it needs BeamNG."""
+"""Imports the class that reads a car's state from a checkout of the competition's code. RoadGPT has no
+such class, because it needs BeamNG.
+"""
 
 from __future__ import annotations
 
