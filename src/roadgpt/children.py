@@ -40,7 +40,8 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
     Args:
         entry: The name of the module.
-        **how: Further arguments of ``subprocess.Popen``; ``env`` is added to the current environment.
+        **how: Further arguments of ``subprocess.Popen``; the variables in ``env`` are added to the current
+            environment.
 
     Raises:
         OSError: The operating system cannot start the process.

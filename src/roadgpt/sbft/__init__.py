@@ -4,7 +4,7 @@
 ``compete`` runs the competition's generators with RoadGPT's simulators: it starts a generator in a process of
 its own, passes it an executor with the same classes and methods as the competition's, and drives the roads
 that the generator submits. In the other direction, the class ``RoadGPTTestGenerator`` runs RoadGPT in the
-competition's pipeline. The package ``sdc`` serves the competition on test selection.
+competition's pipeline. The package ``sdc`` implements a tool for the SDC competition on test selection.
 
 The public classes and functions of this package are imported only when they are first used, because a
 generator's own process needs few of them.

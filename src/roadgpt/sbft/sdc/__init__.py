@@ -1,4 +1,5 @@
-"""The service of the SDC testing competition: selects or prioritises roads by their predicted risk.
+"""Implements a tool for the SDC testing competition, as a service that selects or prioritises roads by their
+predicted risk.
 
 It needs the extra ``roadgpt[sdc]``: import ``roadgpt.sbft.sdc.service``.
 """
