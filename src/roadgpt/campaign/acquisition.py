@@ -97,7 +97,7 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
     """Chooses candidates while there are no predictions yet.
 
-    Of the half of the candidates that looks hardest, it chooses candidates with diverse features.
+    Chooses candidates with diverse features from the half of the candidates that looks hardest.
 
     Args:
         candidates: the roads to choose from.

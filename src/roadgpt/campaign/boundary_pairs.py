@@ -39,7 +39,7 @@ OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 
 @dataclass(frozen=True)
 class BoundaryPair:
-    """A road on which the car kept its lane, and the nearest corresponding road on which it failed."""
+    """A road on which the car kept its lane, and the most similar road on which it failed."""
 
     kept: int
     """Number of the test that passed."""

@@ -70,7 +70,7 @@ def segments_of_turn(angle: float) -> int:
 
 
 def cut(element: Element) -> list[Segment]:
-    """Returns the segments of an element whose numbers are rounded as they will be written."""
+    """Cuts an element into segments; its numbers must be rounded as in files."""
     if not element.turn:
         return [
             Segment(

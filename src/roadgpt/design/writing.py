@@ -22,7 +22,8 @@ CENTIMETRE = 100.0  # per metre: heights are written in centimetres
 def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...]:
     """Returns the segments of elements, with grades rounded so that each is clearly up, down or flat.
 
-    Grades between which the road would be too abrupt for the expected speed are made more similar.
+    If the change between two grades is too abrupt for the expected speed, the grades are brought closer
+    together.
     """
     written = [as_written(element) for element in elements]
     pace = Pace.along(written, world)

@@ -60,7 +60,7 @@ class Land:
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:
-        """Returns grid values of shape ``(rows, columns)``, interpolated at n points ``x``, ``y``."""
+        """Interpolates a grid of values ``(rows, columns)`` at n points ``x``, ``y``; returns n values."""
         i = np.clip(np.searchsorted(self.x, x) - 1, 0, len(self.x) - 2)
         j = np.clip(np.searchsorted(self.y, y) - 1, 0, len(self.y) - 2)
         u = np.clip((x - self.x[i]) / (self.x[i + 1] - self.x[i]), 0.0, 1.0)

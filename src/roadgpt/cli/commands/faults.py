@@ -27,7 +27,7 @@ FAULT_OPTIONS = (
            heading=Heading.FAILURES),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs; implies "
            "--faults.", bool, heading=Heading.FAILURES),
-    Option("--repeat", "How often to drive the road of each fault again, with small disturbances; implies "
+    Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
            f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
 )  # fmt: skip
 
@@ -142,7 +142,7 @@ def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
 
 # fmt: off
 OPTIONS = (
-    Option("--repeat", "How often to drive the road of each fault again, with small disturbances.",
+    Option("--repeat", "Number of further drives for each fault, with small disturbances.",
            DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
     Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),

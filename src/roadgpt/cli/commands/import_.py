@@ -40,7 +40,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
 
     Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The inner edge of the driving
     lane becomes the centre line of the imported road. A road that is off the map is moved onto it. The file
-    can then be checked, driven and viewed as any other road.
+    can then be checked, driven and viewed like any other road.
 
     \b
     roadgpt import town.xodr --road 12

@@ -303,7 +303,7 @@ class Insert:
     """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements and the inserted ones in driving order."""
+        """Returns the elements in driving order, with the new ones inserted."""
         if self.split:
             return tuple(
                 part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))

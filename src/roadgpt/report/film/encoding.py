@@ -19,7 +19,7 @@ def encoder() -> Any:
     """Returns the module ``av`` (PyAV).
 
     Raises:
-        UsageError: PyAV is not installed, or was built without the encoder.
+        UsageError: PyAV is not installed, or was built without the video encoder.
     """
     try:
         import av

@@ -1,4 +1,4 @@
-"""Adds, limits and completes piecewise cubics over the station, such as lane widths or superelevation."""
+"""Sums and clips piecewise cubics of the station, such as lane widths, and fills gaps between them."""
 
 from collections.abc import Sequence
 from itertools import pairwise
