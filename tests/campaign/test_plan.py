@@ -25,6 +25,8 @@ ROOT = Path(__file__).resolve().parents[2]
         ("tests = 'many'", "tests: 'many' is not possible; give a whole number"),
         ("tests = 1.5", "tests: 1.5 is not possible; give a whole number"),
         ("tests = true", "tests: True is not possible; give a whole number"),
+        ("[world]\nlanes = '9+2+13'", "world.lanes: '9+2+13' is not possible; give 1 to 4 lanes along"),
+        ("[world]\nbank = 50", "world.bank: 50 is not possible; give 'none', 'auto' or a percentage"),
         ("seconds = 0", "seconds: 0 is not possible; give more than 0"),
         (
             "goal = 'fail'",

@@ -166,7 +166,8 @@ def test_files_of_a_usual_world_name_no_lanes() -> None:
     assert not {"lanes", "bank", "lane_width_end"} & set(World().model_dump())
     world = World(lanes="2+2", bank=0.05)
     assert World.model_validate_json(world.model_dump_json()) == world
-    for wrong in ({"lanes": "0+1"}, {"lanes": "2+"}, {"bank": "steep"}, {"bank": 0.5}, {"lane_width_end": 0}):
+    texts = [{"lanes": text} for text in ("0+1", "2+", "9+2+13", "2+5")]
+    for wrong in (*texts, {"bank": "steep"}, {"bank": 0.5}, {"bank": -0.1}, {"lane_width_end": 0}):
         with pytest.raises(ValidationError):
             World(**wrong)  # type: ignore[arg-type]
 

@@ -5,10 +5,11 @@ it.
 import tomllib
 from collections.abc import Mapping, Sequence
 from difflib import get_close_matches
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
 from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, Budget, Goal
 from roadgpt.campaign.plan import Plan, Seed
@@ -17,7 +18,7 @@ from roadgpt.drive.loading import absolute_spec
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_text
 from roadgpt.road import Geometry, World
-from roadgpt.road.world import LANES, NotNegative, Positive
+from roadgpt.road.world import STEEPEST, Lanes, NotNegative, Positive, bank_in
 
 LARGEST = 4_000_000  # bytes of a file
 FOLDERS = ("record", "replay")  # keys of [chat] that name one
@@ -50,6 +51,11 @@ Texts = Annotated[tuple[Words, ...], BeforeValidator(_listed), Field(min_length=
 Seeds = Annotated[tuple[Seed, ...], BeforeValidator(_listed), Field(min_length=1)]
 
 
+Percentage = Annotated[
+    str | float, AfterValidator(partial(bank_in, most=100 * STEEPEST, unit="a percentage"))
+]
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
@@ -58,10 +64,10 @@ class WorldTable(_Strict):
     """The table ``[world]`` of a plan file, in the units of the command line."""
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
-    lanes: Annotated[str, Field(pattern=LANES.pattern)] = "1+1"
+    lanes: Lanes = "1+1"
     lane_width: Annotated[float, Field(ge=2, le=10)] = 4.0
     lane_width_end: Annotated[float, Field(ge=2, le=10)] | None = None
-    bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=12)] = "none"
+    bank: Percentage = "none"
     """Superelevation of bends: ``"none"``, ``"auto"`` for the values of CD 109, or a number in percent."""
     verge: NotNegative = 3.0
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0

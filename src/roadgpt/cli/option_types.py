@@ -34,12 +34,12 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
 
 def lanes(value: str) -> str:
     """Checks the numbers of lanes in and against the direction of the road, such as '2+1'."""
-    from roadgpt.road.world import LANES
+    from roadgpt.road.world import lanes_in
 
-    if not LANES.fullmatch(value.replace(" ", "")):
-        advice = "give 1 to 4 lanes along the road, a plus and 0 to 4 against it, such as 2+1"
-        raise click.BadParameter(f"'{value}' is not possible; {advice}")
-    return value.replace(" ", "")
+    try:
+        return lanes_in(value)
+    except ValueError as error:
+        raise click.BadParameter(f"'{value}' is not possible; {error}") from None
 
 
 def bank(value: str) -> str | float:

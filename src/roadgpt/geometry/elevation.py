@@ -1,7 +1,9 @@
 """Defines two types of elevation profile: constant grades joined by parabolas, and piecewise cubics."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -89,6 +91,19 @@ class CubicProfile:
             raise ValueError("the stations of a profile must increase")
         if any(len(cubic) != 4 for cubic in self.coefficients):
             raise ValueError("a cubic has four coefficients")
+
+    @classmethod
+    def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
+        """Returns the profile through knots (station, height) that is level at each knot.
+
+        The height is constant after the last knot. Raises ValueError if the stations do not increase.
+        """
+        rows = []
+        for (s0, start), (s1, end) in pairwise(knots):
+            n, change = s1 - s0, end - start
+            rows.append((start, 0.0, 3 * change / n**2 + 0.0, -2 * change / n**3 + 0.0))
+        rows.append((knots[-1][1], 0.0, 0.0, 0.0))
+        return cls(tuple(s for s, _ in knots), tuple(rows))
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:

@@ -201,21 +201,26 @@ class Profile:
         A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
         painted inside the lane, up to its outer edge.
         """
+        painted = self._painted_boundaries(s)
+        return [PaintedLine(marking, edges) for marking, edges in painted if marking != "none"]
+
+    def _painted_boundaries(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
+        """Returns the edges of the marking of each boundary; both are the boundary if it has none."""
         rows = self.boundaries(s)
         sides = [1, *[0] * (len(rows) - 2), -1]
-        found = zip(rows, sides, strict=True)
-        return [PaintedLine(mark, _painted(t, side)) for (mark, t), side in found if mark != "none"]
+        return [
+            (marking, Edges(t, t) if marking == "none" else _painted(t, side))
+            for (marking, t), side in zip(rows, sides, strict=True)
+        ]
 
     def marking_limits(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the two lane markings that bound the driven lane.
 
         If a boundary of the lane has no marking, the offset of the boundary is returned.
         """
-        lane, (forward, backward) = self.lane(s), self.count
-        inner = self.right[self.driven - 1].marking if self.driven else self.centre_marking
-        left = 0.0 if inner == "none" or (self.driven == 0 and backward == 0) else LINE / 2
-        right = 0.0 if self.right[self.driven].marking == "none" or self.driven == forward - 1 else LINE / 2
-        return Edges(lane.left + left, lane.right - right)
+        at = self.count[1] + self.driven  # index of the left boundary of the driven lane
+        (_, left), (_, right) = self._painted_boundaries(s)[at : at + 2]
+        return Edges(left.left, right.right)
 
     def superelevation(self, s: ArrayLike) -> Array:
         """Returns the angle in radians of the surface, positive where it falls to the right."""

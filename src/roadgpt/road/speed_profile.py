@@ -99,8 +99,7 @@ def expected_speed(
     if profile is not None:
         angle: ArrayLike = profile.superelevation(s)
     elif world.bank != "none":
-        ratio = None if world.bank == "auto" else world.bank
-        angle = superelevation_for(np.asarray(curvature, float), world.speed_limit, ratio)
+        angle = superelevation_for(np.asarray(curvature, float), world.speed_limit, world.bank_ratio)
     else:
         angle = 0.0
     lanes = profile or world.usual_profile(float(s[-1]) or step)

@@ -45,12 +45,7 @@ def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | N
     else:
         s = np.linspace(0.0, plan.length, max(2, round(plan.length / STEP) + 1))
         knots = list(zip(s.tolist(), _smoothed(plan, s, speed, ratio).tolist(), strict=True))
-    rows = []
-    for (s0, start), (s1, end) in pairwise(knots):
-        n, change = s1 - s0, end - start
-        rows.append((start, 0.0, 3 * change / n**2 + 0.0, -2 * change / n**3 + 0.0))
-    rows.append((knots[-1][1], 0.0, 0.0, 0.0))
-    return CubicProfile(tuple(s for s, _ in knots), tuple(rows))
+    return CubicProfile.smooth(knots)
 
 
 def _of_pieces(plan: PieceCurve, reach: float, speed: float, ratio: float | None) -> Knots:

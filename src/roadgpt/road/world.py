@@ -2,9 +2,9 @@
 
 import re
 from dataclasses import replace
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import AliasChoices, BaseModel, ConfigDict, Field, model_serializer
+from pydantic import AfterValidator, AliasChoices, BaseModel, ConfigDict, Field, model_serializer
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
@@ -14,9 +14,35 @@ from roadgpt.road.superelevation import superelevation
 
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
-LANES = re.compile(r"([1-4])\+([0-4])")  # lanes along the road + lanes against it
+STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
 """Fields that only roads with a cross-section of their own need; files leave out these defaults."""
+
+
+def lanes_in(text: str) -> str:
+    """Returns the numbers of lanes along the road and against it without blanks, such as "2+1".
+
+    Raises:
+        ValueError: The text has another form; the message says which one is needed.
+    """
+    plain = text.replace(" ", "")
+    if not re.fullmatch(r"[1-4]\+[0-4]", plain):
+        raise ValueError("give 1 to 4 lanes along the road, a plus and 0 to 4 against it, such as 2+1")
+    return plain
+
+
+def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -> str | float:
+    """Returns the superelevation of bends, which is "none", "auto" or a number from 0 to ``most``.
+
+    Raises:
+        ValueError: The value is something else; the message says what to give, in this unit.
+    """
+    if value in ("none", "auto") or (isinstance(value, float) and 0 <= value <= most):
+        return value
+    raise ValueError(f"give 'none', 'auto' or {unit} from 0 to {most:g}")
+
+
+Lanes = Annotated[str, AfterValidator(lanes_in)]
 
 
 class World(BaseModel):
@@ -26,7 +52,7 @@ class World(BaseModel):
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
-    lanes: Annotated[str, Field(pattern=LANES.pattern)] = "1+1"
+    lanes: Lanes = "1+1"
     """Number of lanes along the road, and number of oncoming lanes.
 
     The tested car keeps to the rightmost lane.
@@ -37,7 +63,7 @@ class World(BaseModel):
     """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
     start; None for a constant width.
     """
-    bank: Literal["none", "auto"] | Annotated[float, Field(ge=0, le=0.12)] = "none"
+    bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
     """Superelevation of bends: "none", "auto" for the values of CD 109, or one ratio for all bends."""
     verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
     """Width in metres of the firm shoulder beside the carriageway.
@@ -92,8 +118,7 @@ class World(BaseModel):
             return road
         profile = self.usual_profile(road.length)
         if self.bank != "none":
-            ratio = None if self.bank == "auto" else self.bank
-            angle = superelevation(road.plan, profile.paved_reach, self.speed_limit, ratio)
+            angle = superelevation(road.plan, profile.paved_reach, self.speed_limit, self.bank_ratio)
             profile = replace(profile, superelevation_angle=angle)
         return road.with_profile(profile)
 
@@ -110,9 +135,12 @@ class World(BaseModel):
         first, last = self.lane_width, self.lane_width_end
         if last is None or last == first:
             return first
-        change = last - first
-        cubic = (first, 0.0, 3 * change / length**2, -2 * change / length**3)
-        return CubicProfile((0.0, length), (cubic, (last, 0.0, 0.0, 0.0)))
+        return CubicProfile.smooth([(0.0, first), (length, last)])
+
+    @property
+    def bank_ratio(self) -> float | None:
+        """The superelevation of all bends as a ratio; None if ``bank`` gives no number."""
+        return self.bank if isinstance(self.bank, float) else None
 
     @property
     def road_width(self) -> float:
