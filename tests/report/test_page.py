@@ -31,11 +31,13 @@ from roadgpt.report.page import (
     write,
 )
 from roadgpt.report.page.chart import palette
+from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.html import STYLE
 from roadgpt.report.page.lines import bars, lines
+from roadgpt.road import Road, World
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -328,3 +330,16 @@ def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None
     polygons = [e.get("points") or "" for e in picture.iter("{http://www.w3.org/2000/svg}polygon")]
     car = np.array([pair.split(",") for pair in polygons[-1].split()], float)
     assert np.ptp(car, axis=0) == pytest.approx(np.array([2.0, 4.0]) * 240 / 52, abs=0.02)
+
+
+def test_the_site_of_a_failure_shows_the_markings_of_the_road_s_own_lanes() -> None:
+    """A road with 2+1 lanes: a solid line between the directions, a broken one 3 m to its right."""
+    road = Road.through([(20, 60), (80, 60), (140, 60), (200, 60)])
+    site = site_of(road, World(lanes="2+1", lane_width=3.0), None, 90.0)
+    assert [is_broken for _, is_broken in site.lines] == [False, True]
+    assert [float(line[:, 1].mean()) for line, _ in site.lines] == pytest.approx([60.0, 57.0])
+    assert (site.left[:, 1].mean(), site.right[:, 1].mean()) == pytest.approx((63.0, 54.0))
+    usual = site_of(road, World(), None, 90.0)
+    assert [is_broken for _, is_broken in usual.lines] == [True]
+    for each in (site, usual):
+        assert draw_site(each, "x").count("stroke-dasharray") == 1

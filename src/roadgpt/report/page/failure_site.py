@@ -24,14 +24,15 @@ class FailureSite:
 
     left: Array
     """Points of the left edge of the road."""
-    middle: Array
+    lines: tuple[tuple[Array, bool], ...]
+    """Markings between the lanes: the points of each, and whether it is broken."""
     right: Array
     path: Array
     """Path of the car's centre up to the failure; empty if there is no drive."""
     car: Array | None
     """Four corners of the car at the failure."""
     at: Array
-    """Position ``(2,)`` of the middle of the right lane at the station of the failure."""
+    """Position ``(2,)`` of the middle of the driven lane at the station of the failure."""
     heading: float
     """Heading of the road before the failure in radians; this direction points up in the picture."""
 
@@ -40,8 +41,8 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
     """Returns the lines to draw for a failure that occurred ``station`` metres along a road."""
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     profile = world.profile_of(road)
-    edges = profile.edges(s)
-    left, middle, right = (road.at(s, t)[:, :2] for t in (edges.left, np.zeros(len(s)), edges.right))
+    (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
+    lines = tuple((line, mark == "broken") for mark, line in inner if mark != "none")
     path, car = np.empty((0, 2)), None
     if drive is not None:
         last = _step(drive, station)
@@ -49,7 +50,7 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    return FailureSite(left, middle, right, path, car, road.at(station, profile.middle(station))[:2], heading)
+    return FailureSite(left, lines, right, path, car, road.at(station, profile.middle(station))[:2], heading)
 
 
 def _step(drive: Drive, station: float) -> int:
@@ -68,13 +69,16 @@ def draw_site(of: FailureSite, label: str) -> str:
         there = (points - of.at) @ turn.T * size
         return np.asarray([SIDE / 2, SIDE / 2 - BEHIND * size] + there * [1, -1])
 
-    left, middle, right = (placed(each) for each in (of.left, of.middle, of.right))
+    left, right = placed(of.left), placed(of.right)
     road = _points(np.concatenate([left, right[::-1]]))
     out = [
         tag("rect", width=SIDE, height=SIDE, fill="var(--wash)"),
         tag("polygon", points=road, fill="var(--road)"),
         *(_line(edge, "var(--edge)", 1.4) for edge in (left, right)),
-        _line(middle, "var(--edge)", 1.2, stroke_dasharray="9 7"),
+        *(
+            _line(placed(each), "var(--edge)", 1.2, **({"stroke_dasharray": "9 7"} if is_broken else {}))
+            for each, is_broken in of.lines
+        ),
     ]
     if len(of.path):
         out.append(_line(placed(of.path), "var(--s0)", 2.4))
