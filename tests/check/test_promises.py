@@ -61,14 +61,17 @@ BROKEN = [
     ),
     (
         Brief(clauses=(clause(), clause("straight", size="long"), clause())),
-        "asked for a straight after turn 1 with 60 or more m",
+        "asked for a straight after turn 1: 60 or more m long",
     ),
     (
         Brief(clauses=(clause("straight", slope="flat"), clause(), clause())),
-        "asked for a straight at the start with 10 or more m and a grade of -1 to 1 %",
+        "asked for a straight at the start: 10 or more m long, slope -1 to 1 %",
     ),
-    (Brief(slope="down"), "asked for a road that falls all the way"),
-    (Brief(slope="flat"), "asked for a flat road, has grades from 5.0 to 5.0 % over 20 m"),
+    (Brief(slope="down"), "asked for a road that falls all the way, has 5.0 % on average"),
+    (
+        Brief(slope="flat"),
+        "asked for a road that is level all the way, has 5.0 % on average and 5.0 to 5.0 %",
+    ),
     (Brief(slope="steeply_up"), "asked for a mean grade of 8 to 15 %, has 5.0 %"),
     (Brief(slope="nearly_flat"), "asked for a steepest place of 0 to 3.5 %, has 5.0 %"),
     (Brief(climb=exactly(20)), "asked for a climb of 17 to 23 m"),

@@ -175,7 +175,7 @@ def _number_of_turns(brief: Brief) -> None:
             raise BriefError(f"{_many(said, 'turn')} and no turns are asked for: leave out one of the two")
         if not _meet(said, brief.turns):
             raise BriefError(
-                f"the description names {_many(said, 'turn')}, but asks for {_figure(brief.turns)} in all;"
+                f"the description names {_many(said, 'turn')}, but asks for {brief.turns} in all;"
                 " make the numbers agree"
             )
     if brief.turns and brief.turns.hi == 0:
@@ -235,7 +235,7 @@ def _sides(brief: Brief) -> None:
         if wished.hi is not None and sure > wished.hi:
             raise BriefError(
                 f"the description names {_many(exactly(sure), f'{side} turn')}, but asks for"
-                f" {_figure(wished)}; make the numbers agree"
+                f" {wished}; make the numbers agree"
             )
         most = total(brief.clauses) if turning else brief.turns
         if most and most.hi is not None and (wished.lo or 0) > most.hi:
@@ -364,16 +364,8 @@ def _meet(one: Amount, other: Amount) -> bool:
     return low <= high
 
 
-def _figure(amount: Amount) -> str:
-    if amount.exact:
-        return f"{amount.lo:g}"
-    if amount.lo is None:
-        return f"at most {amount.hi:g}"
-    return f"at least {amount.lo:g}" if amount.hi is None else f"{amount.lo:g} to {amount.hi:g}"
-
-
 def _many(amount: Amount, noun: str) -> str:
-    return f"{_figure(amount)} {noun}" + ("" if amount == exactly(1) else "s")
+    return f"{amount} {noun}" + ("" if amount == exactly(1) else "s")
 
 
 def _noun(clause: Clause) -> str:

@@ -59,10 +59,21 @@ class Amount(Frozen):
             raise ValueError(f"an amount between {self.lo:g} and {self.hi:g} has its bounds swapped")
         return self
 
+    def __str__(self) -> str:
+        lo, hi = (None if number is None else figure(number) for number in (self.lo, self.hi))
+        if lo is None:
+            return f"at most {hi}"
+        return f"at least {lo}" if hi is None else lo if self.exact else f"{lo} to {hi}"
+
     @property
     def exact(self) -> bool:
         """True if the amount is a single number, not a bound or a range."""
         return self.lo == self.hi
+
+
+def figure(number: float) -> str:
+    """Returns a number with at most four decimals."""
+    return f"{number:.4f}".rstrip("0").rstrip(".")
 
 
 def exactly(number: float) -> Amount:

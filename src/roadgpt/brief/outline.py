@@ -5,27 +5,23 @@ with them. All numbers are in the units of ``words.py`` (degrees, metres, percen
 are measured as in ``check.measures``.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Literal
+from typing import Any, Literal
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
+from roadgpt.brief.quantities import FEATURE, ROAD, Quantity
 from roadgpt.brief.words import (
     KINDS,
-    LENGTH_SLACK,
     MOTORWAY_GRADE,
     MOTORWAY_RADIUS,
-    PERCENT_SLACK,
-    ROAD_LENGTH_SLACK,
     SHARPNESS,
     SIZES,
     SLOPES,
     STEEPEST,
-    TURNING_SLACK,
     Range,
-    degrees_slack,
     overlap,
 )
 
@@ -50,6 +46,18 @@ class Feature:
     radius: Range | None = None
     length: Range | None = None
     grade: Range | None = None
+
+    def limits(self, *more: str) -> str:
+        """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
+        none. ``more`` are further requirements.
+        """
+        spans = {name: getattr(self, name) for name in FEATURE}
+        if self.kind == "straight":
+            del spans["degrees"]
+        said = [f"to the {self.side}"] if self.side else []
+        said += [FEATURE[name].asked.format(span) for name, span in spans.items() if span]
+        said += more
+        return ": " + ", ".join(said) if said else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +95,8 @@ class Outline:
     climb: Range | None = None
     hills: Range | None = None
     length: Range | None = None
+    radius: Range | None = None
+    """The range of the radius at the tightest place of the road, in metres; no Brief requires it."""
     starts: Feature | None = None
     ends: Feature | None = None
     hard: bool = False
@@ -116,11 +126,14 @@ def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
     """
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
-    steepest = _near(brief.steepest, _percent_slack)
+    whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}
+    whole["hills"] = _count(brief.hills) if brief.hills else None
     if grade is None and grade_range:  # nearly flat: the limit holds at every place
-        steepest = overlap(steepest, Range(0, max(abs(grade_range.lo), abs(grade_range.hi))))
+        whole["steepest"] = overlap(
+            whole["steepest"], Range(0, max(abs(grade_range.lo), abs(grade_range.hi)))
+        )
     if has_low_grades(brief):
-        steepest = overlap(steepest, Range(0, MOTORWAY_GRADE))
+        whole["steepest"] = overlap(whole["steepest"], Range(0, MOTORWAY_GRADE))
     found = Outline(
         groups=groups,
         turns=_turn_count(brief, groups),
@@ -134,11 +147,7 @@ def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
         ),
         grade=grade,
         grade_range=grade_range,
-        turning=_near(brief.turning, lambda degrees: TURNING_SLACK * degrees),
-        steepest=steepest,
-        climb=_near(brief.climb, lambda m: max(LENGTH_SLACK * abs(m), 1.0)),
-        hills=_count(brief.hills) if brief.hills else None,
-        length=_near(brief.length, lambda m: ROAD_LENGTH_SLACK * m),
+        **whole,
         starts=_groups(brief.starts, roomy)[0].feature if brief.starts else None,
         ends=_last(brief.ends, roomy) if brief.ends else None,
         hard=brief.hard,
@@ -193,8 +202,8 @@ def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
     if clause.degrees:
         degrees = _angle(clause.degrees)
     if clause.radius:
-        radius = _near(clause.radius, lambda m: LENGTH_SLACK * m)
-    length = _near(clause.length, lambda m: LENGTH_SLACK * m)
+        radius = _near(clause.radius, FEATURE["radius"])
+    length = _near(clause.length, FEATURE["length"])
     name = meaning.names[0]
     return Feature("turn", name, clause.side, degrees, radius, length, _grade(clause.slope, clause.incline))
 
@@ -204,7 +213,7 @@ def _straight(clause: Clause) -> Feature:
     if clause.size:
         length = SIZES[clause.size].length
     if clause.length:
-        length = _near(clause.length, lambda m: LENGTH_SLACK * m)
+        length = _near(clause.length, FEATURE["length"])
     grade = _grade(clause.slope, clause.incline)
     return Feature("straight", "straight", None, KINDS["straight"].degrees, None, length, grade)
 
@@ -236,7 +245,7 @@ def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
     """Returns a range in percent; a number takes precedence over 'steep' and gets its sign from the slope."""
     if incline is None:
         return SLOPES[slope].grade if slope else None
-    size = _near(incline, _percent_slack) or NO_LIMIT
+    size = _near(incline, FEATURE["grade"]) or NO_LIMIT
     low, high = max(size.lo, 1.0), min(size.hi, STEEPEST)
     return Range(-high, -low) if slope and slope.endswith("down") else Range(low, high)
 
@@ -280,19 +289,16 @@ def _count(amount: Amount | None) -> Range:
 
 def _angle(amount: Amount) -> Range:
     """Returns the range of a turn's angle in degrees; an open end gets the limit of what can be driven."""
-    near = _near(amount, degrees_slack) or NO_LIMIT
+    near = _near(amount, FEATURE["degrees"]) or NO_LIMIT
     low = near.lo if near.lo > -inf else max(SMALLEST_TURN, SMALLEST_OF_MOST * near.hi)
     return Range(low, near.hi if near.hi < inf else max(LARGEST_TURN, near.lo))
 
 
-def _percent_slack(_: float) -> float:
-    return PERCENT_SLACK
-
-
-def _near(amount: Amount | None, slack: Callable[[float], float]) -> Range | None:
+def _near(amount: Amount | None, quantity: Quantity) -> Range | None:
     """Returns an exact number with its tolerance, and a bound or a range unchanged."""
     if amount is None:
         return None
     if amount.exact and amount.lo is not None:
-        return Range(amount.lo - slack(amount.lo), amount.lo + slack(amount.lo))
+        slack = quantity.slack(amount.lo)
+        return Range(amount.lo - slack, amount.lo + slack)
     return Range(amount.lo if amount.lo is not None else -inf, amount.hi if amount.hi is not None else inf)

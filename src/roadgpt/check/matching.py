@@ -11,6 +11,7 @@ from math import inf
 from typing import NamedTuple
 
 from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.quantities import FEATURE
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import MeasuredFeature, Measures
 
@@ -42,22 +43,25 @@ IMPOSSIBLE = _Cost(inf, ())
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
     """Returns whether a measured turn or straight meets all requirements for the requested one."""
-    return (
-        stretch.kind == feature.kind
-        and feature.side in (None, stretch.side)
-        and (feature.degrees is None or stretch.degrees in feature.degrees)
-        and (feature.radius is None or stretch.radius in feature.radius)
-        and (feature.length is None or stretch.length in feature.length)
-        and (
-            feature.grade is None or stretch.grade in feature.grade or _is_rounded_off(stretch, feature.grade)
-        )
-    )
+    if stretch.kind != feature.kind or feature.side not in (None, stretch.side):
+        return False
+    wrong = _wrong(stretch, feature)
+    return not wrong or (wrong == ["grade"] and _is_rounded_off(stretch, feature.grade))
 
 
-def _is_rounded_off(stretch: MeasuredFeature, asked: Range) -> bool:
+def _wrong(stretch: MeasuredFeature, feature: Feature) -> list[str]:
+    """Returns the names of the quantities that are outside of the required ranges."""
+    return [
+        name for name in FEATURE if (asked := getattr(feature, name)) and getattr(stretch, name) not in asked
+    ]
+
+
+def _is_rounded_off(stretch: MeasuredFeature, asked: Range | None) -> bool:
     """Returns whether a straight is too gentle as a whole, but as steep as asked over its middle half."""
+    if stretch.kind != "straight" or asked is None or stretch.inner_grade not in asked:
+        return False
     least = asked.lo if asked.lo > 0 else -asked.hi if asked.hi < 0 else 0.0
-    return stretch.kind == "straight" and 0 < least > abs(stretch.grade) and stretch.inner_grade in asked
+    return 0 < least > abs(stretch.grade)
 
 
 def turn_complaints(
@@ -72,22 +76,14 @@ def turn_complaints(
         side: the required side ("left" or "right") if turns must alternate; None to require the side that
             ``feature`` states.
     """
-    if side is None and fits(turn, feature):
-        return ()
-    side = side or feature.side
-    says = []
+    side, out = side or feature.side, list[Complaint]()
     if side and turn.side != side:
-        says.append(f"turn {number} goes {turn.side}, asked for {side}")
-    if feature.degrees and turn.degrees not in feature.degrees:
-        says.append(f"turn {number} turns {turn.degrees:.0f} degrees, asked for {feature.degrees}")
-    if feature.radius and turn.radius not in feature.radius:
-        says.append(f"turn {number} has a radius of {turn.radius:.1f} m, asked for {feature.radius} m")
-    if feature.length and turn.length not in feature.length:
-        says.append(f"turn {number} is {turn.length:.0f} m long, asked for {feature.length} m")
-    out = [Complaint(text, turn.start) for text in says]
-    if feature.grade and turn.grade not in feature.grade:
-        text = f"turn {number} has a grade of {turn.grade:.1f} %, asked for {feature.grade} %"
-        out.append(Complaint(text, turn.start, on_heights=True))
+        out.append(Complaint(f"turn {number} goes {turn.side}, asked for {side}", turn.start))
+    for name in _wrong(turn, feature):
+        row = FEATURE[name]
+        measured, asked = row.measured.format(getattr(turn, name)), getattr(feature, name)
+        text = f"turn {number} {measured}, asked for {asked}{row.unit}"
+        out.append(Complaint(text, turn.start, row.on_heights))
     return tuple(out)
 
 
@@ -154,17 +150,10 @@ def _gap_cost(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], tur
     return _Cost(
         len(missing),
         tuple(
-            Complaint(
-                f"asked for a straight {where} with {_asked(wish)}, has {has}", s, wish.grade is not None
-            )
+            Complaint(f"asked for a straight {where}{wish.limits()}, has {has}", s, wish.grade is not None)
             for wish in missing
         ),
     )
-
-
-def _asked(wish: Feature) -> str:
-    spans: list[tuple[Range | None, str]] = [(wish.length, "{} m"), (wish.grade, "a grade of {} %")]
-    return " and ".join(text.format(span) for span, text in spans if span) or "no turn in it"
 
 
 def _said(pieces: tuple[MeasuredFeature, ...]) -> str:

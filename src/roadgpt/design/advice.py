@@ -13,6 +13,7 @@ from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause
 from roadgpt.brief.outline import Outline
+from roadgpt.brief.quantities import ROAD
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.road import World
 
@@ -83,10 +84,9 @@ def _wishes_of(outline: Outline) -> str:
     ]
     if not parts and 1 < outline.turns.lo < inf:
         parts = [_counted(int(outline.turns.lo), "turn")]
-    if outline.length and outline.length.lo > 0:
-        parts.append(f"a length of {outline.length} m")
-    if outline.climb:
-        parts.append(f"a climb of {outline.climb} m")
+    long = outline.length and outline.length.lo > 0
+    parts += [ROAD["length"].asked.format(outline.length)] if long else []
+    parts += [ROAD["climb"].asked.format(outline.climb)] if outline.climb else []
     if not parts:
         parts = ["the straights that were asked for" if outline.groups else "a road of this kind"]
     single = len(parts) == 1 and (parts[0].startswith(("1 ", "a ")))

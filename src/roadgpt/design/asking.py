@@ -7,7 +7,8 @@ from math import inf, radians
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.outline import Group, Outline
+from roadgpt.brief.quantities import ROAD, WHOLE_SLOPES
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import Range
 from roadgpt.check.rules.promises import promises_of
@@ -92,54 +93,27 @@ def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
 
 def demands(outline: Outline) -> list[str]:
     """Returns the requirements of a road in driving order, one line each."""
-    out: list[str] = []
-    for group in outline.groups:
-        sides = "alternating sides" if group.alternating else ""
-        out.append(f"in this order: {_many(group)}{_limits(group.feature, sides)}")
+    out = [f"in this order: {_group(group)}" for group in outline.groups]
     if not any(group.feature.kind == "turn" for group in outline.groups):
         out.append(f"{outline.turns} turns" if outline.turns != Range() else "")
-    out += [
-        f"{span} {side} turns"
-        for side, span in (("left", outline.left), ("right", outline.right))
-        if span != Range()
-    ]
+    sides = {"left": outline.left, "right": outline.right}
+    out += [f"{span} {side} turns" for side, span in sides.items() if span != Range()]
     out.append("turns alternate between left and right" if outline.alternating else "")
-    each = _limits(outline.each_turn, "")
+    each = outline.each_turn.limits()
     out.append(f"every turn{each}" if each else "")
-    whole = {"up": "the whole road climbs", "down": "the whole road falls", "flat": "the whole road is level"}
-    grade = f" (mean slope {outline.grade_range} %)" if outline.grade_range else ""
-    out.append(whole[outline.grade] + grade if outline.grade else "")
-    quantities = (
-        (outline.turning, "all turns together turn {} degrees"),
-        (outline.steepest, "the steepest place has {} %"),
-        (outline.climb, "the end lies {} m higher than the start"),
-        (outline.hills, "{} changes between climbing and falling"),
-        (outline.length, "{} m long in all"),
-    )
-    out += [text.format(span) for span, text in quantities if span]
-    out.append(
-        f"it starts with a {outline.starts.name}{_limits(outline.starts, '')}" if outline.starts else ""
-    )
-    out.append(f"it ends with a {outline.ends.name}{_limits(outline.ends, '')}" if outline.ends else "")
+    mean = f" (mean slope {outline.grade_range} %)" if outline.grade_range else ""
+    out.append(f"the whole road {WHOLE_SLOPES[outline.grade]}{mean}" if outline.grade else "")
+    out += [row.asked.format(span) for name, row in ROAD.items() if (span := getattr(outline, name))]
+    for end, feature in (("starts", outline.starts), ("ends", outline.ends)):
+        out.append(f"it {end} with a {feature.name}{feature.limits()}" if feature else "")
     return [line for line in out if line]
 
 
-def _many(group: Group) -> str:
-    """'3 turns', '2 or more hairpins', '1 straight'."""
+def _group(group: Group) -> str:
+    """Returns a group as text: '3 turns', '2 or more hairpins: to the left', '1 straight'."""
     span = Range(group.lo, inf if group.hi is None else group.hi)
-    return f"{span} {group.feature.name}" + ("" if group.hi == 1 else "s")
-
-
-def _limits(feature: Feature, more: str) -> str:
-    spans = (
-        (feature.degrees if feature.kind == "turn" else None, "{} degrees"),
-        (feature.radius, "radius {} m"),
-        (feature.length, "{} m long"),
-        (feature.grade, "slope {} %"),
-    )
-    said = [f"to the {feature.side}"] if feature.side else []
-    said += [text.format(span) for span, text in spans if span] + ([more] if more else [])
-    return ": " + ", ".join(said) if said else ""
+    sides = ["alternating sides"] if group.alternating else []
+    return f"{span} {group.feature.name}{'' if group.hi == 1 else 's'}{group.feature.limits(*sides)}"
 
 
 def _told(design: Design) -> str:

@@ -7,26 +7,18 @@ as few turns as possible violate a requirement.
 """
 
 from collections.abc import Iterator
-from typing import NamedTuple
+from itertools import pairwise
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.words import NO_TURN, Range
+from roadgpt.brief.quantities import ROAD, WHOLE_SLOPES
+from roadgpt.brief.words import NO_TURN
 from roadgpt.check.finding import Finding
 from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints
 from roadgpt.check.measures import LEVEL, Measures, measure
 from roadgpt.road import Road, World
 
 ROOMY = 150.0  # m: a map with this side length holds a sweeping turn of 60 m radius with its straights
-
-
-class _Whole(NamedTuple):
-    """A quantity of the whole road: its value, the range asked for, and the sentence about it."""
-
-    value: float
-    asked: Range | None
-    sentence: str
-    on_heights: bool = True
 
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
@@ -51,9 +43,11 @@ def complaints(found: Measures, asked: Outline) -> list[Complaint]:
     for number, turn in enumerate(found.turns, 1):
         out += turn_complaints(number, turn, asked.each_turn)
     out += _slopes(found, asked)
-    for value, span, sentence, on_heights in _wholes(found, asked):
-        if span is not None and value not in span:
-            out.append(Complaint(sentence.format(asked=span), on_heights=on_heights))
+    for name, row in ROAD.items():
+        span, value = getattr(asked, name), getattr(found, name)
+        if span and value not in span:
+            text = f"asked for {row.asked.format(span)}, has {row.measured.format(value)}"
+            out.append(Complaint(text, on_heights=row.on_heights))
     return out + list(_ends(found, asked))
 
 
@@ -66,68 +60,38 @@ def _finding(road: Road, complaint: Complaint) -> Finding:
 
 def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
     number = len(found.turns)
-    if number not in asked.turns:
-        yield Complaint(f"asked for {_many(asked.turns, 'turn')}, has {number}")
-    elif asked.turns.hi == 0 and found.turning not in NO_TURN:
+    counts = (
+        (number, asked.turns, "turn"),
+        (found.count("left"), asked.left, "left turn"),
+        (found.count("right"), asked.right, "right turn"),
+    )
+    for has, span, what in counts:
+        if has not in span:
+            plural = "" if span.lo == span.hi == 1 else "s"
+            yield Complaint(f"asked for {span} {what}{plural}, has {has}")
+    if number in asked.turns and asked.turns.hi == 0 and found.turning not in NO_TURN:
         yield Complaint(f"asked for a straight road, turns {found.turning:.1f} degrees in all")
-    left, right = found.count("left"), found.count("right")
-    if left not in asked.left:
-        yield Complaint(f"asked for {_many(asked.left, 'left turn')}, has {left}")
-    if right not in asked.right:
-        yield Complaint(f"asked for {_many(asked.right, 'right turn')}, has {right}")
-    if asked.alternating:
-        for second, (one, other) in enumerate(zip(found.turns, found.turns[1:], strict=False), 2):
-            if one.side == other.side:
-                yield Complaint(
-                    f"asked for turns to alternate, turns {second - 1} and {second} both go {one.side}",
-                    other.start,
-                )
-
-
-def _many(span: Range, what: str) -> str:
-    return f"{span} {what}" if span.lo == span.hi == 1 else f"{span} {what}s"
+    for second, (one, other) in enumerate(pairwise(found.turns), 2):
+        if asked.alternating and one.side == other.side:
+            text = f"asked for turns to alternate, turns {second - 1} and {second} both go {one.side}"
+            yield Complaint(text, other.start)
 
 
 def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
     """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
-    low, high = found.lowest_grade, found.highest_grade
-    if asked.grade == "up" and not (found.grade >= LEVEL and low > -LEVEL):
-        worst = f"{found.grade:.1f} % on average and {low:.1f} % at its lowest over 20 m"
-        yield Complaint(f"asked for a road that climbs all the way, has {worst}", on_heights=True)
-    elif asked.grade == "down" and not (found.grade <= -LEVEL and high < LEVEL):
-        worst = f"{found.grade:.1f} % on average and {high:.1f} % at its highest over 20 m"
-        yield Complaint(f"asked for a road that falls all the way, has {worst}", on_heights=True)
-    elif asked.grade == "flat" and not (low > -LEVEL and high < LEVEL):
+    low, high, mean = found.lowest_grade, found.highest_grade, found.grade
+    is_so = {
+        "up": mean >= LEVEL and low > -LEVEL,
+        "down": mean <= -LEVEL and high < LEVEL,
+        "flat": low > -LEVEL and high < LEVEL,
+    }
+    if asked.grade and not is_so[asked.grade]:
+        grades = f"{mean:.1f} % on average and {low:.1f} to {high:.1f} % over 20 m"
         yield Complaint(
-            f"asked for a flat road, has grades from {low:.1f} to {high:.1f} % over 20 m", on_heights=True
+            f"asked for a road that {WHOLE_SLOPES[asked.grade]} all the way, has {grades}", on_heights=True
         )
-
-
-def _wholes(found: Measures, asked: Outline) -> tuple[_Whole, ...]:
-    mean = asked.grade_range if asked.grade in ("up", "down") else None
-    return (
-        _Whole(found.grade, mean, f"asked for a mean grade of {{asked}} %, has {found.grade:.1f} %"),
-        _Whole(
-            found.steepest,
-            asked.steepest,
-            f"asked for a steepest place of {{asked}} %, has {found.steepest:.1f} %",
-        ),
-        _Whole(
-            found.turning,
-            asked.turning,
-            f"asked for {{asked}} degrees of turning in all, has {found.turning:.0f}",
-            False,
-        ),
-        _Whole(found.climb, asked.climb, f"asked for a climb of {{asked}} m, has {found.climb:.1f} m"),
-        _Whole(
-            found.hills,
-            asked.hills,
-            f"asked for {{asked}} changes between climbing and falling, has {found.hills}",
-        ),
-        _Whole(
-            found.length, asked.length, f"asked for a length of {{asked}} m, has {found.length:.0f} m", False
-        ),
-    )
+    if asked.grade in ("up", "down") and asked.grade_range and mean not in asked.grade_range:
+        yield Complaint(f"asked for a mean grade of {asked.grade_range} %, has {mean:.1f} %", on_heights=True)
 
 
 def _ends(found: Measures, asked: Outline) -> Iterator[Complaint]:
