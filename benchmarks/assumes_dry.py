@@ -14,4 +14,4 @@ class AssumesDry(Reference):
 
     def start(self, road: Road, world: World, seed: int) -> None:
         """Plan line and speed for a friction of 1."""
-        super().start(road, world.model_copy(update={"friction": 1.0}), seed)
+        super().start(road, world.changed(friction=1.0), seed)

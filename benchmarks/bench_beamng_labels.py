@@ -23,9 +23,9 @@ from beamng_labels import TOLERANCE, Labels, auc, halves, road_of
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.driving_line import stations
-from roadgpt.road import World
+from roadgpt.road import Limits, Site, World
 
-WORLD = World(map_size=1000, oob_tolerance=TOLERANCE)
+WORLD = World(site=Site(map_size=1000), limits=Limits(oob_tolerance=TOLERANCE))
 PERIOD = 1.33  # s between two looks of the competition's oracle, as measured
 CONTROL = 0.02  # s
 PHASES = 8  # of its first look, over one period
@@ -47,7 +47,7 @@ def seen(curvatures: list[float]) -> Seen:
     road = road_of(curvatures)
     s = stations(road)
     k = road.curvature(s)
-    lane = k / np.maximum(1 + WORLD.lane_width / 2 * k, 0.2)
+    lane = k / np.maximum(1 + WORLD.section.lane_width / 2 * k, 0.2)
     half = round(WINDOW / s[1])
     mean = np.convolve(np.pad(lane, half, mode="edge"), np.ones(2 * half + 1) / (2 * half + 1), "valid")
     mean = mean[(s > FIRST) & (s < road.length - LAST)]

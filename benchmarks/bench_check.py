@@ -15,7 +15,7 @@ from authorities import sbft_official_slow as slow
 from authorities.sbft_roads import mutated, random_road
 from roadgpt.check import inspect, sbft_verdict
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Road, Segment, Site, World, build
 
 BARS = {
     100: 24,
@@ -28,7 +28,7 @@ BARS = {
 def main(roads: int = 10_000, seed: int = 1) -> None:
     print(f"{'road':>6} {'strict':>10} {'sbft':>10} {'slow sbft':>10} {'bar':>8}   (ms, median)")
     for length, bar in BARS.items():
-        road, world = snake(length), World(map_size=1000)
+        road, world = snake(length), World(site=Site(map_size=1000))
         points = road.control_points()
         assert inspect(road, None, world) == ()
         assert slow.verdict(points, 1000) == sbft_verdict(points, 1000) == (True, "")

@@ -84,7 +84,7 @@ def _campaign(words: str, truth: dict[str, Any], referee: ModuleType | None, see
 
 
 def _is_valid(road: Road, brief: Brief) -> bool:
-    fine = check.sbft_verdict(road.control_points(), WORLD.map_size)[0]
+    fine = check.sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
     return fine and not check.inspect(road, brief, WORLD)
 
 

@@ -18,7 +18,7 @@ from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
 from roadgpt.export import save
-from roadgpt.road import Road, World, build, in_short_segments, read_opendrive
+from roadgpt.road import CrossSection, Limits, Road, Site, World, build, in_short_segments, read_opendrive
 
 WORDS = (
     "an uphill road with 3 turns",
@@ -71,7 +71,11 @@ def drawn() -> Iterator[tuple[Road, World, str]]:
         words, map_size = WORDS[number % len(WORDS)], MAPS[number // len(WORDS) % len(MAPS)]
         speed_limit, verge = LIMITS[number % len(LIMITS)], VERGES[number % len(VERGES)]
         friction = FRICTIONS[number % len(FRICTIONS)]
-        world = World(map_size=map_size, friction=friction, speed_limit=speed_limit, verge=verge)
+        world = World(
+            site=Site(map_size=map_size, friction=friction),
+            limits=Limits(speed_limit=speed_limit),
+            section=CrossSection(shoulder=verge),
+        )
         number += 1
         try:
             design = draft(read(words, "grammar"), world, seed=number)

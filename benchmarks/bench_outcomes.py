@@ -17,7 +17,7 @@ from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.pure_pursuit import PurePursuit
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import CrossSection, Design, Limits, Road, Site, World, build
 from roadgpt.verdict import SEVERITIES, Verdict, judge
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "outcomes.md"
@@ -44,7 +44,7 @@ def planner_roads(count: int) -> list[Road]:
 
 def verdicts(roads: list[Road], driver: type[Any], world: World) -> list[tuple[Verdict, Verdict]]:
     """By the tolerance alone, and where lane departures count as well; of the same drives."""
-    watched = world.model_copy(update={"lane_departure": True})
+    watched = world.changed(lane_departure=True)
     drives = [simulate(road, world, driver(), seed=0) for road in roads]
     return [(judge(r, d, world), judge(r, d, watched)) for r, d in zip(roads, drives, strict=True)]
 
@@ -58,9 +58,9 @@ def row(name: str, world: World, pairs: list[tuple[Verdict, Verdict]]) -> tuple[
     margins = sorted(v.margin for v in found)
     cells = [
         name,
-        f"{world.speed_limit * 3.6:.0f}",
-        f"{world.friction:g}",
-        f"{world.verge:g}",
+        f"{world.limits.speed_limit * 3.6:.0f}",
+        f"{world.site.friction:g}",
+        f"{world.section.shoulder:g}",
         f"{failed.total()} of {len(found)}",
         f"{100 * failed.total() / len(found):.1f} %",
         ", ".join(f"{failed[cause]} {cause}" for cause in CAUSES if failed[cause]) or "none",
@@ -99,7 +99,11 @@ def main(count: int = 300, write: bool = False) -> None:
     def add(
         name: str, driver: type[Any], some: list[Road], kmh: int, friction: float, verge: float = 3.0
     ) -> None:
-        world = World(speed_limit=kmh / 3.6, friction=friction, verge=verge)
+        world = World(
+            limits=Limits(speed_limit=kmh / 3.6),
+            site=Site(friction=friction),
+            section=CrossSection(shoulder=verge),
+        )
         line, failed = row(name, world, verdicts(some, driver, world))
         lines.append(line)
         print(line, flush=True)

@@ -163,7 +163,7 @@ def asked_of_trimesh(roads: list[Road], folder: Path) -> tuple[str, int, float]:
 def distance(road: Road, points: Any) -> float:
     """The farthest of some points of lane borders and middle from where the road has them."""
     s, t = road.locate(points[:, 0], points[:, 1])
-    borders = np.array([-WORLD.lane_width, 0.0, WORLD.lane_width])
+    borders = np.array([-WORLD.section.lane_width, 0.0, WORLD.section.lane_width])
     nearest = borders[np.abs(t[:, None] - borders).argmin(axis=1)]
     return float(np.linalg.norm(road.at(s, nearest) - points, axis=1).max())
 

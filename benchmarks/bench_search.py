@@ -37,7 +37,7 @@ from roadgpt.campaign.generators.quality_diversity import QualityDiversity
 from roadgpt.campaign.generators.random_ import Random
 from roadgpt.campaign.single_test import Task, execute, features_in, result_of
 from roadgpt.check import sbft_verdict
-from roadgpt.road import Road, World, build
+from roadgpt.road import Limits, Road, Site, World, build
 from roadgpt.run import Request, Setup, brief_of, prove
 from roadgpt.run.sparseness import Sparseness, segment_around
 
@@ -52,7 +52,7 @@ STEPS, STEP = 17, 10.0
 GLOBAL_BOUND, LOCAL_BOUND = 0.07, 0.05  # 1/m: of a curvature, and of its change
 
 TOLERANCE = 0.85
-WORLD = World(map_size=200.0, oob_tolerance=TOLERANCE, z_floor=0.0)
+WORLD = World(site=Site(map_size=200.0, z_floor=0.0), limits=Limits(oob_tolerance=TOLERANCE))
 USUAL = Setup(reader="grammar", rules="sbft")
 
 
@@ -84,7 +84,7 @@ class Setting:
     @property
     def world(self) -> World:
         """Flat ground all around, as the competition's level has it."""
-        return WORLD.model_copy(update={"friction": self.friction, "speed_limit": self.speed_kmh / 3.6})
+        return WORLD.changed(friction=self.friction, speed_limit=self.speed_kmh / 3.6)
 
 
 SETTINGS = {
@@ -127,8 +127,8 @@ def walks(seed: int) -> Iterator[Road]:
             low, high = bends[-1] - LOCAL_BOUND, bends[-1] + LOCAL_BOUND
             bends.append(rng.uniform(max(low, -GLOBAL_BOUND), min(high, GLOBAL_BOUND)))
         points = points_of(bends, rng.uniform(0, 2 * math.pi))
-        points += WORLD.map_size / 2 - (points.min(axis=0) + points.max(axis=0)) / 2
-        if sbft_verdict(points, WORLD.map_size)[0]:
+        points += WORLD.site.map_size / 2 - (points.min(axis=0) + points.max(axis=0)) / 2
+        if sbft_verdict(points, WORLD.site.map_size)[0]:
             yield Road.through(points)
 
 
@@ -224,7 +224,9 @@ def figures(
     out = {
         "tests": len(tried),
         "valid": valid,
-        "sbft": sum(sbft_verdict(road.control_points(), cell.request.world.map_size)[0] for _, road in tried),
+        "sbft": sum(
+            sbft_verdict(road.control_points(), cell.request.world.site.map_size)[0] for _, road in tried
+        ),
         "failures": len(failures),
         "sparseness": spread.mean if len(failures) > 1 else None,
         "first": min((result.number for result, _ in failures), default=None),

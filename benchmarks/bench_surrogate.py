@@ -23,10 +23,10 @@ from sklearn.preprocessing import StandardScaler
 from roadgpt.campaign.surrogate import Surrogate, target_of
 from roadgpt.campaign.surrogate_features import hazard_of
 from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
-from roadgpt.road import World
+from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, brief_of, prove
 
-WORLD = World(map_size=200.0, oob_tolerance=0.85, z_floor=0.0)
+WORLD = World(site=Site(map_size=200.0, z_floor=0.0), limits=Limits(oob_tolerance=0.85))
 SPLITS = 8
 HARDEST = 20
 Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
@@ -38,7 +38,7 @@ def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
     road = make_candidate(VariationTask("wild", (), "", (seed,), VariationContext(brief, WORLD, "sbft")))
     if road is None:
         return None
-    world = WORLD.model_copy(update={"friction": 0.572}) if wet else WORLD
+    world = WORLD.changed(friction=0.572) if wet else WORLD
     driver = f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry" if wet else "beamng_like"
     run = prove(road.design, 0, world, Setup(driver=driver))
     return (road.surrogate_features, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None

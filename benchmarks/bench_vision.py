@@ -25,7 +25,7 @@ import numpy as np
 import roadgpt.gym  # noqa: F401  makes the environment known to Gymnasium
 from roadgpt.drive import Drive, simulate
 from roadgpt.drive.loading import load_driver
-from roadgpt.road import Road, World
+from roadgpt.road import Limits, Road, World
 from roadgpt.run import Setup, brief_of, perform
 from roadgpt.verdict import judge
 
@@ -71,7 +71,7 @@ class Cell:
 
 
 def driven(name: str, kmh: int, road: Road) -> tuple[Drive, World]:
-    world = World(speed_limit=kmh / 3.6)
+    world = World(limits=Limits(speed_limit=kmh / 3.6))
     if name not in SEEING:
         return simulate(road, world, name), world
     os.environ["SPEED_KMH"] = str(kmh)
@@ -83,7 +83,7 @@ def added(cell: Cell, road: Road, drive: Drive, world: World) -> None:
     s, t = (np.asarray(drive.columns[name]) for name in ("s", "t"))
     if judge(road, drive, world).kept:
         cell.kept += 1
-        cell.aside += float(np.abs(t + world.lane_width / 2).max())
+        cell.aside += float(np.abs(t + world.section.lane_width / 2).max())
         return
     last = s[-100:]  # 2 s
     around = np.clip(last[:, None] + np.arange(-5.0, 15.1, 1.0), 0.0, road.length)

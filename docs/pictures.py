@@ -102,7 +102,7 @@ def lane_finder(work: Path) -> Image.Image:
     sys.path.insert(0, str(ROOT / "examples" / "vision"))
     from lane_finder import LaneFinder
 
-    from roadgpt import World, perform, simulate
+    from roadgpt import Limits, World, perform, simulate
     from roadgpt.run import Setup
 
     class Keeping(LaneFinder):
@@ -119,7 +119,7 @@ def lane_finder(work: Path) -> Image.Image:
                 self.pictures.append(self._ground.marked(view.image, self.lane))
             return command
 
-    world = World(speed_limit=25 / 3.6)
+    world = World(limits=Limits(speed_limit=25 / 3.6))
     run = perform("a right turn on a climb, then a crest and a right turn", 7, world, Setup(drives=False))
     driver = Keeping()
     simulate(run.road, world, driver)

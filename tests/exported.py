@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from roadgpt.export import Poses
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Limits, Road, Segment, Site, World, build
 
 TO_MAP = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # glTF's y is our z
-WORLD = World(friction=0.6, speed_limit=50 / 3.6)
+WORLD = World(site=Site(friction=0.6), limits=Limits(speed_limit=50 / 3.6))
 HILLY = Design(
     starting_point=(50, 40, -3),
     theta=30,
@@ -39,7 +39,7 @@ def drive(road: Road, world: World = WORLD) -> Poses:
     """A car that sways about the middle of the right lane at 8 m/s, pitching and rolling."""
     time = np.arange(0.0, (road.length - 2.5) / 8.0, 0.02) if road.length > 3 else np.array([0.0, 0.02])
     s = np.minimum(2.5 + 8.0 * time, road.length)
-    x, y, z = road.at(s, -world.lane_width / 2 + 0.4 * np.sin(s / 7)).T
+    x, y, z = road.at(s, -world.section.lane_width / 2 + 0.4 * np.sin(s / 7)).T
     pitch, roll = np.arctan(road.grade(s)) + 0.01 * np.sin(s), 0.03 * np.cos(s / 5)
     return Poses(time, x, y, z + 0.56, road.heading(s) + 0.02 * np.sin(s), pitch, roll, np.full(len(s), 8.0))
 

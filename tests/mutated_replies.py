@@ -186,13 +186,13 @@ def outcome(seed: int) -> str:
 def assert_keeps_the_rules(road: Road, by_all_pairs: bool) -> None:
     """Looked at without the rules: by the published algorithm, which takes long, and on the finished road."""
     verdict = slow.verdict if by_all_pairs else check.sbft_verdict
-    assert verdict(road.control_points().tolist(), WORLD.map_size) == (True, "")
+    assert verdict(road.control_points().tolist(), WORLD.site.map_size) == (True, "")
     points = road.centreline()
     assert np.isfinite(points).all()
     edges = road.at(road.sample().s[:, None], np.array([-4.0, 4.0]))
     assert edges[..., :2].min() > 0
-    assert edges[..., :2].max() < WORLD.map_size
-    assert points[:, 2].min() >= WORLD.z_floor - 1e-6
+    assert edges[..., :2].max() < WORLD.site.map_size
+    assert points[:, 2].min() >= WORLD.site.z_floor - 1e-6
     run = np.hypot(*np.diff(points[:, :2], axis=0).T)
     assert np.abs(np.diff(points[:, 2]) / run).max() <= 0.15 * (1 + 1e-2)
     assert run.sum() > 20

@@ -3,7 +3,7 @@
 import numpy as np
 
 from roadgpt.geometry import CubicProfile
-from roadgpt.road import Design, Profile, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Profile, Road, Segment, World, build
 from roadgpt.road.profile import Lane
 from roadgpt.road.superelevation import superelevation
 
@@ -33,7 +33,7 @@ def random_road(seed: int, steepest: float = 8.0) -> Road:
         )
         right = (*profile.right[:forward], Lane("driving", begins, "solid"), *profile.right[forward:])
         profile = Profile(profile.left, right, profile.driven, profile.centre_marking)
-    bank = BANKS[seed % len(BANKS)] if seed % 8 else World(bank="auto")
+    bank = BANKS[seed % len(BANKS)] if seed % 8 else World(section=CrossSection(bank="auto"))
     if bank is None:
         return road.with_profile(profile)
     ratio = None if isinstance(bank, World) else bank

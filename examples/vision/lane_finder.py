@@ -84,8 +84,8 @@ class LaneFinder:
     def start(self, road, world, seed):
         """Forgets the road before; looks at nothing but the signs with the speed limit."""
         del road, seed
-        self._limit, self._image = world.speed_limit, None
-        half = world.lane_width / 2
+        self._limit, self._image = world.limits.speed_limit, None
+        half = world.section.lane_width / 2
         self._lines = (INSET - half, half, 3 * half - INSET)
         self.lane = Lane()
 

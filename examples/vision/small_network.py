@@ -44,7 +44,7 @@ class SmallNetwork:
     def start(self, road, world, seed):
         """Forgets the road before; looks at nothing but the signs with the speed limit."""
         del road, seed
-        self._limit, self._image, self._steer = world.speed_limit, None, 0.0
+        self._limit, self._image, self._steer = world.limits.speed_limit, None, 0.0
 
     def steer(self, view):
         """A new answer for each new picture."""

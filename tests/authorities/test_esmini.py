@@ -32,7 +32,7 @@ def test_esmini_plays_the_scenario_and_the_recorded_drive(tmp_path: Path, name: 
     save(road, tmp_path, ["openscenario"], WORLD, poses=poses)
     seconds, complaints = played(esmini, tmp_path / "road.xosc")
     assert complaints == []
-    assert road.length / WORLD.speed_limit < seconds < 60  # the end is reached before patience is
+    assert road.length / WORLD.limits.speed_limit < seconds < 60  # the end is reached before patience is
     seconds, complaints = played(esmini, tmp_path / "road.drive.xosc")
     assert complaints == []
     assert seconds == pytest.approx(poses.time[-1], abs=0.2)

@@ -10,7 +10,7 @@ from drive.slippery_bicycle import SlipperyBicycle
 from roadgpt.drive import Box
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.marking_monitor import MarkingMonitor
-from roadgpt.road import Road, World
+from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import judge
 
 CENTRE_LINE = 0.12  # m, narrow mark of the German RMS-1: half of it lies beyond the middle of the road
@@ -67,7 +67,7 @@ def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: i
 
 
 def test_the_farthest_of_a_whole_drive_is_told() -> None:
-    road, world = bent(15.0, -1), World(oob_tolerance=1.0)
+    road, world = bent(15.0, -1), World(limits=Limits(oob_tolerance=1.0))
     drive = SlipperyBicycle().simulate(road, world, BeamngLike(), 0)
     lane = between_markings(road)
     every = [farthest(lane, drive.corners(step)) for step in range(drive.lane_steps)]

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from roadgpt import plugins
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import Road, Site, World
 
-WORLD = World(map_size=1000)
+WORLD = World(site=Site(map_size=1000))
 GRAIN = 0.5  # m, of the quads
 CURVED = 0.05  # m^2, what straight edges of quads miss of round ones, at most
 
@@ -39,6 +39,6 @@ def test_a_road_overlaps_exactly_where_it_covers_less_than_its_length_times_its_
 ) -> None:
     plan = PieceCurve(500.0, 500.0, 0.3, pieces)
     road = Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))
-    missing = road.length * WORLD.road_width - covered(road)
+    missing = road.length * WORLD.section.road_width - covered(road)
     assume(missing < CURVED or missing > 0.5)
     assert bool(plugins.find("rules", "no_overlap")(road, None, WORLD)) == (missing > CURVED)

@@ -38,7 +38,7 @@ def test_sumo_drives_our_road_from_start_to_end(sumo: str, tmp_path: Path, name:
         assert np.abs(t[inside] - offset).max() < 0.02
         heights = points[:, 2] if points.shape[1] == 3 else np.zeros(len(s))  # SUMO leaves out zeros
         assert np.abs(heights[inside] - road.at(s[inside])[:, 2]).max() < 0.01
-        assert float(lane.attrib["speed"]) == pytest.approx(WORLD.speed_limit, abs=0.01)
+        assert float(lane.attrib["speed"]) == pytest.approx(WORLD.limits.speed_limit, abs=0.01)
         assert float(lane.attrib["width"]) == 4.0
     trip = tmp_path / "trip.xml"
     settings = folders[0] / "road.sumocfg"

@@ -10,7 +10,7 @@ from shapely.geometry import LineString, Polygon
 from drive.slippery_bicycle import BOX, SlipperyBicycle
 from roadgpt.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drivers.beamng_like import BeamngLike
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Limits, Road, Segment, World, build
 from roadgpt.verdict import consult, judge
 from roadgpt.verdict.margin import margins
 
@@ -49,7 +49,7 @@ def random_drive(road: Road, seed: int, n: int = 60) -> Drive:
 @pytest.mark.parametrize("hand", [-1, 1])
 @pytest.mark.parametrize("radius", [15.0, 40.0])
 def test_moved_by_the_margin_the_car_is_at_the_tolerance(radius: float, hand: int, tolerance: float) -> None:
-    road, world = bent(radius, hand), World(oob_tolerance=tolerance)
+    road, world = bent(radius, hand), World(limits=Limits(oob_tolerance=tolerance))
     lane, drive = lane_of(road), random_drive(bent(radius, hand), seed=3)
     off = []
     for i, margin in enumerate(margins(road, drive, world)):
@@ -75,7 +75,7 @@ def test_the_verdict_is_shapelys_on_real_drives() -> None:
     ended = set()
     for radius, cut in ((15.0, 9.0), (15.0, 2.0), (30.0, 14.0), (60.0, 4.8)):
         for hand in (-1, 1):
-            road, world = bent(radius, hand), World(oob_tolerance=0.85)
+            road, world = bent(radius, hand), World(limits=Limits(oob_tolerance=0.85))
             drive = SlipperyBicycle().simulate(road, world, BeamngLike(cut=cut), 0, keep_driving=True)
             lane = lane_of(road)
             # The step of the goal is not asked about the lane.

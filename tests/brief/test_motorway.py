@@ -15,7 +15,7 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.cli.app import app
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
-from roadgpt.road import Road, World, build
+from roadgpt.road import Road, Site, World, build
 
 NAMES = (
     "a motorway",
@@ -42,7 +42,7 @@ def tightest_and_steepest(road: Road) -> tuple[float, float]:
 @pytest.mark.parametrize("words", NAMES)
 @pytest.mark.parametrize("size", [2000, 4000])
 def test_where_there_is_room_it_is_wide_and_nowhere_steep(words: str, size: float) -> None:
-    brief, world = read(words, map_size=size), World(map_size=size)
+    brief, world = read(words, map_size=size), World(site=Site(map_size=size))
     assert brief.motorway
     for seed in range(3):
         road = build(draft(brief, world, seed=seed))
@@ -66,13 +66,13 @@ def test_where_there_is_none_that_is_said_and_grades_are_kept(words: str) -> Non
     for seed in range(3):
         _, grade = tightest_and_steepest(build(draft(brief, world, seed=seed)))
         assert grade <= 5
-    wide = build(draft(read(words, map_size=size), World(map_size=size), seed=1))
+    wide = build(draft(read(words, map_size=size), World(site=Site(map_size=size)), seed=1))
     assert tightest_and_steepest(wide)[0] > 590
 
 
 def test_a_road_that_is_none_breaks_the_promise() -> None:
-    brief, world = read("a motorway"), World(map_size=4000)
-    tight = build(draft(read("a road with 2 sweeping turns"), World(map_size=4000), seed=1))
+    brief, world = read("a motorway"), World(site=Site(map_size=4000))
+    tight = build(draft(read("a road with 2 sweeping turns"), World(site=Site(map_size=4000)), seed=1))
     assert any("radius" in finding.sentence for finding in check.inspect(tight, brief, world))
     assert any("600" in finding.sentence for finding in check.inspect(tight, brief, world))
 
@@ -88,13 +88,13 @@ def test_a_road_that_is_none_breaks_the_promise() -> None:
 def test_what_is_said_of_the_turns_wins_and_is_named(words: str) -> None:
     brief = read(words, "grammar", map_size=4000)
     assert "tighter ones are asked for" in remarks(brief, 4000)[0]
-    assert draft(brief, World(map_size=4000), seed=2)
+    assert draft(brief, World(site=Site(map_size=4000)), seed=2)
 
 
 def test_a_short_road_is_too_short_for_one() -> None:
     brief = read("a motorway 200 m long", "grammar", map_size=4000)
     assert "200 m of road cannot hold one" in remarks(brief, 4000)[0]
-    assert draft(brief, World(map_size=4000), seed=2)
+    assert draft(brief, World(site=Site(map_size=4000)), seed=2)
 
 
 @pytest.mark.parametrize(
@@ -124,14 +124,14 @@ def test_the_sentence_and_the_plan_hold_it() -> None:
 def test_a_turn_that_was_asked_to_be_wide_is_seen_as_one() -> None:
     brief, world = (
         read("a left turn with a radius of 600 m, then a right turn", map_size=4000),
-        World(map_size=4000),
+        World(site=Site(map_size=4000)),
     )
     road = build(draft(brief, world, seed=1))
     assert check.inspect(road, brief, world) == ()
 
 
 def test_clothoids_of_wide_turns_are_long() -> None:
-    design = draft(read("a motorway", map_size=4000), World(map_size=4000), seed=4)
+    design = draft(read("a motorway", map_size=4000), World(site=Site(map_size=4000)), seed=4)
     heading = build(design).sample().heading
     bends = np.abs(np.diff(heading)) / np.diff(build(design).sample().s)
     steps = [abs(b - a) for a, b in pairwise(bends)]
@@ -160,7 +160,7 @@ def test_it_is_said_on_the_screen_in_json_and_in_the_record(tmp_path: Path) -> N
 
 
 def test_enough_motorways_differ() -> None:
-    world, roads = World(map_size=2000), []
+    world, roads = World(site=Site(map_size=2000)), []
     brief = read("a motorway", map_size=2000)
     try:
         for seed in range(12):

@@ -105,7 +105,11 @@ def test_a_road_too_short_for_its_heights_is_refused_both_ways(words: str, reaso
 
 def test_limits_are_those_of_the_world() -> None:
     world = World()
-    assert (world.min_radius, world.max_grade, MAX_INCLINE) == (LEAST_RADIUS, STEEPEST / 100, STEEPEST)
+    assert (world.limits.min_radius, world.limits.max_grade, MAX_INCLINE) == (
+        LEAST_RADIUS,
+        STEEPEST / 100,
+        STEEPEST,
+    )
 
 
 def test_the_limits_of_another_world_count() -> None:

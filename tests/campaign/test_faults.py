@@ -41,7 +41,7 @@ from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
 from roadgpt.errors import DriverError, UsageError
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Road, Segment, Site, World, build
 from roadgpt.run import Request, Run, prove, write_run
 from roadgpt.verdict import Verdict, judge
 
@@ -104,7 +104,11 @@ def test_a_car_that_runs_wide_is_told_with_what_its_lane_asks_for() -> None:
 
 @pytest.mark.parametrize(
     ("world", "middle"),
-    [(World(lane_width=3.0), -1.5), (World(lanes="2+1", lane_width=3.5), -5.25), (World(lanes="3+2"), -10.0)],
+    [
+        (World(section=CrossSection(lane_width=3.0)), -1.5),
+        (World(section=CrossSection(lanes="2+1", lane_width=3.5)), -5.25),
+        (World(section=CrossSection(lanes="3+2")), -10.0),
+    ],
 )
 def test_the_bend_that_counts_is_that_of_the_driven_lane(world: World, middle: float) -> None:
     road = world.lay(build(design(straight(60), bend(-80, 40))))
@@ -116,7 +120,7 @@ def test_the_bend_that_counts_is_that_of_the_driven_lane(world: World, middle: f
 def test_a_bank_to_the_inside_takes_its_share_of_what_a_bend_needs() -> None:
     plain = build(design(straight(60), bend(-80, 60)))
     for ratio, angle in ((0.05, math.atan(0.05)), (0.1, math.atan(0.1))):
-        world = World(bank=ratio)
+        world = World(section=CrossSection(bank=ratio))
         road = world.lay(plain)
         drive = driven(road, 100.0, 1.5)
         run = Run(Request(world=world), 7, 7, outcome="FAIL", description="", road=road, drive=drive)
@@ -242,7 +246,7 @@ class Notes:
         self.times: list[float] = []
 
     def start(self, road: Road, world: World, seed: int) -> None:
-        self.believes = world.friction
+        self.believes = world.site.friction
 
     def steer(self, view: View) -> Command:
         self.times.append(view.time)
@@ -253,7 +257,7 @@ def test_a_late_driver_sees_what_was_and_does_not_know_of_the_grip() -> None:
     notes = Notes()
     late = LateDriver(notes, 0.06, WORLD)
     road = build(design(straight(60)))
-    late.start(road, WORLD.model_copy(update={"friction": 0.5}), 1)
+    late.start(road, WORLD.changed(friction=0.5), 1)
     numbers = dict.fromkeys(View._fields, 0.0) | {"road": road, "world": WORLD, "dt": 0.02, "image": None}
     for step in range(6):
         late.steer(View(**{**numbers, "time": step * 0.02}))  # type: ignore[arg-type]
@@ -267,7 +271,7 @@ WET = design(straight(60), bend(120, 16.0))
 
 @pytest.fixture(scope="module")
 def slid() -> Run:
-    run = prove(WET, 3, World(friction=0.5))
+    run = prove(WET, 3, World(site=Site(friction=0.5)))
     assert run.outcome == "FAIL"
     return run
 
@@ -283,7 +287,7 @@ def test_disturbed_drives_start_and_slip_as_they_are_told(slid: Run, monkeypatch
     drive_disturbed(slid, Disturbance(0.9, 0.25, 0.0))
     ((drive, world),) = seen
     assert drive["t"][0] == pytest.approx(-1.75, abs=0.02)
-    assert world.friction == pytest.approx(0.45)
+    assert world.site.friction == pytest.approx(0.45)
 
 
 def test_the_same_failure_is_repeated_alike(slid: Run) -> None:
@@ -437,7 +441,7 @@ def test_a_fault_belongs_to_a_driver_and_a_world(tmp_path: Path, other: str) -> 
     from roadgpt.run import Setup
 
     drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="grammar")}
-    world = World(friction=0.9) if other == "world" else WORLD
+    world = World(site=Site(friction=0.9)) if other == "world" else WORLD
     assert (system_of(WORLD, Setup()) == system_of(world, drivers[other])) is (other == "same")
 
 

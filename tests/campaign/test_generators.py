@@ -20,11 +20,11 @@ from roadgpt.campaign.boundary_pairs import distance, pairs_of
 from roadgpt.design import draft
 from roadgpt.design.elements import elements_of
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, World, build
+from roadgpt.road import Design, Site, World, build
 from roadgpt.run import Request, Setup
 from roadgpt.run.features import features_of
 
-WORLD = World(map_size=200)
+WORLD = World(site=Site(map_size=200))
 SMALL = {"batch": 5}
 FEW = {"batch": 5, "candidates": 2}
 SEARCHES = ("random", "genetic", "quality_diversity")

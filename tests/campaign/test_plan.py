@@ -75,7 +75,7 @@ def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
     assert [cell.name for cell in cells] == [f"c{number:02d}" for number in range(1, 13)]
     assert cells[0].brief == BRIEFS["two hairpins"]
     assert cells[-1].brief is None
-    assert cells[0].request.world.speed_limit == pytest.approx(10.0)
+    assert cells[0].request.world.limits.speed_limit == pytest.approx(10.0)
     assert cells[0].settings == {"size": 3}
     assert plan.budget == Budget(tests=9)
 

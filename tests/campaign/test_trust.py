@@ -20,7 +20,7 @@ from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.rerun import run_again
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
-from roadgpt.road import World
+from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, perform, prove, read_run, write_run
 
 DRIVER = (
@@ -43,7 +43,7 @@ def stranger() -> Iterator[None]:
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that fails, a finished campaign and an unfinished one."""
     place = tmp_path_factory.mktemp("made")
-    slippery = World(friction=0.2, speed_limit=40.0)
+    slippery = World(site=Site(friction=0.2), limits=Limits(speed_limit=40.0))
     run = perform("a road with 4 sharp turns", world=slippery, setup=PLAIN)
     assert run.outcome == "FAIL"
     write_run(run, place / "run")

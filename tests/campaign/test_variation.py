@@ -25,9 +25,9 @@ from roadgpt.check import sbft_verdict
 from roadgpt.design.elements import as_written, elements_of
 from roadgpt.design.layout import MapPose
 from roadgpt.design.writing import design_of, segments_of
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Road, Segment, Site, World, build
 
-WORLD = World(map_size=200)
+WORLD = World(site=Site(map_size=200))
 WORDS = (
     "a flat road",
     "an uphill road with 3 turns",
@@ -86,7 +86,7 @@ def test_every_variation_keeps_the_brief_and_every_rule(seed: int, words: str, k
         return
     road = build(one.design)
     assert not check.inspect(road, setting(words).brief, WORLD)
-    assert sbft_verdict(road.control_points(), WORLD.map_size)[0]
+    assert sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
     turns, grades = hands(road), slopes(road)
     if words == "a flat road":
         assert np.abs(grades).max() < 1

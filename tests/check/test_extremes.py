@@ -25,7 +25,7 @@ def objects(rule: str, road: Road) -> bool:
 def test_a_bend_between_two_samples_is_too_tight() -> None:
     peak = (Piece(40.2), Piece(0.3, 0.0, 1 / 10), Piece(0.3, 1 / 10, 0.0), Piece(41.2))
     road = Road(PieceCurve(50, 50, 0, peak), LEVEL)
-    assert np.abs(road.sample().curvature).max() < 1 / WORLD.min_radius
+    assert np.abs(road.sample().curvature).max() < 1 / WORLD.limits.min_radius
     assert tightest(road) == pytest.approx((40.5, 0.1))
     assert objects("too_tight", road)
 
@@ -33,13 +33,13 @@ def test_a_bend_between_two_samples_is_too_tight() -> None:
 def test_a_ramp_between_two_samples_is_too_steep() -> None:
     profile = GradeProfile(0.0, (0.0, 40.2, 40.5, 40.8, 80.0), (0.0, 0.0, -0.3, 0.0, 0.0))
     road = Road(PieceCurve(50, 50, 0, (Piece(80.0),)), profile)
-    assert np.abs(road.sample().grade).max() < WORLD.max_grade
+    assert np.abs(road.sample().grade).max() < WORLD.limits.max_grade
     assert steepest(road) == pytest.approx((40.5, -0.3))
     assert objects("too_steep", road)
 
 
 def test_a_sag_between_two_samples_is_below_the_floor() -> None:
-    vertex = WORLD.z_floor - 0.001
+    vertex = WORLD.site.z_floor - 0.001
     profile = GradeProfile(vertex + 0.5 * 40.5 * 0.1, (0.0, 81.0), (-0.1, 0.1))
     road = Road(PieceCurve(50, 50, 0, (Piece(81.0),)), profile)
     assert lowest(profile, 81.0) == pytest.approx((40.5, vertex))

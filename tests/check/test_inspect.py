@@ -10,9 +10,9 @@ from roadgpt.brief.model import Brief
 from roadgpt.check import Finding, inspect
 from roadgpt.errors import PartError, UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import Road, Site, World
 
-WORLD = World(map_size=200)
+WORLD = World(site=Site(map_size=200))
 
 
 @pytest.fixture(autouse=True)

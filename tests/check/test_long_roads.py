@@ -9,9 +9,9 @@ import pytest
 from roadgpt import plugins
 from roadgpt.check import inspect, sbft_verdict
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import Road, Site, World
 
-WORLD = World(map_size=10_000)
+WORLD = World(site=Site(map_size=10_000))
 SECONDS, BYTES = 2.0, 200_000_000
 
 
@@ -42,7 +42,7 @@ def test_overlap_is_found_or_ruled_out_soon_and_in_little_memory(name: str) -> N
     assert bool(found) == overlaps
     tracemalloc.start()
     inspect(Road(plan, road.elevation), None, WORLD)
-    sbft_verdict(road.control_points(), WORLD.map_size)
+    sbft_verdict(road.control_points(), WORLD.site.map_size)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak < BYTES

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from roadgpt import plugins
 from roadgpt.check import inspect
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, Site, World
 
-WORLD = World(map_size=1000)
+WORLD = World(site=Site(map_size=1000))
 SHAPE_RULES = (
     "finite",
     "number_of_points",
@@ -61,7 +61,9 @@ def objects(rule: str, road: Road, world: World = WORLD) -> bool:
 
 def is_no_close_call(road: Road) -> bool:
     """Does the verdict on overlap stay the same if lanes are 5 cm wider or narrower?"""
-    wider, narrower = (World(map_size=1000, lane_width=width) for width in (4.05, 3.95))
+    wider, narrower = (
+        World(site=Site(map_size=1000), section=CrossSection(lane_width=width)) for width in (4.05, 3.95)
+    )
     return objects("no_overlap", road, wider) == objects("no_overlap", road, narrower)
 
 
@@ -95,7 +97,7 @@ def test_a_road_whose_spline_meets_itself_is_refused_whichever_way_it_is_driven(
 def test_a_road_is_inside_the_map_where_all_its_edge_points_are(
     road: Road, x: float, y: float, turn: float
 ) -> None:
-    road, world = laid(road, x, y, turn), World(map_size=250)
+    road, world = laid(road, x, y, turn), World(site=Site(map_size=250))
     s = np.linspace(0, road.length, 4000)
     edge = np.concatenate([road.at(s, t)[:, :2] for t in (-4.0, 4.0)])
     room = min(edge.min(), 250 - edge.max())
@@ -122,4 +124,6 @@ def test_what_strict_lets_pass_the_competition_lets_pass(
 def test_a_road_is_too_steep_exactly_beyond_its_steepest_place(road: Road, limit: float) -> None:
     steepest = float(np.abs(road.elevation.grade(np.array([0.0, road.length]))).max())
     assume(abs(steepest - limit) > 0.001)
-    assert objects("too_steep", road, World(map_size=1000, max_grade=limit)) == (steepest > limit)
+    assert objects("too_steep", road, World(site=Site(map_size=1000), limits=Limits(max_grade=limit))) == (
+        steepest > limit
+    )

@@ -15,7 +15,7 @@ from roadgpt.check import Finding
 from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve, interpolate
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Limits, Road, Segment, Site, World, build
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
 WORLD = World()
@@ -128,7 +128,7 @@ class TestInsideMap:
 
     def test_a_road_far_outside_is_not_inside(self) -> None:
         road = Road.through([[300, 50], [350, 60], [400, 90], [400, 140]])
-        found = findings("inside_map", road, World(map_size=200))
+        found = findings("inside_map", road, World(site=Site(map_size=200)))
         assert "starts outside the map at (299, 54)" in found[0].sentence
 
     def test_sbft_s_spline_may_run_a_metre_too_far(self) -> None:
@@ -147,9 +147,9 @@ def felt(road: Road, world: World = WORLD) -> float:
     """Vertical acceleration, m/s^2: of heights by differences, at speeds planned on the lane itself."""
     s = np.arange(0.0, road.length, 0.25)
     bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
-    lane = line_along(road, -world.lane_width / 2)
+    lane = line_along(road, -world.section.lane_width / 2)
     level = replace(lane, crest=[0.0] * len(lane.crest))
-    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.speed_limit)))
+    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.limits.speed_limit)))
     v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
     return float((v**2 * np.abs(bend)).max())
 
@@ -179,7 +179,7 @@ class TestTooAbrupt:
 
     def test_the_car_has_to_be_that_fast_there(self) -> None:
         assert not findings("too_abrupt", humped(60, at=7, length=150))  # it has just set off
-        assert not findings("too_abrupt", humped(30), World(speed_limit=9.0))
+        assert not findings("too_abrupt", humped(30), World(limits=Limits(speed_limit=9.0)))
         hairpin = Road(
             PieceCurve(60.0, 60.0, 0.0, (Piece(80), Piece(50, 1 / 16, 1 / 16), Piece(80))),
             humped(40, at=105, length=210).elevation,
@@ -191,7 +191,7 @@ class TestTooAbrupt:
     def test_a_faster_road_needs_more(self) -> None:
         long = Road(straight(400).plan, humped(200, at=300, length=400).elevation)
         assert not findings("too_abrupt", long)
-        assert findings("too_abrupt", long, World(speed_limit=100 / 3.6))
+        assert findings("too_abrupt", long, World(limits=Limits(speed_limit=100 / 3.6)))
 
     def test_a_crest_that_was_asked_for_may_lift_the_car_till_its_wheels_are_light(self) -> None:
         asked = Brief(clauses=(Clause(kind="crest"),))
@@ -218,7 +218,7 @@ class TestTooAbrupt:
     ) -> None:
         road, world = (
             humped(min(radius, at / grade, (200 - at) / grade) * 0.99, at, 200, grade),
-            World(speed_limit=kmh / 3.6),
+            World(limits=Limits(speed_limit=kmh / 3.6)),
         )
         measured = felt(road, world)
         if abs(measured - 3) > 0.1:

@@ -126,7 +126,7 @@ def test_what_a_file_sets_is_what_the_command_works_with(home: Path, monkeypatch
 
         assert os.environ["ROADGPT_BEAMNG_LEVEL"] == "italy"
         assert os.environ["ROADGPT_BEAMNG_HEADLESS"] == "1"
-    assert (values["friction"], values["map_size"], values["verge"], values["speed_limit"]) == (
+    assert (values["friction"], values["map_size"], values["shoulder"], values["speed_limit"]) == (
         0.6,
         400,
         1,
@@ -146,10 +146,10 @@ def test_a_run_in_the_folder_is_made_as_its_file_says_and_says_so() -> None:
     result = invoke(*words, "--out", "one")
     assert result.exit_code == 0, result.output
     assert result.stderr == "roadgpt: roadgpt.toml sets reader = grammar, friction = 0.5\n"
-    assert read_run(Path("one/runs/0001")).world.friction == 0.5
+    assert read_run(Path("one/runs/0001")).world.site.friction == 0.5
     assert invoke(*words, "--out", "two", "--quiet").stderr == ""
     assert invoke(*words, "--out", "three", "--friction", "0.7", "--reader", "grammar").stderr == ""
-    assert read_run(Path("three/runs/0001")).world.friction == 0.7
+    assert read_run(Path("three/runs/0001")).world.site.friction == 0.7
 
 
 def test_the_first_place_counts(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -295,7 +295,7 @@ def test_help_is_given_whatever_a_file_says() -> None:
 
 def test_the_key_of_a_plan_is_taken_too() -> None:
     Path("roadgpt.toml").write_text("[world]\nverge = 0.5")
-    assert given()["verge"] == 0.5
+    assert given()["shoulder"] == 0.5
 
 
 def test_a_campaign_and_a_study_take_the_driver_and_the_designer_of_the_file(home: Path) -> None:

@@ -68,7 +68,7 @@ def test_the_shoulder_is_set_by_its_earlier_name_too(
     needed = {"export": ["--to", "csv"]}.get(command, [])
     something = [] if command == "study thesis" else ["something"]
     context = found.make_context("x", [*rest, *needed, *words, *something], PARENT)
-    assert context.params["verge"] == 1.5
+    assert context.params["shoulder"] == 1.5
     told = "roadgpt: '--verge' is now '--shoulder'\n" if words[0].startswith("--verge") else ""
     assert capsys.readouterr().err == told
 

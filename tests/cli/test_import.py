@@ -84,10 +84,10 @@ def test_placing_and_the_rule_have_one_measure(
     arc = f'<arc curvature="{bend!r}"/>'
     road, world, _ = _on_a_map(read_opendrive(file(folder, element(x, y, heading, length, arc), width=width)))
     assert find("rules", "inside_map")(road, None, world) == ()
-    t = np.array([-world.lane_width, world.lane_width])[:, None]
+    t = np.array([-world.section.lane_width, world.section.lane_width])[:, None]
     edges = road.at(np.linspace(0, road.length, 5_000), t)[..., :2]
     assert edges.min() > 0
-    assert edges.max() < world.map_size
+    assert edges.max() < world.site.map_size
 
 
 def test_a_map_far_away_and_deep_down_is_brought_here(tmp_path: Path) -> None:

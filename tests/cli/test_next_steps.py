@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from roadgpt.cli import app
 from roadgpt.cli.next_steps import HEAD, WithoutFailure, next_steps
-from roadgpt.road import World
+from roadgpt.road import Limits, Site, World
 from roadgpt.run import Request
 
 WORDS = ("a road with 2 turns", "--reader", "grammar", "--seed", "5")
@@ -91,13 +91,17 @@ def test_nothing_is_said_where_a_road_failed_or_few_were_driven() -> None:
 
 
 def test_what_is_set_already_is_not_proposed_again() -> None:
-    hard = World(lane_departure=True, oob_tolerance=0.4, friction=0.3, speed_limit=200 / 3.6)
+    hard = World(
+        limits=Limits(lane_departure=True, oob_tolerance=0.4, speed_limit=200 / 3.6), site=Site(friction=0.3)
+    )
     told = next_steps(WithoutFailure(REQUEST.model_copy(update={"world": hard}), 20, 20))
     assert [why for why, _ in told] == ["search for failures among such roads"]
     assert "--lane-departure" in told[0][1]
-    wet = next_steps(WithoutFailure(REQUEST.model_copy(update={"world": World(friction=0.6)}), 20, 20))
+    wet = next_steps(
+        WithoutFailure(REQUEST.model_copy(update={"world": World(site=Site(friction=0.6))}), 20, 20)
+    )
     assert any("--friction 0.35" in command for why, command in wet if why == "snow")
     # what no option can say is not left out silently: there is no such command
-    odd = REQUEST.model_copy(update={"world": World(min_radius=30.0)})
+    odd = REQUEST.model_copy(update={"world": World(limits=Limits(min_radius=30.0))})
     assert next_steps(WithoutFailure(odd, 20, 20)) == []
     assert next_steps(WithoutFailure(Request(), 20, 20)) == []

@@ -14,7 +14,7 @@ from roadgpt.cli import app
 from roadgpt.cli.options import CHAT, SETUP, WORLD, world_of
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.summary import show
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.run import Request, Run, Setup, prove, write_run
 from run.doubles import folder_of
 
@@ -51,7 +51,9 @@ def test_a_line_names_only_what_differs() -> None:
     odd = Request(
         words="a road",
         seed=2,
-        world=World(speed_limit=100 / 3.6, friction=0.35, verge=0),
+        world=World(
+            limits=Limits(speed_limit=100 / 3.6), site=Site(friction=0.35), section=CrossSection(shoulder=0)
+        ),
         setup=Setup(designer="thesis", driver="a b.py:D", geometry="spline", keep_driving=True, rules="sbft"),
     )
     line, again = replay_lines(a_run(odd), PLACE)
@@ -74,11 +76,11 @@ SETUPS = st.builds(
     drives=st.booleans(),
 )
 WORLDS = st.builds(
-    World,
+    World().changed,
     map_size=st.floats(50, 10_000),
     speed_limit=st.floats(5, 300).map(lambda kmh: kmh / 3.6),
     oob_tolerance=st.floats(0.01, 1),
-    verge=st.floats(0, 100),
+    shoulder=st.floats(0, 100),
     friction=st.floats(0.01, 2),
 )
 

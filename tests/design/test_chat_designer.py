@@ -15,7 +15,7 @@ from roadgpt.design.asking import demands, drawn_start, request, rules
 from roadgpt.design.designers.chat import ChatDesigner
 from roadgpt.design.objections import objections
 from roadgpt.errors import DesignError
-from roadgpt.road import Design, World, build, read_design
+from roadgpt.road import Design, Limits, Site, World, build, read_design
 
 WORLD = World()
 SIDES = {1: "left", -1: "right", 0: "straight"}
@@ -232,7 +232,7 @@ def test_demands_have_no_odd_words(words: str) -> None:
 
 @pytest.mark.parametrize("name", ["chat_rules.txt", "thesis_rules.txt"])
 def test_the_rules_are_filled_in_for_every_world(name: str) -> None:
-    text = rules(name, World(map_size=400, max_grade=0.1))
+    text = rules(name, World(site=Site(map_size=400), limits=Limits(max_grade=0.1)))
     assert "{map_size}" not in text
     assert "400" in text or "320" in text
 

@@ -14,7 +14,7 @@ from roadgpt.design import draft
 from roadgpt.design.edit import edit
 from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Segment, World, build, in_short_segments
+from roadgpt.road import Design, Segment, Site, World, build, in_short_segments
 
 WORLD = World()
 ROADS = roads()
@@ -165,7 +165,7 @@ def test_a_road_of_hops_and_splines_is_changed_as_it_is_seen() -> None:
 
 
 def test_roads_on_other_maps_keep_inside() -> None:
-    world = World(map_size=120)
+    world = World(site=Site(map_size=120))
     design = draft(Brief(), world, seed=3)
     after = edit(design, "add a left turn at the end", world).design
     assert check.inspect(build(after), None, world) == ()

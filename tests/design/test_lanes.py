@@ -8,9 +8,9 @@ from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
 from roadgpt.design.repair import repair
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import CrossSection, Design, Segment, World, build
 
-WORLD = World(lanes="3+2", lane_width=3.5, bank="auto")
+WORLD = World(section=CrossSection(lanes="3+2", lane_width=3.5, bank="auto"))
 BRIEF = read("a road with 3 turns", "grammar")
 
 

@@ -60,12 +60,12 @@ def test_a_placed_road_lies_inside_the_map(elements: list[Element], seed: int) -
     world, line = World(), walk(elements)
     where = place(line, world, np.random.default_rng(seed))
     if where is None:
-        assert smallest_box(line) > world.map_size - world.road_width - 15
+        assert smallest_box(line) > world.site.map_size - world.section.road_width - 15
         return
     road = build(built(elements, *where))
     edges = np.concatenate([road.at(road.sample(0.5).s, t)[:, :2] for t in (-4, 4)])
     assert edges.min() > 0.05
-    assert edges.max() < world.map_size - 0.05
+    assert edges.max() < world.site.map_size - 0.05
 
 
 @settings(max_examples=100, deadline=None)

@@ -12,7 +12,7 @@ from roadgpt.brief.map_fit import longest_straight
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.errors import RoadGPTError
-from roadgpt.road import Road, World, build
+from roadgpt.road import CrossSection, Road, Site, World, build
 from roadgpt.run import Setup, brief_of
 
 GRAMMAR = Setup(reader="grammar")
@@ -61,7 +61,7 @@ def cases(number: int) -> list[tuple[str, int, int]]:
 
 @pytest.mark.parametrize(("words", "size", "seed"), cases(24))
 def test_what_is_offered_holds(words: str, size: int, seed: int) -> None:
-    world = World(map_size=size)
+    world = World(site=Site(map_size=size))
     said = refusal(words, world)
     if not said:
         return
@@ -73,18 +73,18 @@ def test_what_is_offered_holds(words: str, size: int, seed: int) -> None:
     if offers:
         assert drafted(re.sub(r"\d+ m", f"{offers[1]} m", words, count=1), world, seed)
     if larger:
-        assert drafted(words, World(map_size=float(larger[1])), seed)
+        assert drafted(words, World(site=Site(map_size=float(larger[1]))), seed)
 
 
 def test_enough_of_the_descriptions_are_refused() -> None:
-    tried = ((words, World(map_size=size)) for words, size, _ in cases(24))
+    tried = ((words, World(site=Site(map_size=size))) for words, size, _ in cases(24))
     assert len(list(islice((1 for words, world in tried if refusal(words, world)), 12))) == 12
 
 
 @pytest.mark.parametrize("size", [100, 200, 250, 1000, 4000, 10_000])
 @pytest.mark.parametrize("words", ["a straight road of {:.0f} m", "a straight road of at least {:.0f} m"])
 def test_a_straight_road_goes_from_corner_to_corner(words: str, size: float) -> None:
-    world = World(map_size=size)
+    world = World(site=Site(map_size=size))
     longest = longest_straight(size)
     road = drafted(words.format(longest - 1), world, seed=int(size))
     assert road.length > 0.88 * longest if "least" not in words else road.length >= int(longest - 1)
@@ -97,7 +97,7 @@ def test_a_straight_road_goes_from_corner_to_corner(words: str, size: float) -> 
 
 
 def test_wider_lanes_leave_less_room() -> None:
-    wide = World(map_size=100, lane_width=8.0)
+    wide = World(site=Site(map_size=100), section=CrossSection(lane_width=8.0))
     with pytest.raises(RoadGPTError, match=f"ask for {int(longest_straight(100, 16.0))} m"):
         brief_of("a straight road of 200 m", wide, GRAMMAR)
     assert drafted("a straight road of 110 m", wide, seed=1).length <= longest_straight(100, 16.0)
@@ -114,7 +114,7 @@ def test_wider_lanes_leave_less_room() -> None:
     ],
 )
 def test_maps_of_any_size_work_with_the_default_reader(words: str, size: float) -> None:
-    world = World(map_size=size)
+    world = World(site=Site(map_size=size))
     brief = read(words, map_size=size)
     assert check.inspect(build(draft(brief, world, seed=3)), brief, world) == ()
 
@@ -132,7 +132,7 @@ def test_maps_of_any_size_work_with_the_default_reader(words: str, size: float) 
 )
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_long_road_has_turns_all_along(words: str, size: float, least_turns: int, seed: int) -> None:
-    world = World(map_size=size)
+    world = World(site=Site(map_size=size))
     road = drafted(words, world, seed)
     turns = measure(road.centreline()).turns
     assert len(turns) >= least_turns
@@ -141,7 +141,7 @@ def test_a_long_road_has_turns_all_along(words: str, size: float, least_turns: i
 
 
 def test_the_same_seed_grows_the_same_road() -> None:
-    brief, world = read("a winding road of 2 km", "grammar", map_size=1000), World(map_size=1000)
+    brief, world = read("a winding road of 2 km", "grammar", map_size=1000), World(site=Site(map_size=1000))
     one, same, other = (draft(brief, world, seed=seed) for seed in (5, 5, 6))
     assert one == same != other
 

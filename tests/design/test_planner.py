@@ -17,7 +17,7 @@ from roadgpt.design.designers.planner import Planner
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.vertical import Pace
 from roadgpt.errors import DesignError, PartError
-from roadgpt.road import Design, World, build, read_design
+from roadgpt.road import CrossSection, Design, Limits, Site, World, build, read_design
 from strategies import briefs, sensible_briefs, worlds
 
 planner = Planner()
@@ -54,7 +54,7 @@ def attempt(brief: Brief, world: World, seed: int) -> Design | str:
 def assert_fine(design: Design, brief: Brief, world: World) -> None:
     road = build(design)
     assert check.inspect(road, brief, world) == ()
-    assert check.sbft_verdict(road.control_points(), world.map_size) == (True, "")
+    assert check.sbft_verdict(road.control_points(), world.site.map_size) == (True, "")
     assert all(abs(segment.turn_degrees) <= 70 for segment in design.segments)
     assert all(abs(segment.incline) <= 15 for segment in design.segments)
     assert read_design(design.to_json()) == (design, ())
@@ -86,7 +86,7 @@ def test_roads_of_one_prompt_are_fine_and_look_every_way(name: str) -> None:
         assert_fine(design, brief, WORLD)
     assert {int(design.theta // 45) for design in designs} == set(range(8))
     starts = np.array([design.starting_point[:2] for design in designs])
-    assert (np.ptp(starts, axis=0) > WORLD.map_size / 2).all()
+    assert (np.ptp(starts, axis=0) > WORLD.site.map_size / 2).all()
 
 
 def test_what_words_leave_open_is_drawn_widely() -> None:
@@ -129,7 +129,7 @@ def test_roads_begin_and_end_straight() -> None:
 
 
 def test_roads_stay_above_the_floor() -> None:
-    deep = World(z_floor=30.0)
+    deep = World(site=Site(z_floor=30.0))
     for seed in range(10):
         design = planner.draft(Brief(slope="down"), deep, (), (), seed)
         assert build(design).centreline()[:, 2].min() > 30
@@ -182,7 +182,7 @@ RAMPS = [(25, 12, 30), (40, 10, 70), (40, 14, 50), (30, 8, 70), (60, 12, 70)]
 def test_a_short_ramp_between_level_straights_is_as_steep_as_asked(
     length: int, percent: int, kmh: float, way: str
 ) -> None:
-    world = World(speed_limit=kmh / 3.6)
+    world = World(limits=Limits(speed_limit=kmh / 3.6))
     brief = read_plan(
         f"straight flat len=30; straight {way} len={length} pct={percent}; straight flat; turn left"
     )
@@ -244,14 +244,14 @@ def test_wishes_that_cannot_be_met_get_advice(brief: Brief, sentence: str) -> No
 
 
 ODD_WORLDS = [
-    World(map_size=60),
-    World(map_size=2000),
-    World(lane_width=6),
-    World(lane_width=2.5, verge=0),
-    World(min_radius=40),
-    World(max_grade=0.06),
-    World(z_floor=100),
-    World(min_length=150),
+    World(site=Site(map_size=60)),
+    World(site=Site(map_size=2000)),
+    World(section=CrossSection(lane_width=6)),
+    World(section=CrossSection(lane_width=2.5, shoulder=0)),
+    World(limits=Limits(min_radius=40)),
+    World(limits=Limits(max_grade=0.06)),
+    World(site=Site(z_floor=100)),
+    World(limits=Limits(min_length=150)),
 ]
 
 
@@ -266,7 +266,7 @@ def test_the_map_that_is_advised_is_large_enough() -> None:
     brief = Brief(length=exactly(1900))
     with pytest.raises(DesignError, match="--map-size") as caught:
         planner.draft(brief, WORLD, (), (), 1)
-    world = World(map_size=float(str(caught.value).split("--map-size ")[1]))
+    world = World(site=Site(map_size=float(str(caught.value).split("--map-size ")[1])))
     assert_fine(planner.draft(brief, world, (), (), 1), brief, world)
 
 

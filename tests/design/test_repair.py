@@ -122,7 +122,7 @@ def test_any_list_comes_back_as_a_road_with_its_changes_told(design: Design, wor
         assert after == design
     if how == "place":
         assert after.segments == design.segments
-        low, high = -1e-9, world.map_size + 1e-9
+        low, high = -1e-9, world.site.map_size + 1e-9
         if is_valid(design, None, world):
             assert after == design
         elif (after.starting_point, after.theta) != (design.starting_point, design.theta):

@@ -23,7 +23,7 @@ from roadgpt.design.vertical import softened
 from roadgpt.design.writing import design_of
 from roadgpt.drive.driving_line import line_along
 from roadgpt.errors import DesignError
-from roadgpt.road import Design, World, build, read_design
+from roadgpt.road import Design, Limits, Site, World, build, read_design
 from roadgpt.road.elevation import vertical_curves
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -44,9 +44,9 @@ def felt(design: Design, world: World = WORLD) -> float:
     road = build(design)
     s = np.arange(0.0, road.length, 0.25)
     bend = np.gradient(np.gradient(road.at(s)[:, 2], 0.25), 0.25)[4:-4]
-    lane = line_along(road, -world.lane_width / 2)
+    lane = line_along(road, -world.section.lane_width / 2)
     level = replace(lane, crest=[0.0] * len(lane.crest))
-    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.speed_limit)))
+    speed = np.array(plan_speed(level, DrivingLimits(0.64, 0.9, 0.7, world.limits.speed_limit)))
     v = np.interp(s[4:-4], lane.step * np.arange(len(speed)), speed)
     return float((v**2 * np.abs(bend)).max())
 
@@ -54,14 +54,14 @@ def felt(design: Design, world: World = WORLD) -> float:
 @pytest.mark.parametrize("words", WORDS)
 @pytest.mark.parametrize("kmh", [50, 70, 110])
 def test_no_draft_is_too_abrupt_for_its_speed(words: str, kmh: float) -> None:
-    brief, world = read(words), World(speed_limit=kmh / 3.6)
+    brief, world = read(words), World(limits=Limits(speed_limit=kmh / 3.6))
     for seed in range(6):
         assert felt(draft(brief, world, seed=seed), world) <= 3.05
 
 
 @pytest.mark.parametrize("kmh", [50, 70, 110])
 def test_roads_whose_slopes_nobody_asked_for_are_comfortable(kmh: float) -> None:
-    world = World(speed_limit=kmh / 3.6)
+    world = World(limits=Limits(speed_limit=kmh / 3.6))
     most = [felt(draft(read("a road"), world, seed=seed), world) for seed in range(20)]
     assert max(most) <= 0.52
     assert sum(value > 0.1 for value in most) > 3  # and they do have slopes
@@ -78,7 +78,7 @@ def test_slopes_that_cannot_be_had_at_the_speed_are_refused_in_a_sentence() -> N
     brief = read_plan("straight flat len=30; straight up len=25 pct=12; straight flat; turn left")
     with pytest.raises(DesignError, match=r"too fast for a speed limit of 70 km/h.*--speed-limit [35]0"):
         draft(brief, WORLD, seed=1)
-    slow = World(speed_limit=30 / 3.6)
+    slow = World(limits=Limits(speed_limit=30 / 3.6))
     assert felt(draft(brief, slow, seed=1), slow) <= 3.05
 
 
@@ -170,7 +170,7 @@ def test_roads_with_hairpins_climb_or_fall_steadily_over_legs(kind: str) -> None
 
 def test_hairpins_are_fewer_or_nearer_only_where_the_map_is_small() -> None:
     brief = Brief(clauses=(Clause(kind="hairpin", count=at_least(2)),))
-    small = World(map_size=90)
+    small = World(site=Site(map_size=90))
     turns = measure(build(draft(brief, small, seed=1)).centreline()).turns
     assert len(turns) >= 2
 

@@ -36,7 +36,7 @@ class SlipperyBicycle:
         bend = np.where(stations > road.length, 0.0, road.curvature(stations)).tolist()
         ways = road.heading(np.minimum(stations, road.length)).tolist()
         slope = road.grade(np.minimum(stations, road.length)).tolist()
-        middle = -world.lane_width / 2
+        middle = -world.section.lane_width / 2
         s, t, psi, vx, vy, r, steer, time = START, middle, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         rows: list[dict[str, float]] = []
         ended, still_since, still_at = "", 0.0, s
@@ -48,7 +48,7 @@ class SlipperyBicycle:
             speed = math.hypot(vx, vy)
             view = View(time, x, y, z + 0.5, yaw, speed, r, s, t, road, world, steer, 0.02, vx, vy)
             command: Command = driver.steer(view)
-            out = share_outside(t, psi, k, world.lane_width)
+            out = share_outside(t, psi, k, world.section.lane_width)
             row = dict.fromkeys(COLUMNS, 0.0)
             row |= {"time": time, "x": x, "y": y, "z": z + 0.5, "heading": yaw, "vx": vx, "vy": vy}
             row |= {"yaw_rate": r, "speed": speed, "steer": steer, "throttle": command.throttle}
@@ -60,9 +60,9 @@ class SlipperyBicycle:
                 ended = "goal"
             elif time - still_since >= STUCK:
                 ended = "stuck"
-            elif out > world.oob_tolerance and not keep_driving:
+            elif out > world.limits.oob_tolerance and not keep_driving:
                 ended = "out_of_lane"
-            elif abs(t) - BOX.width / 2 > world.lane_width + world.verge:
+            elif abs(t) - BOX.width / 2 > world.section.lane_width + world.section.shoulder:
                 ended = "fell"
             elif time >= LONGEST:
                 ended = "timeout"
@@ -71,13 +71,13 @@ class SlipperyBicycle:
                 steer += min(max(command.steer - steer, -0.8 * DT), 0.8 * DT)
                 pull = MASS * min(6.8, 82.0 / max(vx, 1.0)) * min(max(command.throttle, 0), 1)
                 push = MASS * 13.0 * min(max(command.brake, 0), 1) if vx > 0.05 else 0.0
-                most = world.friction * MASS * 9.81
+                most = world.site.friction * MASS * 9.81
                 force = min(max(pull - push, -0.98 * most), 0.98 * most)
                 front, rear = MASS * 9.81 * B / (A + B), MASS * 9.81 * A / (A + B)
                 v = max(vx, 1.0)
                 share = front / (front + rear)
-                f = tyre(steer - math.atan2(vy + A * r, v), front, world.friction, force * share)
-                b = tyre(-math.atan2(vy - B * r, v), rear, world.friction, force * (1 - share))
+                f = tyre(steer - math.atan2(vy + A * r, v), front, world.site.friction, force * share)
+                b = tyre(-math.atan2(vy - B * r, v), rear, world.site.friction, force * (1 - share))
                 fade = min(vx / 2.0, 1.0)
                 ax = (force - f * math.sin(steer)) / MASS - 9.81 * grade - 3e-4 * vx * vx
                 vx = max(vx + DT * (ax + vy * r), 0.0)

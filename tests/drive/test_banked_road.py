@@ -17,7 +17,7 @@ from roadgpt.drive.simulators.mujoco.dynamics import FX, FY, LOAD
 from roadgpt.drive.simulators.mujoco.vehicle import Vehicle
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.road.profile import Profile
 from roadgpt.road.speed_profile import SLOWEST, DrivingLimits, expected_speed, plan_speed
 from roadgpt.verdict import judge
@@ -155,7 +155,7 @@ def banked_straight(angle: float) -> Road:
 
 
 def inclined(angle: float, t: float = 0.0, **world: float) -> Vehicle:
-    car = Vehicle.on(banked_straight(angle), World(**world))
+    car = Vehicle.on(banked_straight(angle), World().changed(**world))
     car.put(60.0, t)
     return car
 
@@ -220,7 +220,7 @@ def curve(bank: object, speed: float = 16.0) -> tuple[Road, World]:
             Piece(50, 0, 0),
         ),
     )
-    world = World(map_size=500, speed_limit=30.0, bank=bank)
+    world = World(site=Site(map_size=500), limits=Limits(speed_limit=30.0), section=CrossSection(bank=bank))
     return world.lay(Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))), world
 
 
@@ -250,7 +250,12 @@ def test_beamng_refuses_a_road_with_superelevation() -> None:
         with pytest.raises(UsageError, match="cannot incline roads"):
             simulate(road, made, "reference", simulator=BeamngSimulator())
     with pytest.raises(UsageError, match="leave out --bank"):
-        simulate(road.with_profile(None), World(bank="auto"), "reference", simulator=BeamngSimulator())
+        simulate(
+            road.with_profile(None),
+            World(section=CrossSection(bank="auto")),
+            "reference",
+            simulator=BeamngSimulator(),
+        )
 
 
 def test_the_drive_says_where_the_car_is_on_the_surface() -> None:
@@ -308,7 +313,10 @@ def test_a_bank_that_is_steeper_than_the_grip_lets_no_car_set_off() -> None:
 
 def test_a_speed_is_expected_of_a_road_that_is_not_laid_yet() -> None:
     bend = np.full(400, 1 / 60)
-    usual, banked = World(speed_limit=30.0), World(speed_limit=30.0, bank=0.08)
+    usual, banked = (
+        World(limits=Limits(speed_limit=30.0)),
+        World(limits=Limits(speed_limit=30.0), section=CrossSection(bank=0.08)),
+    )
     e, k = math.atan(0.08), 1 / (60 + 2 * math.cos(math.atan(0.08)))
     want = math.sqrt((0.64 * math.cos(e) + math.sin(e)) / (math.cos(e) - 0.64 * math.sin(e)) * G / k)
     assert expected_speed(bend, 0.0, 1.0, banked)[-1] == pytest.approx(want, rel=1e-6)

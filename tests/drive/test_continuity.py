@@ -17,7 +17,7 @@ from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.session import leave_all
 from roadgpt.drive.simulators.mujoco import MujocoSimulator
 from roadgpt.errors import SimulationError
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.run import Setup, prove
 
 STRAIGHT = Road.through([[40, 100], [90, 100], [140, 100]])
@@ -115,7 +115,11 @@ def test_what_cars_do_is_no_jump() -> None:
         def steer(self, view: Any) -> Any:
             return super().steer(view)._replace(steer=0.3, throttle=1.0, brake=0.0)
 
-    for world in (World(verge=0), World(speed_limit=300 / 3.6, friction=2.0), World(friction=0.05)):
+    for world in (
+        World(section=CrossSection(shoulder=0)),
+        World(limits=Limits(speed_limit=300 / 3.6), site=Site(friction=2.0)),
+        World(site=Site(friction=0.05)),
+    ):
         for driver in (Throttle, BeamngLike):
             for keep_driving in (False, True):
                 check_motion(simulate(STRAIGHT, world, driver(), keep_driving=keep_driving))

@@ -16,7 +16,7 @@ from roadgpt.drive.drivers.beamng_like import HALF_TRACK, BeamngLike
 from roadgpt.drive.drivers.pure_pursuit import PurePursuit
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import stations
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Limits, Road, Segment, Site, World, build
 from roadgpt.verdict import judge
 
 SHELF = plugins.names("drivers")
@@ -66,7 +66,7 @@ def test_every_driver_answers_with_a_command_and_drives_the_same_twice(name: str
         assert ((first[pedal] >= 0) & (first[pedal] <= 1)).all()
     assert not ((first["throttle"] > 0) & (first["brake"] > 0)).any()
     assert first.driver == name
-    assert first["speed"].max() < USUAL.speed_limit + 1.5
+    assert first["speed"].max() < USUAL.limits.speed_limit + 1.5
 
 
 @pytest.mark.parametrize("name", SHELF)
@@ -94,7 +94,7 @@ def test_every_driver_copes_with_a_road_through_a_few_points(name: str) -> None:
 @given(seed=st.integers(0, 10_000), kmh=st.sampled_from([40, 70, 100]), friction=st.sampled_from([1.0, 0.6]))
 @settings(max_examples=12, deadline=None)
 def test_the_reference_stays_in_the_middle(seed: int, kmh: int, friction: float) -> None:
-    road, world = hilly(seed), World(speed_limit=kmh / 3.6, friction=friction)
+    road, world = hilly(seed), World(limits=Limits(speed_limit=kmh / 3.6), site=Site(friction=friction))
     seen = drive(road, Reference(), world)
     assert np.abs(seen["t"] + 2.0).max() < 0.35
     assert judge(road, seen, world).kept
@@ -116,7 +116,7 @@ def test_the_reference_takes_bends_at_its_risk_and_not_above() -> None:
 
 
 def test_the_reference_knows_a_slippery_road_and_beamng_like_takes_it_for_dry() -> None:
-    road, snow = bent(30.0, -1), World(friction=0.35)
+    road, snow = bent(30.0, -1), World(site=Site(friction=0.35))
     slow = drive(road, Reference(), snow)
     assert slow["speed"][(slow["s"] > 50) & (slow["s"] < 65)].max() < math.sqrt(0.35 * 9.81 * 28)
     assert judge(road, slow, snow).kept
@@ -146,7 +146,7 @@ def test_beamng_like_is_parked_in_the_lanes_middle_and_swings_into_its_line() ->
 def test_beamng_like_cuts_in_and_more_so_when_it_may_go_faster(hand: int) -> None:
     road, most = bent(18.0, hand), []
     for kmh in (40, 70, 100):
-        inside = hand * (drive(road, BeamngLike(), World(speed_limit=kmh / 3.6))["t"] + 2.0)
+        inside = hand * (drive(road, BeamngLike(), World(limits=Limits(speed_limit=kmh / 3.6)))["t"] + 2.0)
         most.append(inside.max())
     assert most == sorted(most)
     assert most[0] > 1.0
@@ -155,7 +155,7 @@ def test_beamng_like_cuts_in_and_more_so_when_it_may_go_faster(hand: int) -> Non
 
 def test_beamng_like_minds_the_edge_of_a_floating_road_only() -> None:
     road = bent(16.0, -1)
-    floating = World(verge=0.0)
+    floating = World(section=CrossSection(shoulder=0.0))
     edge = HALF_TRACK - 4.0
     assert BeamngLike().offsets(road, floating).min() >= edge + 0.3 - 1e-9
     assert BeamngLike(edge_room=None).offsets(road, floating).min() < edge
@@ -171,8 +171,8 @@ def test_pure_pursuit_is_the_weaker_one() -> None:
 
 def test_pure_pursuit_cuts_in_when_slow_and_runs_wide_when_fast() -> None:
     road = bent(40.0, 1, degrees=69.0)
-    slow = drive(road, PurePursuit(nearest=12.0), World(speed_limit=15 / 3.6))
-    fast = drive(road, PurePursuit(risk=0.9), World(speed_limit=28.0))
+    slow = drive(road, PurePursuit(nearest=12.0), World(limits=Limits(speed_limit=15 / 3.6)))
+    fast = drive(road, PurePursuit(risk=0.9), World(limits=Limits(speed_limit=28.0)))
     bend = 60.0, 85.0
     for seen, way in ((slow, 1), (fast, -1)):
         here = (seen["s"] > bend[0]) & (seen["s"] < bend[1])

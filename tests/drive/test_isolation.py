@@ -17,7 +17,7 @@ from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.isolation import IsolatedDriver, driver_of, process
 from roadgpt.drive.loading import load_driver
 from roadgpt.errors import DriverError, UsageError
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import Design, Road, Segment, Site, World, build
 
 HEAD = """
 import ctypes, os, signal, sys, threading, time
@@ -62,7 +62,7 @@ def test_ours_sit_here_and_all_others_apart(spec) -> None:
 def test_a_driver_apart_drives_the_same_bytes_as_here(tmp_path: Path) -> None:
     copy = tmp_path / "copy.py"
     copy.write_text(Path(sys.modules[Reference.__module__].__file__).read_text())
-    road, world = bent(), World(friction=0.8)
+    road, world = bent(), World(site=Site(friction=0.8))
     apart = simulate(road, world, driver_of(f"{copy}:Reference"), 3)
     assert apart.to_bytes() == simulate(road, world, Reference(), 3).to_bytes()
 

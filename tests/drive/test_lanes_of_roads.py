@@ -9,7 +9,7 @@ import shapely
 from roadgpt.drive import simulate
 from roadgpt.drive.simulators.mujoco.vehicle import Vehicle
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, Site, World
 from roadgpt.verdict import consult, judge
 from roadgpt.verdict.margin import margins
 
@@ -30,25 +30,28 @@ ROAD = Road(PLAN, GradeProfile(3.0, (0.0, 120.0, 260.0), (0.06, -0.05, 0.0)))
 def width(world: World, s: np.ndarray) -> np.ndarray:
     """3 u^2 - 2 u^3 from the first width to the last."""
     u = np.asarray(s) / LENGTH
-    end = world.lane_width if world.lane_width_end is None else world.lane_width_end
-    return world.lane_width + (end - world.lane_width) * u * u * (3 - 2 * u)
+    end = world.section.lane_width if world.section.lane_width_end is None else world.section.lane_width_end
+    return world.section.lane_width + (end - world.section.lane_width) * u * u * (3 - 2 * u)
 
 
 def inner(world: World, s: np.ndarray) -> np.ndarray:
     """Distance from the centre line to the left edge of the rightmost lane."""
-    return (int(world.lanes[0]) - 1) * width(world, s)
+    return (int(world.section.lanes[0]) - 1) * width(world, s)
 
 
 WORLDS = {
-    "3 m": World(lane_width=3.0),
-    "4 m": World(lane_width=4.0),
-    "3 to 4 m": World(lane_width=3.0, lane_width_end=4.0),
-    "2+1": World(lanes="2+1", lane_width=3.5),
-    "3+2": World(lanes="3+2", lane_width=3.25),
-    "1+0": World(lanes="1+0", lane_width=3.75),
-    "2+0, widening": World(lanes="2+0", lane_width=2.75, lane_width_end=3.5),
+    "3 m": World(section=CrossSection(lane_width=3.0)),
+    "4 m": World(section=CrossSection(lane_width=4.0)),
+    "3 to 4 m": World(section=CrossSection(lane_width=3.0, lane_width_end=4.0)),
+    "2+1": World(section=CrossSection(lanes="2+1", lane_width=3.5)),
+    "3+2": World(section=CrossSection(lanes="3+2", lane_width=3.25)),
+    "1+0": World(section=CrossSection(lanes="1+0", lane_width=3.75)),
+    "2+0, widening": World(section=CrossSection(lanes="2+0", lane_width=2.75, lane_width_end=3.5)),
 }
-BANKS = {"3 m, 8 %": World(lane_width=3.0, bank=0.08), "2+1, CD 109": World(lanes="2+1", bank="auto")}
+BANKS = {
+    "3 m, 8 %": World(section=CrossSection(lane_width=3.0, bank=0.08)),
+    "2+1, CD 109": World(section=CrossSection(lanes="2+1", bank="auto")),
+}
 EVERY = {**WORLDS, **BANKS}
 
 
@@ -117,11 +120,11 @@ def test_the_share_outside_is_that_of_shapely(name: str) -> None:
 @pytest.mark.parametrize("tolerance", [0.05, 0.5, 0.95])
 def test_the_margin_is_the_way_to_the_failure(name: str, tolerance: float) -> None:
     """Shifts the box of the car across the road until shapely says that it fails."""
-    world = EVERY[name].model_copy(update={"oob_tolerance": tolerance})
+    world = EVERY[name].changed(oob_tolerance=tolerance)
     road = world.lay(ROAD)
     drive = simulate(ROAD, world, Wanders(0.04), keep_driving=True)
     found, lane = margins(road, drive, world), lane_of(road, world)
-    forward, backward = int(world.lanes[0]), int(world.lanes[2])
+    forward, backward = int(world.section.lanes[0]), int(world.section.lanes[2])
     s = np.linspace(1e-3, LENGTH - 1e-3, 1200)
     rims = [
         offset_line(road, side * (n * width(world, s) + 3.0), s) for side, n in ((1, backward), (-1, forward))
@@ -160,7 +163,7 @@ def test_the_distance_of_the_competition_is_that_to_the_middle(name: str) -> Non
 
 
 def test_the_next_lane_of_the_same_direction_is_outside() -> None:
-    world = World(lanes="2+1", lane_width=3.5)
+    world = World(section=CrossSection(lanes="2+1", lane_width=3.5))
 
     class Leaves:
         def steer(self, view):
@@ -180,10 +183,14 @@ def test_the_next_lane_of_the_same_direction_is_outside() -> None:
 @pytest.mark.parametrize(
     ("world", "left", "right"),
     [
-        (World(lanes="1+0", verge=0.0), 0.0, -4.0),
-        (World(lanes="2+1", lane_width=3.0, verge=0.0), 3.0, -6.0),
-        (World(lanes="1+0", lane_width=3.0, verge=1.5), 1.5, -4.5),
-        (World(lane_width=3.0, lane_width_end=4.0, verge=0.0), 3.1544, -3.1544),  # at a quarter: 3 + 5/32
+        (World(section=CrossSection(lanes="1+0", shoulder=0.0)), 0.0, -4.0),
+        (World(section=CrossSection(lanes="2+1", lane_width=3.0, shoulder=0.0)), 3.0, -6.0),
+        (World(section=CrossSection(lanes="1+0", lane_width=3.0, shoulder=1.5)), 1.5, -4.5),
+        (
+            World(section=CrossSection(lane_width=3.0, lane_width_end=4.0, shoulder=0.0)),
+            3.1544,
+            -3.1544,
+        ),  # at a quarter: 3 + 5/32
     ],
 )
 def test_the_ground_ends_at_the_rim_of_its_own_side(world: World, left: float, right: float) -> None:
@@ -202,7 +209,11 @@ def test_the_ground_ends_at_the_rim_of_its_own_side(world: World, left: float, r
 def test_the_likeness_of_beamng_keeps_off_both_edges_of_a_floating_one_way_road() -> None:
     for hand in (1, -1):
         plan = PieceCurve(0, 0, 0, (Piece(60, 0, 0), Piece(60, hand * 0.03, hand * 0.03), Piece(40, 0, 0)))
-        world = World(map_size=500, lanes="1+0", lane_width=3.5, verge=0.0, speed_limit=12.0)
+        world = World(
+            site=Site(map_size=500),
+            section=CrossSection(lanes="1+0", lane_width=3.5, shoulder=0.0),
+            limits=Limits(speed_limit=12.0),
+        )
         road = Road(plan, GradeProfile(0.0, (0.0, plan.length), (0.0, 0.0)))
         drive = simulate(road, world, "beamng_like", keep_driving=True)
         assert drive.ended == "goal"

@@ -16,7 +16,7 @@ import roadgpt
 from roadgpt.drive import COLUMNS, Command, Drive, Simulator, simulate
 from roadgpt.drive.simulators.mujoco import ETK_LIKE, MujocoSimulator, Vehicle
 from roadgpt.errors import DriverError, PartError, SimulationError
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Limits, Road, Segment, Site, World, build
 
 WORLD = World()
 
@@ -136,9 +136,9 @@ def test_the_columns_agree_with_each_other():
 def test_who_never_steers_leaves_the_lane_and_the_drive_ends_there():
     done = drive(BEND, Does(0.0, 0.4))
     assert done.ended == "out_of_lane"
-    assert done["outside"][-1] > WORLD.oob_tolerance
-    assert done["outside"][:-1].max() <= WORLD.oob_tolerance
-    strict = drive(BEND, Does(0.0, 0.4), World(oob_tolerance=0.5))
+    assert done["outside"][-1] > WORLD.limits.oob_tolerance
+    assert done["outside"][:-1].max() <= WORLD.limits.oob_tolerance
+    strict = drive(BEND, Does(0.0, 0.4), World(limits=Limits(oob_tolerance=0.5)))
     assert strict.duration < done.duration
 
 
@@ -160,7 +160,7 @@ def test_keep_driving_goes_on_to_the_fall():
 def test_a_floating_road_lets_a_wheel_drop_where_a_verge_holds_it():
     straight = road_of((120, 0, 0))
     wide = drive(straight, Follows(8.0, offset=-3.6))
-    floating = drive(straight, Follows(8.0, offset=-3.6), World(verge=0.0))
+    floating = drive(straight, Follows(8.0, offset=-3.6), World(section=CrossSection(shoulder=0.0)))
     assert wide.ended == "goal"
     assert np.abs(wide["roll"]).max() < math.radians(2)
     # The right wheels are at -4.4 m, beyond the edge at -4 m.
@@ -169,7 +169,7 @@ def test_a_floating_road_lets_a_wheel_drop_where_a_verge_holds_it():
 
 
 def test_beyond_the_edge_the_car_falls_freely():
-    vehicle = Vehicle.on(road_of((120, 0, 0)), World(verge=0.0))
+    vehicle = Vehicle.on(road_of((120, 0, 0)), World(section=CrossSection(shoulder=0.0)))
     vehicle.put(60.0, -8.0)  # 4 m beside the road: nothing there
     heights = [vehicle.see()["z"]]
     for _ in range(20):
@@ -185,7 +185,7 @@ def test_beyond_the_edge_the_car_falls_freely():
 
 
 def test_a_roll_over_is_a_fall():
-    vehicle = Vehicle.on(road_of((120, 0, 0)), World(verge=0.0))
+    vehicle = Vehicle.on(road_of((120, 0, 0)), World(section=CrossSection(shoulder=0.0)))
     vehicle.put(60.0, -4.3)  # the centre of gravity is beyond the edge
     for _ in range(200):
         vehicle.move(0.0, 0.0, 1.0)
@@ -222,7 +222,7 @@ def test_a_road_that_ends_beside_its_start_has_to_be_driven():
 
 
 def test_less_friction_lengthens_a_stop_and_widens_a_bend():
-    ends = [drive(BEND, Follows(17.0), World(friction=mu), keep_driving=True) for mu in (1.0, 0.3)]
+    ends = [drive(BEND, Follows(17.0), World(site=Site(friction=mu)), keep_driving=True) for mu in (1.0, 0.3)]
     assert np.abs(ends[1]["t"] + 2).max() > np.abs(ends[0]["t"] + 2).max() + 0.5
 
 

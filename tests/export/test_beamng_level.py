@@ -17,7 +17,7 @@ from roadgpt.export.exporters.beamng import level_name
 from roadgpt.export.exporters.beamng.files import ground_model, rotation
 from roadgpt.export.exporters.beamng.roads import level_road
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
-from roadgpt.road import Design, Profile, Segment, World, build
+from roadgpt.road import CrossSection, Design, Profile, Segment, World, build
 
 Item = dict[str, Any]
 
@@ -75,13 +75,13 @@ def test_the_nodes_are_such_as_beamngs_own_client_takes(tmp_path: Path) -> None:
     assert [each["drivability"] for each in decals] == [1] + [-1] * (len(decals) - 1)
     assert [each["renderPriority"] for each in decals] == sorted(each["renderPriority"] for each in decals)
     assert {each["name"]: each["nodes"][0][3] for each in meshes} == {
-        "verge": 2 * (WORLD.lane_width + WORLD.verge),
-        "road": WORLD.road_width,
+        "verge": 2 * (WORLD.section.lane_width + WORLD.section.shoulder),
+        "road": WORLD.section.road_width,
     }
 
 
 def test_without_a_verge_the_road_floats_alone(tmp_path: Path) -> None:
-    found = objects(level(tmp_path, world=World(verge=0)))
+    found = objects(level(tmp_path, world=World(section=CrossSection(shoulder=0))))
     assert [each["name"] for each in found.values() if each["class"] == "MeshRoad"] == ["road"]
 
 
@@ -118,9 +118,9 @@ def test_the_ground_lies_at_the_road_and_what_is_higher_stands_on_it(tmp_path: P
     assert 0.02 < lowest - ground < 0.15
     for node in found["verge"]["nodes"]:
         assert node[2] - node[4] <= ground + 1e-3, "it floats"
-    (floating,) = save(road, tmp_path, ["beamng"], World(verge=0), "f")
+    (floating,) = save(road, tmp_path, ["beamng"], World(section=CrossSection(shoulder=0)), "f")
     far = objects(floating / "levels" / "roadgpt_f")["ground"]["position"][2]
-    assert far == pytest.approx(World().z_floor, abs=0.1)
+    assert far == pytest.approx(World().site.z_floor, abs=0.1)
 
 
 def catmull_rom(nodes: np.ndarray, parts: int = 8) -> np.ndarray:
@@ -190,7 +190,7 @@ def test_start_and_goal_lie_in_the_right_lane() -> None:
     road = ROADS["arcs"]
     scene = level_road(road, WORLD, 0, lift=28.0)
     for point, s in ((scene.start, 2.5), (scene.goal, road.length - 4.0)):
-        assert point == pytest.approx(road.at(s, -WORLD.lane_width / 2) + [0, 0, 28.0], abs=1e-6)
+        assert point == pytest.approx(road.at(s, -WORLD.section.lane_width / 2) + [0, 0, 28.0], abs=1e-6)
 
 
 def test_names_and_surfaces() -> None:

@@ -63,7 +63,7 @@ def test_the_task_leads_from_rest_to_the_last_lanelet_of_the_right_lane(tmp_path
     assert last.find("successor") is None
     assert bound(last, "right")[-1] == pytest.approx(road.at(road.length, -4.0)[:2], abs=1e-3)
     steps = int(problem.find("goalState/time/intervalEnd").text)
-    assert steps * 0.1 > road.length / WORLD.speed_limit
+    assert steps * 0.1 > road.length / WORLD.limits.speed_limit
 
 
 def test_the_sign_says_the_speed_limit(tmp_path: Path) -> None:

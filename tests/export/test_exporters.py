@@ -9,7 +9,7 @@ from exported import ROADS, WORLD, contents, drive
 from roadgpt import plugins
 from roadgpt.errors import ExportError, PartError, UsageError
 from roadgpt.export import Exporter, Poses, exporter_of, save
-from roadgpt.road import World
+from roadgpt.road import CrossSection, World
 
 FORMATS = plugins.names("exporters")
 
@@ -41,7 +41,7 @@ def test_a_wider_world_is_another_file(tmp_path: Path, format_: str) -> None:
     if format_ == "sbft":  # holds the centre line, whatever lies beside it
         return
     for width in (3.0, 3.5):
-        save(ROADS["arcs"], tmp_path / str(width), [format_], World(lane_width=width))
+        save(ROADS["arcs"], tmp_path / str(width), [format_], World(section=CrossSection(lane_width=width)))
     assert contents(tmp_path / "3.0") != contents(tmp_path / "3.5")
 
 

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from exported import ROADS, WORLD, drive, read_gltf
 from roadgpt.export import Poses, save
 from roadgpt.export.exporters.gltf.surfaces import meshes
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import CrossSection, Design, Road, World, build
 from strategies import designs
 
 
@@ -90,7 +90,7 @@ def test_a_car_that_stands_leaves_a_mark(tmp_path: Path) -> None:
 
 
 def test_without_a_verge_there_is_none(tmp_path: Path) -> None:
-    found = saved(ROADS["arcs"], tmp_path, World(verge=0))
+    found = saved(ROADS["arcs"], tmp_path, World(section=CrossSection(shoulder=0)))
     assert set(found) == {"road", "left edge line", "right edge line", "middle line", "path"}
 
 
@@ -136,7 +136,7 @@ def test_the_ground_lies_around_the_road_and_never_covers_it(tmp_path: Path, nam
     road = ROADS[name]
     ground = saved(road, tmp_path)["ground"]
     s = np.linspace(0.5, road.length - 0.5, 60)
-    rim = WORLD.lane_width + WORLD.verge
+    rim = WORLD.section.lane_width + WORLD.section.shoulder
     for t in (-rim + 0.1, -4.0, 0.0, 4.0, rim - 0.1):
         surface = road.at(s, t)
         below = surface[:, 2] - heights_of(ground, surface)
@@ -147,7 +147,9 @@ def test_the_ground_lies_around_the_road_and_never_covers_it(tmp_path: Path, nam
         gaps = beside[:, 2] - heights_of(ground, beside)
         assert np.isfinite(gaps).all()
         assert np.median(gaps) < 1.5
-    assert not any("ground" in node for node in saved(road, tmp_path, World(verge=0)))
+    assert not any(
+        "ground" in node for node in saved(road, tmp_path, World(section=CrossSection(shoulder=0)))
+    )
 
 
 def test_the_ground_faces_the_sky(tmp_path: Path) -> None:

@@ -14,7 +14,7 @@ from roadgpt.errors import ExportError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import Road, World, build
+from roadgpt.road import CrossSection, Limits, Road, Site, World, build
 from strategies import designs
 
 LEVEL = GradeProfile(0.0, (0.0, 1.0), (0.0, 0.0))
@@ -117,7 +117,14 @@ def test_pieces_too_short_to_be_told_leave_no_gap() -> None:
 
 
 def test_lanes_their_marks_and_their_verges() -> None:
-    root = parsed(ROADS["arcs"], World(lane_width=3.25, verge=1.5, friction=0.6, speed_limit=50 / 3.6))
+    root = parsed(
+        ROADS["arcs"],
+        World(
+            section=CrossSection(lane_width=3.25, shoulder=1.5),
+            site=Site(friction=0.6),
+            limits=Limits(speed_limit=50 / 3.6),
+        ),
+    )
     lanes = {int(lane.attrib["id"]): lane for lane in root.iter("lane")}
     kinds = {id_: lane.attrib["type"] for id_, lane in lanes.items()}
     assert kinds == {2: "shoulder", 1: "driving", 0: "none", -1: "driving", -2: "shoulder"}
@@ -132,7 +139,10 @@ def test_lanes_their_marks_and_their_verges() -> None:
 
 
 def test_a_road_that_floats_has_no_verge() -> None:
-    kinds = [lane.attrib["type"] for lane in parsed(ROADS["arcs"], World(verge=0)).iter("lane")]
+    kinds = [
+        lane.attrib["type"]
+        for lane in parsed(ROADS["arcs"], World(section=CrossSection(shoulder=0))).iter("lane")
+    ]
     assert kinds == ["driving", "none", "driving"]
 
 
@@ -143,7 +153,7 @@ def test_the_header_says_where_and_of_what_revision_and_not_when() -> None:
     assert "date" not in header.attrib
     assert header.find("geoReference").text.startswith("+proj=tmerc +lat_0=48 +lon_0=9")
     assert "+no_defs" not in header.find("geoReference").text
-    reach = WORLD.lane_width + WORLD.verge
+    reach = WORLD.section.lane_width + WORLD.section.shoulder
     x, y = road.at(np.linspace(0, road.length, 999)[:, None], np.array([-reach, reach])).T[:2]
     west, east, south, north = numbers(header, "west", "east", "south", "north")
     assert west <= x.min() + 0.01

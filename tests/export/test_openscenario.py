@@ -96,7 +96,7 @@ def test_the_car_drives_as_fast_as_each_bend_allows_a_calm_driver(
 ) -> None:
     """Driven step by step on the middle of the lane: no bend is taken too fast, no pull is too strong."""
     road = ROADS[name]
-    world = WORLD.model_copy(update={"friction": friction})
+    world = WORLD.changed(friction=friction)
     scenario, _ = saved(road, tmp_path, world)
     assert scenario.find(".//RoadCondition").attrib == {
         "frictionScaleFactor": str(friction).removesuffix(".0")
@@ -107,26 +107,26 @@ def test_the_car_drives_as_fast_as_each_bend_allows_a_calm_driver(
     grip = min(3.0, 0.5 * friction * 9.81)
     time = np.arange(0.0, waits.sum(), 0.01)
     speed = np.interp(time, np.cumsum(waits), speeds)
-    assert speed.max() <= world.speed_limit + 1e-6
+    assert speed.max() <= world.limits.speed_limit + 1e-6
     pull = np.abs(np.diff(speeds)[waits[1:] > 0.2] / waits[1:][waits[1:] > 0.2])
     assert pull.max() < min(2.0, 0.5 * friction * 9.81) * 1.1
     s = 2.5
     for v in speed.tolist():
         bend = float(road.curvature(min(s, road.length)))
-        own = bend / (1 + bend * world.lane_width / 2)
+        own = bend / (1 + bend * world.section.lane_width / 2)
         assert v**2 * abs(own) <= grip * 1.06 + 0.05
-        s += v * 0.01 / (1 + bend * world.lane_width / 2)
+        s += v * 0.01 / (1 + bend * world.section.lane_width / 2)
     assert s == pytest.approx(road.length, abs=1.5)
     tightest = np.abs(road.curvature(np.linspace(0, road.length, 999))).max()
-    slowest = min(world.speed_limit, np.sqrt(grip / tightest))
-    assert speed.max() > 1.05 * slowest or slowest == world.speed_limit, "one speed for the whole road"
+    slowest = min(world.limits.speed_limit, np.sqrt(grip / tightest))
+    assert speed.max() > 1.05 * slowest or slowest == world.limits.speed_limit, "one speed for the whole road"
 
 
 def test_a_straight_road_is_driven_up_to_the_limit(tmp_path: Path) -> None:
     scenario, _ = saved(Road.through([[0, 0], [150, 0], [300, 0]]), tmp_path)
     _, speeds = planned(scenario)
     assert speeds[0] == 0
-    assert speeds.max() == pytest.approx(WORLD.speed_limit, abs=0.03)
+    assert speeds.max() == pytest.approx(WORLD.limits.speed_limit, abs=0.03)
 
 
 @pytest.mark.parametrize("name", ["arcs", "flat points", "short"])

@@ -15,7 +15,7 @@ from roadgpt.export.exporters.gltf.surfaces import meshes
 from roadgpt.export.georeference import degrees
 from roadgpt.export.lanelets import lanelet_sections
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.road.land import Land
 from roadgpt.road.speed_profile import expected_speed
 
@@ -94,7 +94,7 @@ def test_tables_hold_the_width_at_each_station(tmp_path: Path) -> None:
 def test_rules_see_the_edge_where_it_is() -> None:
     """The end of the road is 3.5 m from the border: too near for a lane of 4 m, and not for one of 3 m."""
     road = Road(PieceCurve(60.0, 3.5, 0.0, (Piece(LENGTH),)), GradeProfile(0.0, (0.0, LENGTH), (0.0, 0.0)))
-    assert inspect(road, None, World(lane_width=3.0)) == ()
+    assert inspect(road, None, World(section=CrossSection(lane_width=3.0))) == ()
     first, *_ = inspect(road.with_profile(PROFILE), None, WORLD)
     assert first.rule == "inside_map"
     assert first.s == pytest.approx(0.5 * LENGTH, abs=1.0)
@@ -102,5 +102,7 @@ def test_rules_see_the_edge_where_it_is() -> None:
 
 def test_a_wider_lane_is_a_longer_way_round_the_outside_and_a_faster_one() -> None:
     bend = np.full(60, 1 / 20)  # to the left, so that the right lane is on the outside
-    wide, narrow = (expected_speed(bend, 0.0, 1.0, World(lane_width=w))[-1] for w in (4.0, 2.0))
+    wide, narrow = (
+        expected_speed(bend, 0.0, 1.0, World(section=CrossSection(lane_width=w)))[-1] for w in (4.0, 2.0)
+    )
     assert wide / narrow == pytest.approx(np.sqrt(22 / 21), abs=1e-3)

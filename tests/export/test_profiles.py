@@ -20,7 +20,7 @@ from roadgpt import plugins
 from roadgpt.export import save
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.road.profile import Lane
 
 LENGTH = 150.0
@@ -118,7 +118,11 @@ def test_a_lane_of_3_m_and_one_of_4_m(tmp_path: Path, format_: str, own: bool) -
     line = Road(PieceCurve(60.0, 60.0, 0.3, (Piece(LENGTH),)), GradeProfile(0, (0, LENGTH), (0, 0)))
     for width in (3.0, 4.0):
         road = line.with_profile(Profile.of(1, 1, width, SHOULDER)) if own else line
-        world = World(lane_width=3.5) if own else World(lane_width=width, verge=SHOULDER)
+        world = (
+            World(section=CrossSection(lane_width=3.5))
+            if own
+            else World(section=CrossSection(lane_width=width, shoulder=SHOULDER))
+        )
         save(road, tmp_path / str(width), [format_], world)
         read = READERS[format_]
         if read is not None:

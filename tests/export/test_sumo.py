@@ -61,21 +61,21 @@ def test_each_piece_has_the_speed_that_suits_its_bends(tmp_path: Path, name: str
     road = ROADS[name]
     save(road, tmp_path, ["sumo"], WORLD, "a")
     there, back = ET.parse(tmp_path / "a.edg.xml").getroot()
-    sideways = min(3.0, 0.5 * WORLD.friction * 9.81)
+    sideways = min(3.0, 0.5 * WORLD.site.friction * 9.81)
     for edge in (there, back):
         splits = list(edge.iter("split"))
         starts = np.array([0.0, *(float(split.attrib["pos"]) for split in splits)])
         limits = np.array([float(each.attrib["speed"]) for each in (edge, *splits)])
         assert (np.diff(starts) > 5).all()
-        assert limits.max() <= WORLD.speed_limit + 1e-5
+        assert limits.max() <= WORLD.limits.speed_limit + 1e-5
         s = np.linspace(0.05, road.length - 0.05, 400)
         along = s if edge is there else road.length - s
         allowed = limits[np.searchsorted(starts, along, side="right") - 1]
         bend = np.abs(road.curvature(s))
         # where a piece ends, its end may lie some centimetres off
         assert np.quantile(allowed**2 * bend / sideways, 0.98) <= 1.01
-        suits = np.minimum(WORLD.speed_limit, np.sqrt(sideways / np.maximum(bend, 1e-9)))
-        assert allowed.max() >= min(suits.max() - 5 / 3.6 - 1e-6, WORLD.speed_limit) - 5 / 3.6
+        suits = np.minimum(WORLD.limits.speed_limit, np.sqrt(sideways / np.maximum(bend, 1e-9)))
+        assert allowed.max() >= min(suits.max() - 5 / 3.6 - 1e-6, WORLD.limits.speed_limit) - 5 / 3.6
 
 
 def test_the_network_is_kept_without_the_clock(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -37,7 +37,7 @@ from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
 from roadgpt.report.page.html import STYLE
 from roadgpt.report.page.lines import bars, lines
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Road, World
 
 NASTY = "<script>alert(1)</script> & \"100 %\" | $x_1$ \\ {y} 'z'"
 TABLE = Table(
@@ -335,7 +335,7 @@ def test_the_place_of_a_failure_is_to_scale_and_the_way_there_leads_up() -> None
 def test_the_site_of_a_failure_shows_the_markings_of_the_road_s_own_lanes() -> None:
     """A road with 2+1 lanes: a solid line between the directions, a broken one 3 m to its right."""
     road = Road.through([(20, 60), (80, 60), (140, 60), (200, 60)])
-    site = site_of(road, World(lanes="2+1", lane_width=3.0), None, 90.0)
+    site = site_of(road, World(section=CrossSection(lanes="2+1", lane_width=3.0)), None, 90.0)
     assert [is_broken for _, is_broken in site.lines] == [False, True]
     assert [float(line[:, 1].mean()) for line, _ in site.lines] == pytest.approx([60.0, 57.0])
     assert (site.left[:, 1].mean(), site.right[:, 1].mean()) == pytest.approx((63.0, 54.0))

@@ -19,7 +19,7 @@ from roadgpt.check import Finding
 from roadgpt.report import birds_eye, draw, drawing, height_profile, strip
 from roadgpt.report.canvas import Header
 from roadgpt.report.text_width import fitted, inches
-from roadgpt.road import Design, Road, Segment, World
+from roadgpt.road import CrossSection, Design, Road, Segment, World
 from roadgpt.run import Run, Setup, prove
 
 NEVER = """
@@ -301,7 +301,7 @@ def test_a_run_without_a_road_has_no_picture(passed: Run, tmp_path: Path) -> Non
     [[[10, 10], [31, 10]], [[-50, 30], [400, 30], [900, 800]], [[100, 100, 5], [103, 104, 9], [100, 108, 2]]],
 )
 def test_odd_roads_are_drawn_too(points: list[list[float]], tmp_path: Path) -> None:
-    run = prove(Road.through(points), world=World(verge=0))
+    run = prove(Road.through(points), world=World(section=CrossSection(shoulder=0)))
     for scale in ("equal", "thesis"):
         assert [path.name for path in draw(run, tmp_path, scale)] == NAMES  # type: ignore[arg-type]
 

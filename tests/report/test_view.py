@@ -17,7 +17,7 @@ from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
 from roadgpt.report import view
 from roadgpt.report.view.scene import DRIVE, MOST_STEPS
-from roadgpt.road import Design, Road, Segment, World
+from roadgpt.road import CrossSection, Design, Road, Segment, Site, World
 from roadgpt.run import Run, Setup, prove, write_run
 
 EVIL = (
@@ -160,7 +160,9 @@ def test_the_markings_are_those_that_are_judged(driven: Run) -> None:
 
 
 def test_a_road_s_own_lanes_and_bank_are_told_at_each_station() -> None:
-    world = World(lanes="2+1", lane_width=3.0, lane_width_end=4.0, bank=0.06, shoulder=1.0)
+    world = World(
+        section=CrossSection(lanes="2+1", lane_width=3.0, lane_width_end=4.0, bank=0.06, shoulder=1.0)
+    )
     run = prove(Road.through([(20, 20), (80, 30), (120, 80), (110, 140)]), 0, world, Setup(drives=False))
     road = view.scene(run)["road"]
     s, lanes = np.array(road["s"]), road["lanes"]
@@ -205,7 +207,7 @@ def test_a_long_drive_is_thinned_and_keeps_its_end(driven: Run) -> None:
 
 
 def test_a_failed_drive_tells_where_and_when() -> None:
-    run = prove(design(), 7, World(friction=0.15))
+    run = prove(design(), 7, World(site=Site(friction=0.15)))
     assert run.outcome == "FAIL"
     assert run.verdict is not None
     (place,) = view.scene(run)["places"]
@@ -307,6 +309,6 @@ def test_the_car_stands_on_the_inclined_surface() -> None:
     """The page draws the car ``height`` above the road; on a bank that is the height above its own place."""
     plan = PieceCurve(100.0, 60.0, 0.0, (Piece(90.0, 1 / 60, 1 / 60),))
     road = Road(plan, GradeProfile(3.0, (0.0, 90.0), (0.0, 0.0)))
-    run = prove(road, 0, World(lanes="3+1", bank=0.08), Setup(driver="reference"))
+    run = prove(road, 0, World(section=CrossSection(lanes="3+1", bank=0.08)), Setup(driver="reference"))
     made = view.scene(run)
     assert made["drive"]["car"]["height"] == pytest.approx(0.56, abs=0.05)

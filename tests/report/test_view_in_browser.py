@@ -12,7 +12,7 @@ from matplotlib.colors import to_rgb
 from chromium import FOUND, Page, browser
 from roadgpt.report import view
 from roadgpt.report.canvas import SEVERE
-from roadgpt.road import Design, Segment, World
+from roadgpt.road import CrossSection, Design, Segment, Site, World
 from roadgpt.run import Run, Setup, prove
 
 pytestmark = pytest.mark.skipif(FOUND is None, reason="no chromium is installed")
@@ -55,10 +55,10 @@ def tab() -> Iterator[Page]:
 @pytest.fixture(scope="module")
 def pages(driven: Run, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("pages")
-    failed = prove(design(-1), 7, World(friction=0.15))
+    failed = prove(design(-1), 7, World(site=Site(friction=0.15)))
     assert failed.outcome == "FAIL"
     alone = replace(prove(design(), setup=Setup(drives=False)), source="alone.json")
-    floats = prove(design(), 7, World(verge=0))
+    floats = prove(design(), 7, World(section=CrossSection(shoulder=0)))
     made = {"driven": [driven], "two": [failed, driven], "alone": [alone], "floats": [floats]}
     return {name: view.write(runs, folder / f"{name}.html") for name, runs in made.items()}
 

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.road.profile import Lane
 
 STATIONS = np.array([[0.0, 1.0, 2.5], [40.0, 60.0, 80.0]])
@@ -38,7 +38,7 @@ def test_a_two_lane_road_has_its_edges_where_a_drawing_has_them() -> None:
 
 def test_edges_of_a_bend_lie_on_circles_about_its_centre() -> None:
     s = np.linspace(0.0, 80.0, 9)
-    profile = World(lane_width=3.0, verge=2.5).profile_of(BEND)
+    profile = World(section=CrossSection(lane_width=3.0, shoulder=2.5)).profile_of(BEND)
     edges, rims = profile.edges(s), profile.rims(s)
     for offsets, radius in ((edges.left, 37.0), (edges.right, 43.0), (rims.left, 34.5), (rims.right, 45.5)):
         away = BEND.at(s, offsets)[:, :2] - [0.0, 40.0]  # a left bend of 40 m from (0, 0) along +x
@@ -146,36 +146,38 @@ def test_cross_sections_in_files_that_cannot_be_are_refused_in_one_sentence(
 
 
 def test_a_world_lays_its_lanes_on_roads_that_have_none() -> None:
-    world = World(lanes="2+1", lane_width=3.0, lane_width_end=4.0)
+    world = World(section=CrossSection(lanes="2+1", lane_width=3.0, lane_width_end=4.0))
     road = world.lay(BEND)
     assert road.profile is not None
     assert road.profile.count == (2, 1)
     assert road.profile.width([0.0, 40.0, 80.0]) == pytest.approx([3.0, 3.5, 4.0])
     assert world.lay(road) is road
-    assert World(lane_width=3.0).lay(BEND) is BEND
-    assert world.road_width == 16.0
-    assert World().usual_profile(80.0) == Profile.of()
+    assert World(section=CrossSection(lane_width=3.0)).lay(BEND) is BEND
+    assert world.section.road_width == 16.0
+    assert World().section.profile(80.0) == Profile.of()
 
 
 def test_a_world_with_banked_bends_asks_for_its_road() -> None:
     with pytest.raises(UsageError, match="lay"):
-        World(bank="auto").profile_of(BEND)
+        World(section=CrossSection(bank="auto")).profile_of(BEND)
 
 
 def test_files_of_a_usual_world_name_no_lanes() -> None:
     assert not {"lanes", "bank", "lane_width_end"} & set(World().model_dump())
-    world = World(lanes="2+2", bank=0.05)
+    world = World(section=CrossSection(lanes="2+2", bank=0.05))
     assert World.model_validate_json(world.model_dump_json()) == world
     texts = [{"lanes": text} for text in ("0+1", "2+", "9+2+13", "2+5")]
     for wrong in (*texts, {"bank": "steep"}, {"bank": 0.5}, {"bank": -0.1}, {"lane_width_end": 0}):
         with pytest.raises(ValidationError):
-            World(**wrong)  # type: ignore[arg-type]
+            World.model_validate(wrong)
 
 
 def test_the_shoulder_is_read_under_both_names_and_written_under_the_old_one() -> None:
-    assert World(shoulder=1.5) == World(verge=1.5) == World.model_validate_json('{"shoulder": 1.5}')
-    assert json.loads(World(shoulder=1.5).model_dump_json())["verge"] == 1.5
+    world = World(section=CrossSection(shoulder=1.5))
+    for text in ('{"shoulder": 1.5}', '{"verge": 1.5}'):
+        assert World.model_validate_json(text) == world
+    assert json.loads(World(section=CrossSection(shoulder=1.5)).model_dump_json())["verge"] == 1.5
     with pytest.raises(ValidationError):
-        World(shoulder=-1.0)
+        World(section=CrossSection(shoulder=-1.0))
     with pytest.raises(ValidationError):
-        World(verge=1.0, shoulder=2.0)
+        World.model_validate({"verge": 1.0, "shoulder": 2.0})

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve, SplineCurve
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, World
 
 SPEED = 50 / 3.6
 
@@ -29,7 +29,9 @@ def bend(radius: float, run_in: float = 30.0, arc: float = 40.0, grade: float = 
 )
 def test_a_bend_has_the_superelevation_of_the_design_guide(radius: float, percent: float) -> None:
     for side in (1, -1):
-        road = World(bank="auto", speed_limit=SPEED).lay(bend(side * radius))
+        road = World(section=CrossSection(bank="auto"), limits=Limits(speed_limit=SPEED)).lay(
+            bend(side * radius)
+        )
         assert road.profile is not None
         angles = road.profile.superelevation(np.array([10.0, 70.0, 80.0, 100.0, 165.0]))
         assert 100 * np.tan(angles[1:4]) == pytest.approx(-side * percent, abs=0.01)
@@ -38,7 +40,7 @@ def test_a_bend_has_the_superelevation_of_the_design_guide(radius: float, percen
 
 def test_the_outside_of_a_bend_is_higher_and_the_centre_line_stays() -> None:
     flat = bend(60.0, grade=0.04)
-    road = World(bank=0.06, lanes="2+1").lay(flat)
+    road = World(section=CrossSection(bank=0.06, lanes="2+1")).lay(flat)
     assert np.array_equal(road.at(80.0), flat.at(80.0))
     assert road.at(80.0, -4.0)[2] > road.at(80.0)[2] > road.at(80.0, 4.0)[2]  # a left bend
 
@@ -54,7 +56,7 @@ def test_the_outside_of_a_bend_is_higher_and_the_centre_line_stays() -> None:
 def test_the_surface_is_that_of_three_rotations(
     side: int, radius: float, grade: float, ratio: float, s: float, t: float
 ) -> None:
-    road = World(bank=ratio).lay(bend(side * radius, grade=grade))
+    road = World(section=CrossSection(bank=ratio)).lay(bend(side * radius, grade=grade))
     assert road.profile is not None
     angle = float(road.profile.superelevation(s))
     # OpenDRIVE: heading, pitch and roll about the axes as they are then; pitch is positive downhill.
@@ -69,14 +71,14 @@ def test_the_surface_is_that_of_three_rotations(
 def test_a_point_of_the_surface_is_located_where_it_was_put(
     radius: float, grade: float, ratio: float, s: float, t: float
 ) -> None:
-    road = World(bank=ratio).lay(bend(radius, grade=grade))
+    road = World(section=CrossSection(bank=ratio)).lay(bend(radius, grade=grade))
     x, y, _ = road.at(s, t)
     found = road.locate(x, y)
     assert [float(found[0]), float(found[1])] == pytest.approx([s, t], abs=1e-5)
 
 
 def test_the_run_in_lies_on_the_clothoid_and_has_no_kink() -> None:
-    road = World(bank="auto", speed_limit=SPEED).lay(bend(50.0))
+    road = World(section=CrossSection(bank="auto"), limits=Limits(speed_limit=SPEED)).lay(bend(50.0))
     assert road.profile is not None
     s = np.linspace(0.0, road.length, 4001)
     angles = road.profile.superelevation(s)
@@ -89,7 +91,9 @@ def test_the_run_in_lies_on_the_clothoid_and_has_no_kink() -> None:
 
 def test_a_jump_of_curvature_is_run_in_on_both_sides_of_it() -> None:
     plan = PieceCurve(0.0, 0.0, 0.0, (Piece(60.0), Piece(60.0, 0.02, 0.02), Piece(60.0)))
-    road = World(bank="auto").lay(Road(plan, GradeProfile(0.0, (0.0, 180.0), (0.0, 0.0))))
+    road = World(section=CrossSection(bank="auto")).lay(
+        Road(plan, GradeProfile(0.0, (0.0, 180.0), (0.0, 0.0)))
+    )
     assert road.profile is not None
     s = np.linspace(0.0, 180.0, 1801)
     angles = road.profile.superelevation(s)
@@ -100,7 +104,7 @@ def test_a_jump_of_curvature_is_run_in_on_both_sides_of_it() -> None:
 
 
 def test_a_short_clothoid_is_run_in_beside_it_too_as_far_as_there_is_room() -> None:
-    road = World(bank="auto").lay(bend(40.0, run_in=8.0, arc=10.0))
+    road = World(section=CrossSection(bank="auto")).lay(bend(40.0, run_in=8.0, arc=10.0))
     assert road.profile is not None
     angles = road.profile.superelevation(np.array([19.9, 20.1, 43.0, 65.9, 66.1]))
     # 28 m are needed: 8 on the clothoid and 10 before it, but only 5, the half of the arc, behind it
@@ -110,7 +114,7 @@ def test_a_short_clothoid_is_run_in_beside_it_too_as_far_as_there_is_room() -> N
 
 def test_a_spline_is_banked_too() -> None:
     points = [(20.0, 20.0), (80.0, 30.0), (120.0, 80.0), (110.0, 140.0)]
-    road = World(bank=0.05).lay(Road.through(points))
+    road = World(section=CrossSection(bank=0.05)).lay(Road.through(points))
     assert road.profile is not None
     assert isinstance(road.plan, SplineCurve)
     assert float(road.profile.superelevation(road.length / 2)) == pytest.approx(-math.atan(0.05), abs=1e-6)

@@ -8,7 +8,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
 from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of
 from run.doubles import TOO_STEEP, Designer, Learner, Stubborn, Unable, a_design, put_on_shelf
 
@@ -215,17 +215,25 @@ def test_a_drive_that_goes_on_after_a_departure_tells_how_it_ended(tmp_path: Pat
     file = tmp_path / "leaves.py"
     file.write_text(ALWAYS_LEFT)
     setup = Setup(driver=f"{file}:Leaves", keep_driving=True)
-    run = prove(Road.through([[40, 100], [90, 100], [140, 100]]), world=World(verge=0), setup=setup)
+    run = prove(
+        Road.through([[40, 100], [90, 100], [140, 100]]),
+        world=World(section=CrossSection(shoulder=0)),
+        setup=setup,
+    )
     assert run.verdict is not None
     assert run.drive is not None
     assert run.verdict.cause == "out of lane"
     assert run.drive.ended == "fell"
     assert run.description == f"{run.verdict.description}, then fell after {run.drive['s'][-1]:.0f} m"
-    ended = prove(run.road, world=World(verge=0), setup=setup.model_copy(update={"keep_driving": False}))
+    ended = prove(
+        run.road,
+        world=World(section=CrossSection(shoulder=0)),
+        setup=setup.model_copy(update={"keep_driving": False}),
+    )
     assert ended.description == ended.verdict.description  # type: ignore[union-attr]
 
 
 def test_a_description_is_refused_where_the_world_forbids_it() -> None:
     assert brief_of("a straight road climbing at 12 percent").clauses
     with pytest.raises(BriefError, match="10"):
-        brief_of("a straight road climbing at 12 percent", World(max_grade=0.1))
+        brief_of("a straight road climbing at 12 percent", World(limits=Limits(max_grade=0.1)))

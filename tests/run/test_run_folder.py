@@ -10,7 +10,7 @@ import pytest
 
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, World
+from roadgpt.road import Limits, Road, World
 from roadgpt.run import Request, Run, Setup, prove, read_run, write_run
 from roadgpt.run.sbft_json import test_of as as_test
 from roadgpt.run.tables import Tally, TallyEntry, write_description
@@ -35,7 +35,9 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Run]:
     brief = Brief(words=WORDS, clauses=(Clause(kind="turn"),))
     made = {
         "PASS": prove(a_design(3), 11),
-        "FAIL": prove(a_design(25), 12, World(speed_limit=30.0), Setup(driver=f"{file}:Never"), 2),
+        "FAIL": prove(
+            a_design(25), 12, World(limits=Limits(speed_limit=30.0)), Setup(driver=f"{file}:Never"), 2
+        ),
         "INVALID": prove(a_design(0, (TOO_STEEP,)), 13, index=3),
         "VALID": prove(
             Road.through([[40, 100, 1], [90, 101, 2], [140, 120, 3]]), 14, World(), Setup(drives=False)

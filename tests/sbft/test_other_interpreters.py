@@ -64,7 +64,7 @@ def test_a_generator_works_in_an_interpreter_of_its_own(python: str | None, tmp_
     )
     from roadgpt.sbft.competition import USUAL
 
-    world = USUAL.model_copy(update={"oob_tolerance": 0.85})
+    world = USUAL.changed(oob_tolerance=0.85)
     work = compete(experiment, world, out=tmp_path / "out")
     assert [run.outcome for run in work] == ["PASS"] * 3
     assert work.ending is not None

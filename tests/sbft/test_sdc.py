@@ -18,7 +18,7 @@ from grpc_tools import protoc
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Road, World
 from roadgpt.sbft.sdc import messages
 from roadgpt.sbft.sdc.risk import LINE_ONLY, PLAIN, UNKNOWN, RiskFeatures, fit_model, order, risk_features
 from roadgpt.sbft.sdc.service import serve
@@ -188,7 +188,7 @@ def test_a_hundred_tests_are_ordered_in_far_less_than_four_seconds(client: tuple
 
 @pytest.mark.parametrize(
     ("world", "middle"),
-    [(PLAIN, -2.0), (PLAIN.model_copy(update={"lane_width": 3.0}), -1.5), (World(lanes="2+1"), -6.0)],
+    [(PLAIN, -2.0), (PLAIN.changed(lane_width=3.0), -1.5), (World(section=CrossSection(lanes="2+1")), -6.0)],
 )
 def test_the_line_is_where_the_car_drives(world: World, middle: float) -> None:
     road = Road.through(arc(30))

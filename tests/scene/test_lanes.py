@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from roadgpt.geometry import GradeProfile, Piece, PieceCurve
-from roadgpt.road import Profile, Road, World
+from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.scene import Camera, Pose, Scene
 from roadgpt.scene.road_mesh import road_patches
 from roadgpt.scene.surfaces import LaneBoundaries, paved
@@ -40,7 +40,7 @@ def test_the_goal_lies_across_the_driven_lane_only() -> None:
 
 
 def test_a_one_way_road_has_grass_to_the_left_of_its_lane() -> None:
-    image = Scene.of(STRAIGHT, World(lanes="1+0", lane_width=3.0)).render(
+    image = Scene.of(STRAIGHT, World(section=CrossSection(lanes="1+0", lane_width=3.0))).render(
         Camera(width=200, height=120), Pose(90.0, 98.5, 0.56, 0.0)
     )
     row = image[100].astype(int)
@@ -54,7 +54,7 @@ def test_a_one_way_road_has_grass_to_the_left_of_its_lane() -> None:
 def test_the_surface_of_a_bend_falls_to_its_inside(ratio: float) -> None:
     k = 1 / 40
     plan = PieceCurve(60.0, 60.0, 0.0, (Piece(30.0), Piece(30.0, 0.0, k), Piece(60.0, k, k)))
-    world = World(bank=ratio, shoulder=2.0)
+    world = World(section=CrossSection(bank=ratio, shoulder=2.0))
     road = world.lay(Road(plan, GradeProfile(3.0, (0.0, plan.length), (0.0, 0.0))))
     scene = Scene.of(road, world)
     patches = road_patches(road, world, LitTerrain(scene.land))

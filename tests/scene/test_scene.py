@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Road, Segment, World, build
 from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
 
 CAMERA = Camera(320, 180)
@@ -63,7 +63,7 @@ def markings(road: Road, s0: float) -> np.ndarray:
     s = s[(s > s0 + 4) & (s < s0 + 26)]
     lines = s0 + np.array([6.0, 9.0, 13.0, 18.0])
     lines = lines[lines < road.length - 3]
-    edge = WORLD.lane_width - 0.175
+    edge = WORLD.section.lane_width - 0.175
     return np.concatenate([road.at(s, 0.0), road.at(lines, edge), road.at(lines, -edge)])
 
 
@@ -213,7 +213,7 @@ def test_the_bonnet_is_seen_below_and_only_there(straight: Scene) -> None:
 
 def test_a_road_without_verge_floats_and_can_be_seen_from_below() -> None:
     road = build(design(50))
-    scene = Scene.of(road, World(verge=0.0))
+    scene = Scene.of(road, World(section=CrossSection(shoulder=0.0)))
     camera = Camera(160, 90)
     pose = on(road, 20.0)
     above = scene.render(camera, pose).astype(int)

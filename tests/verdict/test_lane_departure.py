@@ -7,13 +7,13 @@ from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.marking_monitor import MarkingMonitor
-from roadgpt.road import World
+from roadgpt.road import Limits, World
 from roadgpt.verdict import Verdict, consult, graded, judge, severity
 from roadgpt.verdict.margin import margins
 from verdict.test_verdict import STRAIGHT, WORLD, drive_at
 from verdict.test_verdict_simulated import ROADS, NeverSteers
 
-WATCHED = World(lane_departure=True)
+WATCHED = World(limits=Limits(lane_departure=True))
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,9 @@ def test_a_pass_that_was_partly_outside_says_so() -> None:
 def test_no_share_is_rounded_away() -> None:
     grazed = judge(STRAIGHT, drive_at([-2.0, -3.0701, -2.0]), WORLD)
     assert "at most 0.005 % outside" in grazed.description
-    nearly = judge(STRAIGHT, drive_at([-2.0] * 3, outside=[0, 0.9996, 0]), World(oob_tolerance=1.0))
+    nearly = judge(
+        STRAIGHT, drive_at([-2.0] * 3, outside=[0, 0.9996, 0]), World(limits=Limits(oob_tolerance=1.0))
+    )
     assert "within the tolerance of 100 %" in nearly.description
     assert "at most 99.9 % outside" in nearly.description
 

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from roadgpt.drive import COLUMNS, Command, Drive, View, drive_monitor
 from roadgpt.drive.simulators.mujoco import MujocoSimulator, simulator
-from roadgpt.road import Road, World
+from roadgpt.road import Limits, Road, World
 from roadgpt.verdict import Verdict, consult, judge
 
 ROAD = Road.through([[10, 20], [40, 20], [70, 20]])  # along +x, 60 m, y of its middle is 20
-WORLD = World(oob_tolerance=0.5)
+WORLD = World(limits=Limits(oob_tolerance=0.5))
 IN, OUT = -2.0, 1.5  # m to the left of the centre line: in the lane's middle, and wholly outside
 FAST, STANDS = 3.0, 0.0  # m from step to step
 PATIENCE = 0.1  # s without motion, instead of 10
@@ -124,4 +124,8 @@ def test_told_to_keep_driving_it_gets_the_same_verdict(way: list[Step]) -> None:
     for one in (verdict, on):
         assert (one.margin < 0) == (one.cause in ("out of lane", "fell"))
         assert math.isfinite(one.margin)
-        assert (one.max_oob > WORLD.oob_tolerance) == (one.oob_counter > 0) == (one.cause == "out of lane")
+        assert (
+            (one.max_oob > WORLD.limits.oob_tolerance)
+            == (one.oob_counter > 0)
+            == (one.cause == "out of lane")
+        )

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from roadgpt.drive import COLUMNS, Box, Columns, Drive
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, World
+from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.verdict import Verdict, consult, judge
 from roadgpt.verdict.margin import LateralExtent, allowed_overhang, margins
 
@@ -76,13 +76,13 @@ def test_a_car_that_goes_right_leaves_to_the_right() -> None:
 
 def test_the_tolerance_decides_and_the_first_place_moves_with_it() -> None:
     drive = drive_at([-2.0, 0.0, 0.4, 0.95, -2.0, 0.95, -2.0])  # told to keep driving: came to the goal
-    strict = judge(STRAIGHT, drive, World(oob_tolerance=0.5))
-    loose = judge(STRAIGHT, drive, World(oob_tolerance=0.95))
+    strict = judge(STRAIGHT, drive, World(limits=Limits(oob_tolerance=0.5)))
+    loose = judge(STRAIGHT, drive, World(limits=Limits(oob_tolerance=0.95)))
     # at t = 0 exactly half of the box is outside, which is not above 0.5
     assert (strict.at_s, loose.at_s) == pytest.approx((12.5, 17.5))
     assert (strict.oob_counter, loose.oob_counter) == (2, 2)
     assert strict.margin == pytest.approx(-0.95)  # half of the box: its middle may be on the edge
-    assert judge(STRAIGHT, drive, World(oob_tolerance=1.0)).kept
+    assert judge(STRAIGHT, drive, World(limits=Limits(oob_tolerance=1.0))).kept
 
 
 def test_what_comes_first_decides() -> None:
@@ -107,7 +107,7 @@ def test_what_comes_first_decides() -> None:
     ],
 )
 def test_every_other_end_is_a_failure_with_its_cause(ended: str, cause: str, says: str, sbft: str) -> None:
-    verdict = judge(STRAIGHT, drive_at([-2.0, -3.6], ended=ended), World(verge=0))
+    verdict = judge(STRAIGHT, drive_at([-2.0, -3.6], ended=ended), World(section=CrossSection(shoulder=0)))
     assert (verdict.outcome, verdict.cause, verdict.description) == ("FAIL", cause, says)
     assert verdict.sbft_description == sbft
     assert verdict.side == ("right" if cause == "fell" else None)
@@ -117,8 +117,12 @@ def test_every_other_end_is_a_failure_with_its_cause(ended: str, cause: str, say
 
 def test_without_a_verge_the_end_of_the_road_is_nearer_than_the_end_of_the_lane() -> None:
     drive = drive_at([-2.0, -2.8, -2.0])
-    assert judge(STRAIGHT, drive, World(verge=0)).margin == pytest.approx(4 - 2.8 - 0.93)
-    assert judge(STRAIGHT, drive, World(verge=3)).margin == pytest.approx(2.837 - 0.8)
+    assert judge(STRAIGHT, drive, World(section=CrossSection(shoulder=0))).margin == pytest.approx(
+        4 - 2.8 - 0.93
+    )
+    assert judge(STRAIGHT, drive, World(section=CrossSection(shoulder=3))).margin == pytest.approx(
+        2.837 - 0.8
+    )
 
 
 def test_a_drive_ended_at_a_smaller_tolerance_cannot_be_judged_at_a_larger() -> None:
@@ -181,7 +185,7 @@ def test_the_reach_is_where_the_share_of_a_grid_is_the_tolerance(angle: float, t
 
 @given(t=st.floats(-8, 4), tolerance=st.floats(0.5, 0.99), turned=st.floats(-0.5, 0.5))
 def test_the_margin_falls_metre_by_metre(t: float, tolerance: float, turned: float) -> None:
-    world = World(oob_tolerance=tolerance)
+    world = World(limits=Limits(oob_tolerance=tolerance))
     drive = drive_at([t, t + 0.01 * np.sign(t + 2)], outside=[0.0, 0.0], turned=turned, ended="timeout")
     here, there = margins(STRAIGHT, drive, world)
     assert here >= there >= 0.0

@@ -10,7 +10,7 @@ from roadgpt.drive import Command, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.pure_pursuit import PurePursuit
 from roadgpt.drive.drivers.reference import Reference
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Limits, Road, Segment, Site, World, build
 from roadgpt.verdict import consult, judge
 
 
@@ -48,7 +48,11 @@ def road_of(*bends: tuple[float, float]) -> Road:
 
 
 ROADS = [road_of((60, 30), (-50, 25)), road_of((-65, 16), (-40, 40))]
-WORLDS = [World(), World(verge=0.0, friction=0.5), World(oob_tolerance=0.5)]
+WORLDS = [
+    World(),
+    World(section=CrossSection(shoulder=0.0), site=Site(friction=0.5)),
+    World(limits=Limits(oob_tolerance=0.5)),
+]
 CAUSE = {"goal": None, "out_of_lane": "out of lane", "fell": "fell", "stuck": "stuck", "timeout": "timeout"}
 
 
@@ -66,7 +70,7 @@ def test_the_verdict_agrees_with_how_the_drive_ended(driver: type[Any]) -> None:
             assert verdict.oob_counter == (1 if drive.ended == "out_of_lane" else 0)
             if drive.ended == "out_of_lane":  # it ended at the first step outside, where it hardly is outside
                 assert verdict.at_s == drive["s"][-1]
-                assert (drive["outside"][:-1] <= world.oob_tolerance).all()
+                assert (drive["outside"][:-1] <= world.limits.oob_tolerance).all()
                 assert verdict.margin > -0.3
             if driver is NeverSteers:
                 assert verdict.side == ("right" if road is ROADS[0] else "left") or drive.ended == "fell"
@@ -94,7 +98,7 @@ def test_a_car_that_stands_is_stuck_and_one_that_crawls_runs_out_of_time() -> No
 
 
 def test_without_a_verge_a_car_that_runs_wide_falls() -> None:
-    world = World(verge=0.0, oob_tolerance=0.99)
+    world = World(section=CrossSection(shoulder=0.0), limits=Limits(oob_tolerance=0.99))
     road = road_of((69, 25))
     drive = simulate(road, world, NeverSteers())
     verdict = judge(road, drive, world)
@@ -106,7 +110,11 @@ def test_without_a_verge_a_car_that_runs_wide_falls() -> None:
 
 def test_the_reference_keeps_its_lane_where_a_car_can() -> None:
     for road in ROADS:
-        for world in (World(speed_limit=40 / 3.6, verge=0), World(verge=0), World(friction=0.35)):
+        for world in (
+            World(limits=Limits(speed_limit=40 / 3.6), section=CrossSection(shoulder=0)),
+            World(section=CrossSection(shoulder=0)),
+            World(site=Site(friction=0.35)),
+        ):
             verdict = judge(road, simulate(road, world, Reference()), world)
             assert verdict.kept
-            assert verdict.margin > (0.7 if world.verge == 0 else 2.5)
+            assert verdict.margin > (0.7 if world.section.shoulder == 0 else 2.5)

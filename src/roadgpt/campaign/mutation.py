@@ -100,7 +100,7 @@ def _longer(element: Element, rng: Rng, world: World) -> Element:
 
 
 def _tighter(element: Element, rng: Rng, world: World) -> Element:
-    least = world.min_radius * OVER_LEAST_RADIUS
+    least = world.limits.min_radius * OVER_LEAST_RADIUS
     return element._replace(radius=_scaled(element.radius, (least, WIDEST), rng))
 
 
@@ -114,7 +114,7 @@ def _smoother(element: Element, rng: Rng, world: World) -> Element:
 
 
 def _steeper(element: Element, rng: Rng, world: World) -> Element:
-    most = min(100 * world.max_grade, MAX_INCLINE) - 0.2
+    most = min(100 * world.limits.max_grade, MAX_INCLINE) - 0.2
     return element._replace(
         incline=float(np.clip(element.incline + SLOPE * rng.standard_normal(), -most, most))
     )
@@ -134,7 +134,7 @@ def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
     at = int(rng.integers(len(elements) + 1))
     incline = elements[min(at, len(elements) - 1)].incline
     turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
-    radius = min(world.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.5))), WIDEST)
+    radius = min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.5))), WIDEST)
     new = Element(turn=turn, radius=radius, transition=float(rng.uniform(*TRANSITIONS)), incline=incline)
     straight = Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline)
     return (*elements[:at], new, straight, *elements[at:])

@@ -79,9 +79,9 @@ class WorldTable(_Strict):
 
     def world(self) -> World:
         """Returns the World with these values."""
-        values = self.model_dump()
+        values = self.model_dump(exclude={"speed_limit_kmh"})
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
-        return World(speed_limit=values.pop("speed_limit_kmh") / 3.6, **{**values, "bank": bank})
+        return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
 
 
 class PlanTable(_Strict):

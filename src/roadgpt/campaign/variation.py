@@ -155,7 +155,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
             return None
         if (
             setting.rules == "sbft"
-            and not check.sbft_verdict(road.control_points(), setting.world.map_size)[0]
+            and not check.sbft_verdict(road.control_points(), setting.world.site.map_size)[0]
         ):
             return None
     except (RoadGPTError, ValueError):  # a spline of this road cannot be laid: it is no candidate

@@ -134,10 +134,10 @@ def common(request: "Request") -> "Properties":
         "designer": setup.designer,
         "driver": setup.driver,
         "simulator": setup.simulator,
-        "oob_tolerance": world.oob_tolerance,
-        "lane_departure": str(world.lane_departure).lower(),
-        "speed_limit_kmh": round(world.speed_limit * 3.6, 6),
-        "friction": world.friction,
+        "oob_tolerance": world.limits.oob_tolerance,
+        "lane_departure": str(world.limits.lane_departure).lower(),
+        "speed_limit_kmh": round(world.limits.speed_limit * 3.6, 6),
+        "friction": world.site.friction,
     }
 
 

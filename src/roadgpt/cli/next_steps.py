@@ -42,9 +42,9 @@ class WithoutFailure:
         """Whether suggestions make sense: enough tests passed, and command-line options can express the
         whole request.
         """
-        named = {flag.field for flag in options.WORLD}
-        usual = type(self.request.world)().model_dump(exclude=named)
-        is_usual = self.request.world.model_dump(exclude=named) == usual
+        values, usual = self.request.world.values(), type(self.request.world)().values()
+        others = values.keys() - {flag.field for flag in options.WORLD}
+        is_usual = all(values[name] == usual[name] for name in others)
         return self.passed >= FEWEST and bool(self.request.words) and is_usual
 
 
@@ -68,22 +68,22 @@ def lines(quiet: WithoutFailure | None) -> Iterator[str]:
 
 def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
     world = quiet.request.world
-    if not world.lane_departure:
+    if not world.limits.lane_departure:
         why = "fail where a front tyre passes the lane marking (UN R157)"
         if quiet.outside:
             why += f"; {quiet.outside:,} of {quiet.passed:,} passed with the car partly or mostly outside"
         yield why, _command(quiet, lane_departure=True)
-    if world.oob_tolerance > TOLERANCE:
+    if world.limits.oob_tolerance > TOLERANCE:
         why = "fail where more than half of the car is outside its lane"
         if quiet.mostly:
             why += f", as it was on {quiet.mostly:,} of {quiet.passed:,} that passed"
         yield why, _command(quiet, oob_tolerance=TOLERANCE)
     for friction, name in FRICTIONS:
-        if friction < world.friction:
+        if friction < world.site.friction:
             yield name, _command(quiet, friction=friction)
             break
     for speed in SPEEDS:
-        if speed / 3.6 > world.speed_limit * 1.001:
+        if speed / 3.6 > world.limits.speed_limit * 1.001:
             yield f"a speed limit of {speed:.0f} km/h", _command(quiet, speed_limit=speed / 3.6)
             break
     for goal in GOALS:
@@ -96,7 +96,7 @@ def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
 def _command(quiet: WithoutFailure, **world: Any) -> str:
     from roadgpt.cli.repeat_commands import request_words
 
-    request = quiet.request.model_copy(update={"world": quiet.request.world.model_copy(update=world)})
+    request = quiet.request.model_copy(update={"world": quiet.request.world.changed(**world)})
     verb = ["campaign", *(["--goal", quiet.goal] if quiet.goal else [])] if quiet.is_search else ["run"]
     return shlex.join(["roadgpt", *verb, *request_words(request, quiet.tests)])
 

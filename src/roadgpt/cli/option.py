@@ -1,6 +1,6 @@
 """Defines ``Option``: a command-line option with its help text, default, and key in configuration files."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from copy import copy
 from enum import StrEnum
@@ -235,14 +235,17 @@ def named(options: Sequence[Option], *fields: str) -> list[Option]:
 
 
 def words_of(
-    options: Sequence[Option], values: object, usual: object = None, told: Sequence[str] | set[str] = ()
+    options: Sequence[Option],
+    values: Mapping[str, Any],
+    usual: Mapping[str, Any] | None = None,
+    told: Sequence[str] | set[str] = (),
 ) -> list[str]:
-    """Returns the command-line arguments that give options the values of an object's fields.
+    """Returns the command-line arguments that give options these values.
 
     Args:
         options: The options.
-        values: An object that has the options' fields; for None, no arguments are returned.
-        usual: An object with the defaults of these fields; None: the defaults are those of the options.
+        values: Values by the names of the options' fields; a missing one needs no arguments.
+        usual: The defaults of these fields; None: the defaults are those of the options.
         told: The keys of options that configuration files set; for these, the arguments contain even a
             default value.
     """
@@ -250,7 +253,7 @@ def words_of(
         word
         for option in options
         for word in option.written(
-            getattr(values, option.field, None), getattr(usual, option.field, None), option.key in told
+            values.get(option.field), (usual or {}).get(option.field), option.key in told
         )
     ]
 

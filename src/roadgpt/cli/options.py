@@ -56,7 +56,7 @@ WORLD = (
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
     _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
-    _world("--shoulder verge", "Width of the firm ground along each side of the road, m; 0: none.",
+    _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
     _world("--friction", "Friction: dry 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0),
 )
@@ -220,7 +220,8 @@ def world_of(values: dict[str, Any]) -> "World":
     """Returns the World that option values describe, and removes these options from ``values``."""
     from roadgpt.road import World
 
-    return World(**{each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values})
+    given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
+    return World().changed(**given)
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":

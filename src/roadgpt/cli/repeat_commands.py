@@ -49,5 +49,7 @@ def option_words(
         asks: Whether the command has options for language models.
     """
     told = keys_set()
-    words = [*words_of(of_setup, setup, told=told), *words_of(options.WORLD, world, told=told)]
-    return words + (words_of(options.CHAT, setup.chat, setup.chat and type(setup.chat)()) if asks else [])
+    words = [*words_of(of_setup, dict(setup), told=told), *words_of(options.WORLD, world.values(), told=told)]
+    if asks and setup.chat:
+        words += words_of(options.CHAT, dict(setup.chat), dict(type(setup.chat)()))
+    return words

@@ -142,7 +142,7 @@ def _single(file: str) -> NamedRoad:
     return NamedRoad(file, stem, Path(os.path.realpath(path)), None)
 
 
-LANES = ("lanes", "lane_width", "lane_width_end", "verge", "bank")
+LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 """Fields of the World that a road with a cross-section of its own does not take."""
 
 
@@ -171,9 +171,9 @@ def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str,
     blueprint, remarks = read_blueprint(file)
     if isinstance(blueprint, Design) or blueprint.profile is None:
         return blueprint, remarks
-    usual = World()
+    values, usual = world.values(), World().values()
     of_lanes = [each for each in WORLD if each.field in LANES]
-    given = [each.flag for each in of_lanes if getattr(world, each.field) != getattr(usual, each.field)]
+    given = [each.flag for each in of_lanes if values[each.field] != usual[each.field]]
     own = f"the road has lanes of its own; {', '.join(given)} has no effect on it"
     return blueprint, (*remarks, own) if given else remarks
 

@@ -133,7 +133,7 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         from roadgpt.brief import remarks, sentence
 
         yield f"  brief     {sentence(run.brief)}"
-        for remark in remarks(run.brief, run.world.map_size):
+        for remark in remarks(run.brief, run.world.site.map_size):
             yield f"  note      {remark}"
     if run.road is not None:
         yield f"  road      {_road_line(run)}"
@@ -148,8 +148,9 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         )
     if run.verdict is not None:
         yield (
-            f"  verdict   {_outside_line(run.verdict)}, tolerance {percent(run.world.oob_tolerance)}"
-            f"{', lane departures count' * run.world.lane_departure}, margin {metres(run.verdict.margin)}"
+            f"  verdict   {_outside_line(run.verdict)}, tolerance {percent(run.world.limits.oob_tolerance)}"
+            f"{', lane departures count' * run.world.limits.lane_departure}, "
+            f"margin {metres(run.verdict.margin)}"
         )
     yield from _asked_lines(run)
     yield f"  seed      {run.seed}" + (f" (road {run.index} of seed {run.request.seed})" if run.words else "")

@@ -51,7 +51,9 @@ def advice(
     wishes = _wishes_of(outline)
     if reason in ("too large", "over itself"):
         found = _offer(brief, world, fits, _roomier(world, boxes))
-        where = f"on a {world.map_size:g} m map" + (" without crossing" if reason == "over itself" else "")
+        where = f"on a {world.site.map_size:g} m map" + (
+            " without crossing" if reason == "over itself" else ""
+        )
         return f"{wishes} not fit {where}; {found}"
     if reason == "longer than was asked for":
         return f"{wishes} not fit into a road of {outline.length} m; ask for a longer road or for fewer turns"
@@ -69,7 +71,7 @@ def too_fast(world: World, slower: float | None) -> str:
         world: the World, for its speed limit.
         slower: a speed limit in km/h at which the road is possible; None if none is known.
     """
-    limit = f"a speed limit of {3.6 * world.speed_limit:.3g} km/h"
+    limit = f"a speed limit of {3.6 * world.limits.speed_limit:.3g} km/h"
     less = f"use --speed-limit {slower:g}" if slower else "use a lower --speed-limit"
     return (
         f"the slopes that were asked for change too fast for {limit}: the crests and dips between them would "
@@ -100,8 +102,8 @@ def _counted(number: int, what: str) -> str:
 
 def _roomier(world: World, boxes: Sequence[float]) -> float:
     """Returns the side in metres of a map that a quarter of the drafts that were too large would fit on."""
-    needed = sorted(boxes)[len(boxes) // 4] + world.road_width if boxes else 0.0
-    return max(needed, 1.2 * world.map_size)
+    needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
+    return max(needed, 1.2 * world.site.map_size)
 
 
 @lru_cache(maxsize=64)
@@ -125,9 +127,9 @@ def no_room(error: NoRoomError, world: World) -> str:
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
     said = (brief.length.lo or 0.0) if brief.length else 0.0
-    metres = max(least_length(brief, world.min_radius), said)
+    metres = max(least_length(brief, world.limits.min_radius), said)
     found = _offer(brief, world, fits, LIKELY * metres)
-    room = f"a map of {world.map_size:g} m has no room for"
+    room = f"a map of {world.site.map_size:g} m has no room for"
     if brief.length is None:
         return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found}"
     return f"{room} {metres:.0f} m of such road; {found}"
@@ -138,7 +140,7 @@ def _less(brief: Brief, world: World, fits: Fits) -> str | None:
     asked = _asked(brief)
     if asked is None:
         return None
-    failed, share = 1.0, min(1.0, SIDES * world.map_size / asked) * SHORTER
+    failed, share = 1.0, min(1.0, SIDES * world.site.map_size / asked) * SHORTER
     while not fits(_scaled(brief, share), world):
         failed, share = share, SHORTER * share
         if asked * share < FEWEST_METRES:
@@ -155,13 +157,13 @@ def _less(brief: Brief, world: World, fits: Fits) -> str | None:
 
 
 def _larger(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
-    if likely > 2 * LARGEST_MAP or world.map_size == LARGEST_MAP:
+    if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
         return None
-    size = min(ceil(max(likely, world.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
-    while size < LARGEST_MAP and not fits(brief, world.model_copy(update={"map_size": size})):
+    size = min(ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)
+    while size < LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
         size = ceil(LARGER * size / ROUND_MAP) * ROUND_MAP
     size = min(size, LARGEST_MAP)
-    if size == LARGEST_MAP and not fits(brief, world.model_copy(update={"map_size": size})):
+    if size == LARGEST_MAP and not fits(brief, world.changed(map_size=size)):
         return None
     return size
 

@@ -25,20 +25,20 @@ USUAL_HEIGHT = 0.0  # m, height of a drawn start
 def rules(name: str, world: World) -> str:
     """Returns the text of a prompt file of the package, with the limits of ``world`` filled in as numbers."""
     text = files("roadgpt.design.designers").joinpath(name).read_text(encoding="utf-8")
-    half = world.road_width / 2
+    half = world.section.road_width / 2
     numbers = {
-        "map_size": f"{world.map_size:g}",
-        "bound": f"{0.8 * world.map_size:g}",
-        "road_width": f"{world.road_width:g}",
+        "map_size": f"{world.site.map_size:g}",
+        "bound": f"{0.8 * world.site.map_size:g}",
+        "road_width": f"{world.section.road_width:g}",
         "low": f"{half + EDGE:g}",
-        "high": f"{world.map_size - half - EDGE:g}",
-        "floor": f"{world.z_floor:g}",
-        "grade": f"{100 * world.max_grade:g}",
-        "radius": f"{world.min_radius:.1f}",
-        "length": f"{world.min_length:g}",
+        "high": f"{world.site.map_size - half - EDGE:g}",
+        "floor": f"{world.site.z_floor:g}",
+        "grade": f"{100 * world.limits.max_grade:g}",
+        "radius": f"{world.limits.min_radius:.1f}",
+        "length": f"{world.limits.min_length:g}",
     }
     for degrees in (70, 45, 30):
-        numbers[f"for_{degrees}"] = f"{OF_DEFAULT_ARC * world.min_radius * radians(degrees) + 1:.0f}"
+        numbers[f"for_{degrees}"] = f"{OF_DEFAULT_ARC * world.limits.min_radius * radians(degrees) + 1:.0f}"
     return text.format_map(numbers)
 
 
@@ -85,8 +85,8 @@ def start_for(world: World, seed: int) -> str:
 def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
     """Returns a random x and y in metres, and a heading in degrees roughly towards the map's centre."""
     rng = np.random.default_rng(seed)
-    x, y = (round(float(v)) for v in world.map_size * (0.12 + 0.76 * rng.random(2)))
-    to_middle = np.degrees(np.arctan2(world.map_size / 2 - y, world.map_size / 2 - x))
+    x, y = (round(float(v)) for v in world.site.map_size * (0.12 + 0.76 * rng.random(2)))
+    to_middle = np.degrees(np.arctan2(world.site.map_size / 2 - y, world.site.map_size / 2 - x))
     theta = round(float(to_middle + 100 * (rng.random() - 0.5)) % 360 / 5) * 5 % 360
     return float(x), float(y), float(theta)
 

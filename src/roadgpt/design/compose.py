@@ -91,7 +91,7 @@ def composed(
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
     """Returns consecutive straights, shortened to what the map holds."""
-    longest = longest_straight(world.map_size, world.road_width) - ROUNDING
+    longest = longest_straight(world.site.map_size, world.section.road_width) - ROUNDING
     keep = longest / sum(element.length for element in elements)
     return (
         [element._replace(straight=keep * element.length) for element in elements] if keep < 1 else elements

@@ -190,7 +190,7 @@ class _Steps:
             reply = self.chat.ask(self._messages("Give the start of the road."), AnswerStart)
             point = reply.data.starting_point
             self.questions, self.model = self.questions + 1, reply.model
-            size = self.task.world.map_size
+            size = self.task.world.site.map_size
             if len(point) in (2, 3) and all(0 <= v <= size for v in point[:2]):
                 self.start = reply.data
                 return

@@ -50,7 +50,7 @@ def narrowed_turns(
 
 
 def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
-    least = max(least_radius(world), 0.8 * world.road_width)
+    least = max(least_radius(world), 0.8 * world.section.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
     radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
     assert radius is not None
@@ -58,8 +58,8 @@ def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
         raise DesignError(f"the radius asked for does not go with a {turn.name}; leave one of them out")
     if radius.lo > radius.hi:
         raise DesignError(
-            f"a {turn.name} with a radius of {promised} m is tighter than the {world.min_radius:.4g} m "
-            f"that the rules allow; ask for {least + 1:.0f} m or more"
+            f"a {turn.name} with a radius of {promised} m is tighter than the "
+            f"{world.limits.min_radius:.4g} m that the rules allow; ask for {least + 1:.0f} m or more"
         )
     angle = overlap(turn.degrees, outline.each_turn.degrees) or ANY_TURN
     if angle.lo > angle.hi:
@@ -123,7 +123,7 @@ def longest_turn(turns: int, outline: Outline, world: World) -> float:
     """Returns the greatest length of a turn in metres, for a road with this number of turns."""
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
-    by_map = min(2.2 * world.map_size / (turns + 1.2), longest)
+    by_map = min(2.2 * world.site.map_size / (turns + 1.2), longest)
     if outline.length is None or outline.length.hi == inf:
         return by_map
     straights = 2 * LEAD + 0.4 * SEPARATE * (turns - 1)

@@ -52,7 +52,7 @@ def least_radius(world: World) -> float:
     """Returns the smallest radius in metres that a designed turn may have. It is slightly larger than the
     smallest radius that the rules allow.
     """
-    return world.min_radius * OVER_LEAST_RADIUS
+    return world.limits.min_radius * OVER_LEAST_RADIUS
 
 
 def as_written(element: Element) -> Element:

@@ -108,7 +108,7 @@ class _Growth:
         self.longest = longest_turn(len(turns), outline, world)
         low, high = EXTRA.get(order.turns[-1].name, EXTRA_OF_OTHERS)
         self.extra = low + (high - low) * rng.random()
-        self.apart = world.road_width + SPARE + COARSENESS + BULGE
+        self.apart = world.section.road_width + SPARE + COARSENESS + BULGE
 
     def run(self) -> PlacedPlan | None:
         start, heading = self._start()
@@ -137,8 +137,8 @@ class _Growth:
         return None
 
     def _start(self) -> tuple[complex, complex]:
-        border = self.world.road_width / 2 + EDGE + 1.0
-        x, y = border + self.rng.random(2) * (self.world.map_size - 2 * border)
+        border = self.world.section.road_width / 2 + EDGE + 1.0
+        x, y = border + self.rng.random(2) * (self.world.site.map_size - 2 * border)
         heading = np.exp(1j * np.radians(self.rng.integers(3600) / 10))
         return complex(round(x, 2), round(y, 2)), complex(heading)
 
@@ -218,8 +218,8 @@ class _Growth:
         s = np.concatenate([s, line.s[-1:], line.s[-1] + on]) + way.length
         z = np.concatenate([z, line.z[-1:], line.z[-1] + on * (last / abs(last))])
         z = way.end + way.heading * z
-        border = self.world.road_width / 2 + EDGE + BULGE
-        low, high = border, self.world.map_size - border
+        border = self.world.section.road_width / 2 + EDGE + BULGE
+        low, high = border, self.world.site.map_size - border
         if min(z.real.min(), z.imag.min()) < low or max(z.real.max(), z.imag.max()) > high:
             return False
         return not len(meeting(z, s, way.z, way.s, self.apart)[0])

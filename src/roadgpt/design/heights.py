@@ -42,14 +42,14 @@ class Windows:
     """The ranges of grade, in percent, that the road and each of its features may have."""
 
     def __init__(self, outline: Outline, world: World) -> None:
-        limit = min(100 * world.max_grade, STEEPEST) - UNDER_LIMIT
+        limit = min(100 * world.limits.max_grade, STEEPEST) - UNDER_LIMIT
         if outline.steepest:
             limit = min(limit, outline.steepest.hi - min(UNDER_LIMIT, 0.2 * outline.steepest.hi))
         self.limit = Range(-limit, limit)
         """The grades that are allowed anywhere."""
-        self.comfort = world.speed_limit**2 / COMFORT
+        self.comfort = world.limits.speed_limit**2 / COMFORT
         """The vertical radius in metres that is comfortable at the speed limit."""
-        self.least = world.speed_limit**2 / MOST
+        self.least = world.limits.speed_limit**2 / MOST
         """The least vertical radius in metres that the rule ``too_abrupt`` allows at the speed limit."""
         self.base: Range | None = None
         """The grades of features without a requirement of their own; None if they are free."""

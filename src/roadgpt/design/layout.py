@@ -104,7 +104,7 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
         world: width of the carriageway and of its shoulders.
         with_shoulders: True if carriageways must also keep off each other's shoulders.
     """
-    apart = world.road_width + (world.verge if with_shoulders else SPARE) + COARSENESS
+    apart = world.section.road_width + (world.section.shoulder if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
     return not len(meeting(z, s, z, s, apart)[0])
 
@@ -137,7 +137,7 @@ def meeting(
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
     """Draws a start and a heading at which the road lies on the map; returns None if none was found."""
-    room = world.map_size - world.road_width - 2 * EDGE
+    room = world.site.map_size - world.section.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
     chosen = _first_that_fits(line.z, turns[:1], room)
     if chosen is None:
@@ -148,7 +148,7 @@ def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | N
     if chosen is None:
         return None
     theta, left, low, width, height = chosen
-    border = world.road_width / 2 + EDGE
+    border = world.section.road_width / 2 + EDGE
     x = border - left + rng.random() * max(room - width, 0.0)
     y = border - low + rng.random() * max(room - height, 0.0)
     return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)
@@ -193,7 +193,7 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
     by the smallest multiple of 0.01 degrees at which it fits.
     """
     corners = _corners(world.lay(build(design)), world)
-    room = world.map_size - 2 * LEAST_EDGE
+    room = world.site.map_size - 2 * LEAST_EDGE
     written = round(design.theta * HUNDREDTH) / HUNDREDTH - design.theta
     turn = _least_turn(corners, np.append(0.0, TURNS + written), room)
     if turn is None:
@@ -202,8 +202,8 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
     left, low, width, height = (float(edge[0]) for edge in boxes(corners, np.zeros(1)))
     pivot, spin = complex(left + width / 2, low + height / 2), np.exp(1j * radians(turn))
     start, turned = ((p - pivot) * spin + pivot for p in (complex(x, y), corners))
-    dx = _least_move(turned.real, world.map_size)
-    dy = _least_move(turned.imag, world.map_size)
+    dx = _least_move(turned.real, world.site.map_size)
+    dy = _least_move(turned.imag, world.site.map_size)
     if turn or dx or dy:
         x, y = (round(v * CENTIMETRE) / CENTIMETRE for v in (start.real + dx, start.imag + dy))
     theta = round((design.theta + turn) * HUNDREDTH) / HUNDREDTH if turn else design.theta
@@ -212,7 +212,7 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
 
 def _corners(road: Road, world: World) -> Complex:
     """Returns the convex hull of the ribbon, and of what SBFT's spline may run on behind its ends."""
-    half = world.road_width / 2
+    half = world.section.road_width / 2
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
     points = np.concatenate([left, right, behind])

@@ -33,7 +33,7 @@ def objections(design: Design, brief: Brief | None, world: World, partly: bool =
         found = check.inspect(build(design), brief, world)
     except UsageError as error:
         return (str(error),)
-    limit = 100 * world.max_grade
+    limit = 100 * world.limits.max_grade
     steep = [
         f"segment {number}: grade {segment.incline:g} % {'> ' if segment.incline > 0 else '< -'}{limit:g} %"
         for number, segment in enumerate(design.segments, 1)
@@ -58,11 +58,11 @@ def _said(finding: Finding, design: Design, world: World) -> str:
     number = _segment_at(design, finding.s)
     if finding.rule == "inside_map" and finding.x is not None and finding.y is not None:
         verb = "leaves the map at" if finding.s > 0 else "starts outside the map at"
-        place = f"({finding.x:.0f}, {finding.y:.0f}); x and y run from 0 to {world.map_size:g} m"
+        place = f"({finding.x:.0f}, {finding.y:.0f}); x and y run from 0 to {world.site.map_size:g} m"
         return f"segment {number}: {verb} {place}"
     if finding.rule == "too_tight":
         turn = abs(radians(design.segments[number - 1].turn_degrees))
-        needed = OF_DEFAULT_ARC * world.min_radius * turn
+        needed = OF_DEFAULT_ARC * world.limits.min_radius * turn
         if needed > design.segments[number - 1].distance:
             sentence += f"; give it a distance of {needed:.0f} m or turn it less"
     return f"segment {number}: {sentence}"

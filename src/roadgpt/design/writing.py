@@ -31,7 +31,7 @@ def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...
     segments = joined(_cut(written, inclines), pace)
     if not too_abrupt(segments, pace):
         return segments
-    most = min(100 * world.max_grade, MAX_INCLINE)
+    most = min(100 * world.limits.max_grade, MAX_INCLINE)
     lengths = [element.length for element in written]
     short = {i for i, element in enumerate(written) if not element.turn and lengths[i] < SHORTEST_SLOPE}
     runs = runs_of(inclines, short)
@@ -50,7 +50,7 @@ def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Desi
     """Returns a design of these elements that starts at ``place``, with its lowest point 1 m above the
     ground.
     """
-    return design_at(place, segments_of(elements, world), max(0.0, world.z_floor) + ABOVE_GROUND)
+    return design_at(place, segments_of(elements, world), max(0.0, world.site.z_floor) + ABOVE_GROUND)
 
 
 def design_at(place: MapPose, segments: tuple[Segment, ...], ground: float) -> Design:

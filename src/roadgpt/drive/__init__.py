@@ -132,7 +132,7 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
         simulator: the simulator or its class.
         world: the World; a field with its default value counts as not set.
         road: the road, or None if it is not known yet. Superelevation that is stored in the road is treated
-            like ``World.bank``.
+            like ``world.section.bank``.
 
     Raises:
         UsageError: the simulator cannot apply a field that the world sets, or the superelevation of the road;
@@ -140,17 +140,17 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
     """
     from roadgpt.road import World
 
-    usual = World()
+    values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())
     profile = None if road is None else road.profile
     is_banked = profile is not None and profile.superelevation_angle is not None
-    if "bank" in ignored and (is_banked or world.bank != usual.bank):
+    if "bank" in ignored and (is_banked or values["bank"] != usual["bank"]):
         raise UsageError(
             "this simulator cannot incline roads towards the inside of their bends (superelevation): they "
             "are level across there; leave out --bank, or drive in the simulator mujoco"
         )
     for name in ignored:
-        if (value := getattr(world, name)) != getattr(usual, name):
+        if (value := values[name]) != usual[name]:
             said = name.replace("_", " ")
             raise UsageError(
                 f"{said} {value:g} has no effect in this simulator, whose roads have a {said} of their own; "

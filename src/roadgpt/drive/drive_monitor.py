@@ -42,8 +42,8 @@ class DriveMonitor:
         self.limit = road.length / SLOWEST + SPARE
         """Time in seconds after which the drive ends."""
         self._length = road.length
-        self._tolerance = math.inf if keep_driving else world.oob_tolerance
-        is_watched = world.lane_departure and not keep_driving
+        self._tolerance = math.inf if keep_driving else world.limits.oob_tolerance
+        is_watched = world.limits.lane_departure and not keep_driving
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
         # The end of the lane's left edge; with one lane in each direction it is that of the centre line.
         edge = world.profile_of(road).lane(road.length).left

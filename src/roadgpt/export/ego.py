@@ -71,8 +71,8 @@ def calm_speeds(road: Road, world: World, s: Array) -> Array:
 
     The speed is the speed limit, or lower where the lateral acceleration in a bend would be uncomfortable."""
     bend = np.maximum(np.abs(road.curvature(s)), 1e-9)
-    sideways = min(COMFORT, GRIP * world.friction * GRAVITY)
-    return np.asarray(np.minimum(world.speed_limit, np.sqrt(sideways / bend)))
+    sideways = min(COMFORT, GRIP * world.site.friction * GRAVITY)
+    return np.asarray(np.minimum(world.limits.speed_limit, np.sqrt(sideways / bend)))
 
 
 def calm_speed(road: Road, world: World) -> float:
@@ -91,9 +91,9 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
     count = max(2, int(np.ceil((road.length - start) / STEP)) + 1)
     s = np.linspace(start, road.length, count)
     step, bend = float(s[1] - s[0]), road.curvature(s)
-    grip = GRIP * world.friction
+    grip = GRIP * world.site.friction
     pull = min(PULL / GRAVITY, grip)
-    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.speed_limit)
+    limits = DrivingLimits(min(COMFORT / GRAVITY, grip), pull, pull, world.limits.speed_limit)
     offset = world.profile_of(road).middle(s)
     speed = lane_speed(bend, 0.0, step, offset, limits)
     stretch = np.maximum(1 - bend * offset, 0.0)

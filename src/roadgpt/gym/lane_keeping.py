@@ -197,10 +197,10 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
 def _world_of(fields: Mapping[str, Any]) -> World:
     """Returns the world with these fields."""
     try:
-        return World(**fields)
+        return World.model_validate(fields)
     except ValidationError as error:
         wrong = error.errors()[0]
-        name = ".".join(map(str, wrong["loc"]))
+        name = str(wrong["loc"][-1])
         raise UsageError(f"the world cannot have {name} = {wrong['input']!r}: {wrong['msg']}") from None
 
 

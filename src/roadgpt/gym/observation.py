@@ -45,13 +45,13 @@ class Preview:
         ahead = np.minimum(here + self._ahead, last)
         car = (
             row["speed"],
-            world.speed_limit,
+            world.limits.speed_limit,
             row["t"] - self._middles[here],
             float(wrap_angle(row["heading"] - self._headings[here])),
             row["yaw_rate"],
             row["steer"],
             row["vy"],
-            world.friction,
+            world.site.friction,
         )
         every = np.concatenate([car, self._bends[ahead], self._grades[ahead]])
         return np.clip(every / SCALES, -MOST, MOST).astype(np.float32)

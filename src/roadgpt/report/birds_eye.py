@@ -62,13 +62,13 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
     _draw_key(figure, LEFT, found)
-    _ground(axes, frame, world.map_size)
+    _ground(axes, frame, world.site.map_size)
     draw_road(axes, road, world, frame.width / across)
     draw_ends(axes, road, world)
     if run.drive is not None:
         _path(figure, axes, run)
     labels = Labels(axes, frame, frame.width / across, centre, world.profile_of(road).paved_reach + 1.0)
-    labels.name_border(world.map_size)
+    labels.name_border(world.site.map_size)
     places = places_of(run)
     for place in places:
         mark(axes, run, place)
@@ -91,7 +91,7 @@ def _frame(run: Run, centre: Array) -> Frame:
     shown = centre
     if run.drive is not None:
         shown = np.concatenate([centre, np.stack([run.drive["x"], run.drive["y"]], axis=-1)])
-    return Frame.around(shown, MARGIN, LEAST, run.world.map_size)
+    return Frame.around(shown, MARGIN, LEAST, run.world.site.map_size)
 
 
 def _ground(axes: Axes, frame: Frame, size: float) -> None:

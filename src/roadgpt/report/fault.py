@@ -28,7 +28,10 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
     s = run.road.sample(1.0)
     near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)
     frame = Frame.around(
-        s.points[near][:, :2], ROOM + run.world.profile_of(run.road).paved_reach, LEAST, run.world.map_size
+        s.points[near][:, :2],
+        ROOM + run.world.profile_of(run.road).paved_reach,
+        LEAST,
+        run.world.site.map_size,
     )
     said = f"{reason.sentence}; {more}" if more else reason.sentence
     return birds_eye(replace(run, description=said), frame=frame)

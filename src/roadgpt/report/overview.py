@@ -101,7 +101,7 @@ def _about(folder: Path) -> tuple[tuple[str, str], float]:
     """Returns description and seed of the campaign, and the side of its map in metres."""
     card = folder / "campaign.json"
     if not card.is_file():
-        return (folder.name, ""), World().map_size
+        return (folder.name, ""), World().site.map_size
     try:
         request = _loaded(card)["request"]
         size = float(request["world"]["map_size"])

@@ -59,9 +59,9 @@ def strip(run: Run) -> Figure:
 
 def _curvature(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
-    bend, limit = run.road.curvature(s), 1 / run.world.min_radius
+    bend, limit = run.road.curvature(s), 1 / run.world.limits.min_radius
     reach = _fill(axes, s, bend, limit)
-    _limits(axes, limit, f"limit: radius {run.world.min_radius:.1f} m")
+    _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m")
     axes.set_ylabel("curvature, 1/m")
     _name_sides(axes, "left", "right")
     other = axes.twinx()
@@ -97,7 +97,7 @@ def _labelled_radii(reach: float) -> list[float]:
 
 def _grade(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
-    grade, limit = run.road.grade(s) * 100, run.world.max_grade * 100
+    grade, limit = run.road.grade(s) * 100, run.world.limits.max_grade * 100
     _fill(axes, s, grade, limit)
     _limits(axes, limit, f"limit: {limit:.0f} %")
     axes.set_ylabel("grade, %")
@@ -106,7 +106,7 @@ def _grade(axes: Axes, run: Run, s: Array) -> None:
 
 def _speed(axes: Axes, run: Run, s: Array) -> None:
     assert run.drive is not None
-    speed, limit = run.drive["speed"] * 3.6, run.world.speed_limit * 3.6
+    speed, limit = run.drive["speed"] * 3.6, run.world.limits.speed_limit * 3.6
     axes.set_ylim(0, 1.3 * max(limit, float(speed.max())))
     axes.plot(run.drive["s"], speed, color=INK, lw=1.4)
     axes.axhline(limit, color=VERMILLION, lw=1.1, ls=(0, (1, 1.5)))

@@ -14,21 +14,24 @@ from roadgpt.road.moving import moved
 from roadgpt.road.profile import Edges, Profile
 from roadgpt.road.road import Road, Samples
 from roadgpt.road.short_segments import in_short_segments
-from roadgpt.road.world import World
+from roadgpt.road.world import CrossSection, Limits, Site, World
 
 if TYPE_CHECKING:
     from roadgpt.road.opendrive import ImportedRoad, read_opendrive
     from roadgpt.road.source import read_blueprint, read_road
 
 __all__ = [
+    "CrossSection",
     "Design",
     "Edges",
     "Geometry",
     "ImportedRoad",
+    "Limits",
     "Profile",
     "Road",
     "Samples",
     "Segment",
+    "Site",
     "World",
     "build",
     "in_short_segments",

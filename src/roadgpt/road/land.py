@@ -49,7 +49,7 @@ class Land:
         x, y = (np.arange(low[i] - MARGIN, high[i] + MARGIN + cell, cell) for i in (0, 1))
         profile = world.profile_of(road)
         if not profile.has_shoulders:
-            level = min(world.z_floor, float(line[:, 2].min()) - 1.0)
+            level = min(world.site.z_floor, float(line[:, 2].min()) - 1.0)
             away = np.full((len(y), len(x)), np.inf)
             return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
         heights, away = _relief(_lowest(road, profile, line), x, y, cell, profile.reach + 1.45 * cell)

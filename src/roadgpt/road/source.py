@@ -76,13 +76,13 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
 
 def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
     """Returns what an OpenDRIVE file says about lanes and limits that differs from the default World."""
-    usual = World()
-    own = found.world(usual)
+    usual, own = World(), found.world(World())
+    speed, friction = own.limits.speed_limit, own.site.friction
     told = {
-        f"lanes of {own.lane_width:g} m": own.lane_width == usual.lane_width,
-        f"a shoulder of {own.verge:g} m": own.verge == usual.verge,
-        f"{own.speed_limit * 3.6:.4g} km/h": math.isclose(own.speed_limit, usual.speed_limit),
-        f"a friction of {own.friction:g}": own.friction == usual.friction,
+        f"lanes of {own.section.lane_width:g} m": own.section.lane_width == usual.section.lane_width,
+        f"a shoulder of {own.section.shoulder:g} m": own.section.shoulder == usual.section.shoulder,
+        f"{speed * 3.6:.4g} km/h": math.isclose(speed, usual.limits.speed_limit),
+        f"a friction of {friction:g}": friction == usual.site.friction,
     }
     others = [what for what, is_usual in told.items() if not is_usual]
     if not others:

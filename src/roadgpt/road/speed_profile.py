@@ -94,15 +94,17 @@ def expected_speed(
     limits of acceleration. The arguments have the meaning that they have in ``lane_speed``. ``profile`` is
     the cross-section of the road; with None, the road has the lanes and the superelevation of the World.
     """
-    limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.speed_limit)
+    limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.limits.speed_limit)
     s = step * np.arange(np.size(curvature))
     if profile is not None:
         angle: ArrayLike = profile.superelevation(s)
-    elif world.bank != "none":
-        angle = superelevation_for(np.asarray(curvature, float), world.speed_limit, world.bank_ratio)
+    elif world.section.bank != "none":
+        angle = superelevation_for(
+            np.asarray(curvature, float), world.limits.speed_limit, world.section.bank_ratio
+        )
     else:
         angle = 0.0
-    lanes = profile or world.usual_profile(float(s[-1]) or step)
+    lanes = profile or world.section.profile(float(s[-1]) or step)
     return lane_speed(curvature, grade, step, lanes.middle(s), limits, angle)
 
 

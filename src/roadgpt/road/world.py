@@ -1,10 +1,15 @@
-"""Defines the World: the map, lanes, shoulders, friction and limits that all roads of a campaign share."""
+"""Defines the World, which all roads of a campaign share: a Site, the lanes of its roads, and Limits.
+
+Files keep the values of all three in one flat table, in the order of ``PLACES``.
+"""
 
 import re
+import warnings
+from collections.abc import Mapping
 from dataclasses import replace
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import AfterValidator, AliasChoices, BaseModel, ConfigDict, Field, model_serializer
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_serializer, model_validator
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
@@ -45,13 +50,27 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
 Lanes = Annotated[str, AfterValidator(lanes_in)]
 
 
-class World(BaseModel):
-    """Map, lanes, shoulders, friction and limits. Most defaults are those of the RoadGPT thesis."""
+class Site(BaseModel):
+    """The map on which roads are built: its size, its ground, and the friction of its asphalt."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
+    friction: Annotated[float, Field(gt=0, le=2)] = 1.0
+    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, about 0.35 on snow."""
+    z_floor: float = -28.0
+    """Height in metres of the flat ground of the simulator's map."""
+
+
+class CrossSection(BaseModel):
+    """The lanes, shoulders and banked bends of roads that have no Profile of their own.
+
+    It holds for roads of every length; ``profile`` makes the Profile of one road from it.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
     lanes: Lanes = "1+1"
     """Number of lanes along the road, and number of oncoming lanes.
 
@@ -65,70 +84,16 @@ class World(BaseModel):
     """
     bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
     """Superelevation of bends: "none", "auto" for the values of CD 109, or one ratio for all bends."""
-    verge: NotNegative = Field(3.0, validation_alias=AliasChoices("verge", "shoulder"))
+    shoulder: NotNegative = 3.0
     """Width in metres of the firm shoulder beside the carriageway.
 
     With 0 the road floats above the ground, as in the RoadGPT thesis.
     """
-    friction: Annotated[float, Field(gt=0, le=2)] = 1.0
-    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, about 0.35 on snow."""
-    speed_limit: Positive = 70 / 3.6
-    """Speed limit in m/s. The default is the competition's 70 km/h."""
-    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
-    """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
-    lane_departure: bool = False
-    """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking.
 
-    Source: UN Regulation No. 157, 5.2.1.
-    """
-    min_radius: Positive = 14.326
-    """Minimum radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
-    max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
-    """Steepest grade, uphill or downhill, that the validity rules allow, as a ratio."""
-    z_floor: float = -28.0
-    """Height in metres of the flat ground of the simulator's map."""
-    min_length: NotNegative = 20.0
-
-    @model_serializer(mode="wrap")
-    def _without_usual(self, dump: Any) -> dict[str, Any]:
-        data: dict[str, Any] = dump(self)
-        return {name: value for name, value in data.items() if name not in OWN or value != OWN[name]}
-
-    def profile_of(self, road: Road) -> Profile:
-        """Returns the cross-section of a road: ``road.profile``, or this World's cross-section if that is
-        None.
-
-        Raises:
-            UsageError: This World has banked bends, but the road has no superelevation because it was not
-                passed through ``lay``.
-        """
-        if road.profile is not None:
-            return road.profile
-        if self.bank != "none":
-            raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
-        return self.usual_profile(road.length)
-
-    def lay(self, road: Road) -> Road:
-        """Returns the road with this World's lanes and banked bends.
-
-        A road that has a cross-section of its own keeps it. If this World has the usual two lanes of one
-        width and no banked bends, the road is returned unchanged.
-        """
-        if road.profile is not None or all(getattr(self, name) == usual for name, usual in OWN.items()):
-            return road
-        profile = self.usual_profile(road.length)
-        if self.bank != "none":
-            angle = superelevation(road.plan, profile.paved_reach, self.speed_limit, self.bank_ratio)
-            profile = replace(profile, superelevation_angle=angle)
-        return road.with_profile(profile)
-
-    def usual_profile(self, length: float) -> Profile:
-        """Returns the cross-section of a road of this length in metres, without superelevation.
-
-        It applies to every road whose own ``profile`` is None.
-        """
+    def profile(self, length: float) -> Profile:
+        """Returns the Profile of a road of this length in metres, without superelevation."""
         forward, backward = map(int, self.lanes.split("+"))
-        return Profile.of(forward, backward, self._width(length), self.verge)
+        return Profile.of(forward, backward, self._width(length), self.shoulder)
 
     def _width(self, length: float) -> float | CubicProfile:
         """Returns the width of the lanes, which changes from start to end without a kink."""
@@ -147,3 +112,156 @@ class World(BaseModel):
         """Twice the largest distance in metres between the centre line and an edge of the carriageway."""
         count = max(int(each) for each in self.lanes.split("+"))
         return 2 * count * max(self.lane_width, self.lane_width_end or 0.0)
+
+
+class Limits(BaseModel):
+    """What the rules allow of a road, and how a test fails. Most defaults are those of the RoadGPT thesis."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    speed_limit: Positive = 70 / 3.6
+    """Speed limit in m/s. The default is the competition's 70 km/h."""
+    oob_tolerance: Annotated[float, Field(gt=0, le=1)] = 0.95
+    """Fraction of the car's area, 0 to 1, that may be outside its lane before the test fails."""
+    lane_departure: bool = False
+    """Whether the test also fails as soon as a front tyre crosses the outer edge of a lane marking.
+
+    Source: UN Regulation No. 157, 5.2.1.
+    """
+    min_radius: Positive = 14.326
+    """Minimum radius of a turn in metres. The default is 47 ft, the tightest turn of the SBFT rules."""
+    max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
+    """Steepest grade, uphill or downhill, that the validity rules allow, as a ratio."""
+    min_length: NotNegative = 20.0
+    """Minimum length of a road in metres."""
+
+
+FIELDS = {
+    "map_size": "site",
+    "lanes": "section",
+    "lane_width": "section",
+    "lane_width_end": "section",
+    "bank": "section",
+    "shoulder": "section",
+    "friction": "site",
+    "speed_limit": "limits",
+    "oob_tolerance": "limits",
+    "lane_departure": "limits",
+    "min_radius": "limits",
+    "max_grade": "limits",
+    "z_floor": "site",
+    "min_length": "limits",
+}
+"""The fields of the three parts of a World, in the order of files, with the part that has each field."""
+KEYS = {"shoulder": "verge"}
+"""The fields that have another name in files."""
+EARLIER = {key: name for name, key in KEYS.items()}
+
+
+def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the values of one flat table under the parts that have them, and all others as they are.
+
+    A value that is given twice, or beside its part, stays where it is, and pydantic refuses it there.
+    """
+    out = {name: value for name, value in values.items() if name in ("site", "section", "limits")}
+    flat: dict[str, Any] = {}
+    for key, value in values.items():
+        name = EARLIER.get(key, key)
+        part = FIELDS.get(name)
+        if part is None or part in out or name in flat.get(part, {}):
+            flat.setdefault(key, value)
+        else:
+            flat.setdefault(part, {})[name] = value
+    return out | flat
+
+
+class World(BaseModel):
+    """Everything that the roads of one folder share: a Site, a CrossSection and Limits.
+
+    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table.
+    Earlier versions of RoadGPT had no parts: ``World(friction=0.6)`` and ``world.friction`` still work, with
+    a DeprecationWarning.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    site: Site = Site()
+    section: CrossSection = CrossSection()
+    """The cross-section of roads whose own ``profile`` is None."""
+    limits: Limits = Limits()
+
+    if not TYPE_CHECKING:  # mypy shall not accept the earlier form
+
+        def __init__(self, **values: Any) -> None:
+            for name in values:
+                if part := FIELDS.get(EARLIER.get(name, name)):
+                    kind = type(self).model_fields[part].annotation.__name__
+                    instead = f"World({part}={kind}({EARLIER.get(name, name)}=...))"
+                    warnings.warn(f"World({name}=...) is deprecated; write {instead}", DeprecationWarning, 2)
+            super().__init__(**values)
+
+        __init__.__pydantic_base_init__ = True  # so that reading a file does not call it, as in RootModel
+
+        def __getattr__(self, name: str) -> Any:
+            field = EARLIER.get(name, name)
+            if part := FIELDS.get(field):
+                instead = f"world.{part}.{field}"
+                warnings.warn(f"world.{name} is deprecated; write {instead}", DeprecationWarning, 2)
+                return getattr(getattr(self, part), field)
+            return super().__getattr__(name)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _from_file(cls, data: Any) -> Any:
+        return _in_parts(data) if isinstance(data, Mapping) else data
+
+    @model_serializer
+    def _to_file(self) -> dict[str, Any]:
+        """Returns the flat table of files, without the defaults of ``OWN``."""
+        values = self.values().items()
+        return {
+            KEYS.get(name, name): value for name, value in values if name not in OWN or value != OWN[name]
+        }
+
+    def values(self) -> dict[str, Any]:
+        """Returns the fields of all three parts by their names, in the order of ``FIELDS``."""
+        return {name: getattr(getattr(self, part), name) for name, part in FIELDS.items()}
+
+    def changed(self, **values: Any) -> "World":
+        """Returns a World with other values for some fields of its parts, such as ``friction=0.6``.
+
+        Raises:
+            pydantic.ValidationError: There is no such field, or its value is invalid.
+        """
+        own = {EARLIER.get(name, name): value for name, value in values.items()}
+        return World.model_validate(self.values() | own)
+
+    def profile_of(self, road: Road) -> Profile:
+        """Returns the Profile of a road: ``road.profile``, or one of ``section`` if that is None.
+
+        Raises:
+            UsageError: This World has banked bends, but the road has no superelevation because it was not
+                passed through ``lay``.
+        """
+        if road.profile is not None:
+            return road.profile
+        if self.section.bank != "none":
+            raise UsageError("the road has no superelevation yet; use the road that world.lay(road) returns")
+        return self.section.profile(road.length)
+
+    def lay(self, road: Road) -> Road:
+        """Returns the road with the lanes and banked bends of this World's ``section``.
+
+        A road that has a Profile of its own keeps it. If ``section`` has the usual two lanes of one width and
+        no banked bends, the road is returned unchanged.
+        """
+        section = self.section
+        if road.profile is not None or all(getattr(section, name) == usual for name, usual in OWN.items()):
+            return road
+        profile = section.profile(road.length)
+        if section.bank != "none":
+            angle = superelevation(
+                road.plan, profile.paved_reach, self.limits.speed_limit, section.bank_ratio
+            )
+            profile = replace(profile, superelevation_angle=angle)
+        return road.with_profile(profile)

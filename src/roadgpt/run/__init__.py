@@ -122,8 +122,8 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
-            limits = (world.map_size, world.min_radius, world.max_grade)
-            return read(words, setup.reader, *limits, setup.chat, world.road_width)
+            limits = (world.site.map_size, world.limits.min_radius, world.limits.max_grade)
+            return read(words, setup.reader, *limits, setup.chat, world.section.road_width)
         except NoRoomError as error:
             raise BriefError(no_room(error, world)) from error
 

@@ -107,7 +107,7 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
 
 def _card(run: Run) -> dict[str, Any]:
     asked = {"designing": run.designing, "spent": run.spent}
-    noted = remarks(run.brief, run.world.map_size) if run.brief else ()
+    noted = remarks(run.brief, run.world.site.map_size) if run.brief else ()
     return {
         "format": FORMAT,
         "index": run.index,

@@ -134,9 +134,9 @@ def write_settings(
     world = request.world
     known = {
         "executor": request.setup.simulator,
-        "map_size": world.map_size,
-        "oob_tolerance": world.oob_tolerance,
-        "speed_limit": round(world.speed_limit * 3.6, 6),
+        "map_size": world.site.map_size,
+        "oob_tolerance": world.limits.oob_tolerance,
+        "speed_limit": round(world.limits.speed_limit * 3.6, 6),
     }
     row: dict[str, object] = dict.fromkeys(SETTINGS, "") | known | dict(theirs)
     rest = {name: value for name, value in world.model_dump().items() if name not in row}

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.errors import RoadGPTError, UsageError
-from roadgpt.road import Road, World
+from roadgpt.road import Road, Site, World
 from roadgpt.run import Draw, Request, Run, Setup, check_parts, prove
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.sbft.experiment import Ending, Experiment
@@ -19,7 +19,7 @@ from roadgpt.sbft.results import LOG, Results, new_folder
 from roadgpt.sbft.single_test import run_test
 from roadgpt.stopping import look
 
-USUAL = World(map_size=200.0)
+USUAL = World(site=Site(map_size=200.0))
 GROUND = 0.0  # m: the competition's roads are level, and points without heights are at this height
 PLAIN = Setup(rules="sbft")
 WARM = [[60.0, 100.0], [100.0, 100.0], [140.0, 100.0]]  # a road to compile the simulator on
@@ -86,10 +86,13 @@ class Competition:
         task = self.experiment.model_dump(
             include={"module_name", "class_name", "module_path", "time_budget", "test_budget", "debug"}
         )
-        map_size = self.request.world.map_size
+        map_size = self.request.world.site.map_size
         whole = int(map_size) if map_size.is_integer() else map_size
         world = self.request.world
-        told = {"oob_tolerance": world.oob_tolerance, "max_speed_in_kmh": round(world.speed_limit * 3.6, 6)}
+        told = {
+            "oob_tolerance": world.limits.oob_tolerance,
+            "max_speed_in_kmh": round(world.limits.speed_limit * 3.6, 6),
+        }
         host.tell({**task, **told, "map_size": whole, "folder": str(self.folder.resolve())})
         first = prove(Road.through(WARM), 0, self.request.world, self.request.setup)
         if first.outcome == "ERROR":
@@ -212,7 +215,7 @@ def compete(
     if experiment.time_budget is None and experiment.test_budget is None:
         raise UsageError("a generator needs a budget; say --time-budget SECONDS or --test-budget N")
     setup = setup.model_copy(update={"rules": "sbft"})
-    world = world.model_copy(update={"z_floor": GROUND})
+    world = world.changed(z_floor=GROUND)
     check_parts(setup, world)
     request = Request(seed=seed, world=world, setup=setup)
     folder, made = new_folder(experiment, out)

@@ -20,7 +20,7 @@ from typing import Any
 from roadgpt.chat import ReplyError
 from roadgpt.check import sbft_verdict
 from roadgpt.errors import DesignError, UsageError
-from roadgpt.road import Design, Road, World
+from roadgpt.road import Design, Road, Site, World
 from roadgpt.run import Setup, brief_of, perform
 
 log = logging.getLogger(__name__)
@@ -77,7 +77,7 @@ class RoadGPTTestGenerator:
         Raises:
             BriefError, DesignError: as for ``start``.
         """
-        world = World(map_size=float(self.map_size))
+        world = World(site=Site(map_size=float(self.map_size)))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)
         earlier: deque[Design] = deque(maxlen=REMEMBERED)
@@ -94,7 +94,7 @@ class RoadGPTTestGenerator:
             if run.design is not None:
                 earlier.append(run.design)
             points = road_points(run.road) if run.road is not None and run.is_valid else None
-            if points is not None and sbft_verdict(points, world.map_size)[0]:
+            if points is not None and sbft_verdict(points, world.site.map_size)[0]:
                 failures = 0
                 yield points
                 continue

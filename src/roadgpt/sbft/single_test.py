@@ -35,7 +35,7 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
         return _invalid(TOO_FEW, None, index, request, generating)
     try:
         road = Road.through(table)
-        is_valid, message = sbft_verdict(table, request.world.map_size)
+        is_valid, message = sbft_verdict(table, request.world.site.map_size)
     except RoadGPTError as error:
         return _invalid(str(error), None, index, request, generating)
     if not is_valid:

@@ -77,7 +77,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
     """
     is_thesis = plan.kind == "thesis"
     valid, left = (make(parts, plan.designers, has_baseline=is_thesis) for make in (validity, departures))
-    kept, first = alignment(parts, plan.designers), overview(parts, plan.world.map_size)
+    kept, first = alignment(parts, plan.designers), overview(parts, plan.world.site.map_size)
     own = [valid, left, kept] if is_thesis else [kept, valid, *([left] if plan.setup.drives else [])]
     title = "The evaluation of RoadGPT's thesis, done again" if is_thesis else "Do roads keep the words?"
     lead = f"{plural(len(plan.prompts), 'description')}, {plural(plan.roads, 'road')} each"
@@ -92,7 +92,7 @@ def page_of(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> Page:
 
 def _comparisons(parts: Sequence[StudyPartRecord], world: World) -> list[Section]:
     covered = coverage(parts)
-    return [diversity(parts), *([covered] if covered else []), every_road(parts, world.map_size)]
+    return [diversity(parts), *([covered] if covered else []), every_road(parts, world.site.map_size)]
 
 
 def _summary(plan: StudyPlan, parts: Sequence[StudyPartRecord]) -> list[str]:
@@ -177,7 +177,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
         raise UsageError(f"{folder} holds no finished road yet; go on with the same roadgpt run first")
     parts, failed = [part], faults_in(folder)
     summaries = fault_summaries(folder, failed)
-    opening = [overview(parts, world.map_size), faults(folder, failed, summaries)]
+    opening = [overview(parts, world.site.map_size), faults(folder, failed, summaries)]
     sections = [*filter(None, opening), *what_to_try(next_steps)]
     sections += [validity(parts, [setup.designer])]
     sections += [departures(parts, [setup.designer])] if setup.drives else []

@@ -102,7 +102,7 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
     if drive.ended == "out_of_lane":
         raise UsageError(
             f"the drive was ended with {drive['outside'][last]:.3f} of the car outside its lane, which "
-            f"a tolerance of {world.oob_tolerance:g} allows: drive the road again with this tolerance"
+            f"a tolerance of {world.limits.oob_tolerance:g} allows: drive the road again with this tolerance"
         )
     return last, CAUSES.get(drive.ended)
 
@@ -117,8 +117,8 @@ def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: f
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
     if not drive.max_outside:
         return f"kept its lane {reached}, never closer than {margin:.2f} m to failing"
-    kept = f"kept its lane within the tolerance of {percent(world.oob_tolerance)}"
-    if world.lane_departure:
+    kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"
+    if world.limits.lane_departure:
         kept = "kept its front tyres within the markings"
     far = f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
     outside = f"at most {percent(drive.max_outside)} outside, {far}"

@@ -86,9 +86,9 @@ def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     box = lateral_extent(road, drive)
     s, profile = drive["s"], world.profile_of(road)
     half, middle, rims = profile.width(s) / 2, profile.middle(s), profile.rims(s)
-    in_lane = half + allowed_overhang(world.oob_tolerance, box) - np.abs(box.middle - middle)
+    in_lane = half + allowed_overhang(world.limits.oob_tolerance, box) - np.abs(box.middle - middle)
     ground = np.minimum(rims.left - box.middle, box.middle - rims.right) - box.long - box.short
-    if world.lane_departure:
+    if world.limits.lane_departure:
         from roadgpt.drive.marking_monitor import MarkingMonitor
 
         in_lane = np.minimum(in_lane, -MarkingMonitor.for_tyres(road, world, drive.car).along(drive))

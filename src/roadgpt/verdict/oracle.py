@@ -62,7 +62,7 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
     The car is out of its lane if the share of its bounding box outside the lane exceeds the tolerance. If
     ``World.lane_departure`` is set, it is also out of its lane while a front tyre is beyond a lane marking.
     """
-    out: NDArray[np.bool_] = drive["outside"] > world.oob_tolerance
+    out: NDArray[np.bool_] = drive["outside"] > world.limits.oob_tolerance
     out |= has_departed(road, drive, world)
     out[drive.lane_steps :] = False
     return out
@@ -74,7 +74,7 @@ def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.boo
 
     All values are False if ``world.lane_departure`` is not set.
     """
-    if not world.lane_departure:
+    if not world.limits.lane_departure:
         return np.zeros(len(drive), bool)
     from roadgpt.drive.marking_monitor import MarkingMonitor
 

@@ -22,7 +22,7 @@ from roadgpt.drive.simulators.beamng.session import leave_all, session_of
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
 from roadgpt.export.exporters.beamng.files import items
 from roadgpt.export.exporters.beamng.roads import level_road
-from roadgpt.road import Design, Road, Segment, World, build
+from roadgpt.road import CrossSection, Design, Limits, Road, Segment, Site, World, build
 from roadgpt.run import Setup, prove
 from roadgpt.verdict import judge
 
@@ -143,14 +143,14 @@ def test_too_fast_into_a_bend_is_out_of_the_lane_at_the_very_moment(fake: FakeBe
         drive = simulator(fake, aggression=1.0, rate=rate).simulate(road, WORLD, BeamngLike(), 7)
         verdict = judge(road, drive, WORLD)
         assert (drive.ended, verdict.outcome, verdict.side) == ("out_of_lane", "FAIL", "right")
-        assert drive["outside"][-1] == pytest.approx(WORLD.oob_tolerance, abs=1e-3)
+        assert drive["outside"][-1] == pytest.approx(WORLD.limits.oob_tolerance, abs=1e-3)
         times.append(drive.duration)
     # interpolated: 50 ms between samples cost no 50 ms of doubt
     assert max(times) - min(times) < 0.03
 
 
 def test_a_lane_departure_ends_the_drive_at_the_very_moment(fake: FakeBeamNG) -> None:
-    road, watched = hairpin(), World(lane_departure=True)
+    road, watched = hairpin(), World(limits=Limits(lane_departure=True))
     for keep_driving in (False, True):
         made = simulator(fake, aggression=1.0, rate=20)
         drive = made.simulate(road, watched, BeamngLike(), 7, keep_driving)
@@ -166,8 +166,8 @@ def test_a_lane_departure_ends_the_drive_at_the_very_moment(fake: FakeBeamNG) ->
 def test_keep_driving_goes_on_and_keeps_the_moment(fake: FakeBeamNG) -> None:
     drive = simulator(fake, aggression=1.0, rate=20).simulate(hairpin(), WORLD, BeamngLike(), 7, True)
     assert drive.ended != "out_of_lane"
-    first = int(np.argmax(drive["outside"] > WORLD.oob_tolerance))
-    assert drive["outside"][first] == pytest.approx(WORLD.oob_tolerance, abs=1e-3)
+    first = int(np.argmax(drive["outside"] > WORLD.limits.oob_tolerance))
+    assert drive["outside"][first] == pytest.approx(WORLD.limits.oob_tolerance, abs=1e-3)
     assert (np.diff(drive["time"]) > 0).all()
 
 
@@ -177,7 +177,9 @@ def test_a_car_that_leaves_a_floating_road_falls(fake: FakeBeamNG) -> None:
             return Command(-0.2, 0.6)
 
     road = Road.through([[40, 100, 0], [90, 100, 0], [140, 100, 0]])
-    drive = simulator(fake).simulate(road, World(verge=0), Away(), 7, keep_driving=True)
+    drive = simulator(fake).simulate(
+        road, World(section=CrossSection(shoulder=0)), Away(), 7, keep_driving=True
+    )
     assert drive.ended == "fell"
     assert drive["t"][-1] < -4.0
 
@@ -360,7 +362,7 @@ def test_the_first_road_may_take_longer_to_load_and_the_screen_says_so(
 def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_driven(
     tmp_path: Path, fake: FakeBeamNG
 ) -> None:
-    slippery, setup = World(friction=0.5), Setup(reader="grammar", simulator="beamng")
+    slippery, setup = World(site=Site(friction=0.5)), Setup(reader="grammar", simulator="beamng")
     said = r"friction 0\.5 has no effect in this simulator.*leave out --friction, or drive in"
     with pytest.raises(UsageError, match=said):
         simulate(SHORT, slippery, "reference", 0, simulator(fake))

@@ -14,7 +14,18 @@ from roadgpt.errors import UsageError
 from roadgpt.export import save
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.geometry import GradeProfile
-from roadgpt.road import ImportedRoad, Road, World, build, moved, read_blueprint, read_opendrive
+from roadgpt.road import (
+    CrossSection,
+    ImportedRoad,
+    Limits,
+    Road,
+    Site,
+    World,
+    build,
+    moved,
+    read_blueprint,
+    read_opendrive,
+)
 from strategies import designs
 
 DATA = Path(__file__).parent / "data"
@@ -73,7 +84,11 @@ def test_every_kind_of_road_comes_back_within_a_millimetre(tmp_path: Path, name:
 
 
 def test_lanes_limits_and_friction_come_back(tmp_path: Path) -> None:
-    world = World(lane_width=3.25, verge=1.25, friction=0.35, speed_limit=70 / 3.6)
+    world = World(
+        section=CrossSection(lane_width=3.25, shoulder=1.25),
+        site=Site(friction=0.35),
+        limits=Limits(speed_limit=70 / 3.6),
+    )
     assert written(ROADS["arcs"], tmp_path, world).world(World()) == world
 
 

@@ -94,7 +94,7 @@ def _moved(design: Design, failure: Run) -> list[Design]:
         points = build(design, failure.request.setup.geometry).centreline()
     except RoadGPTError:
         return []
-    middle = failure.world.map_size / 2
+    middle = failure.world.site.map_size / 2
     low, high = points.min(axis=0), points.max(axis=0)
     x, y, z = design.starting_point
     dx, dy = (round(float(middle - (a + b) / 2), 2) for a, b in zip(low[:2], high[:2], strict=True))

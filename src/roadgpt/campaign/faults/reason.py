@@ -129,7 +129,7 @@ def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: 
     what = "came to a standstill" if is_stuck else "was too slow to arrive in time"
     sentence = f"{what} after {station:.0f} m{where}"
     way: Way = "stopped" if is_stuck else "late"
-    return FailureReason(way, sentence, station, None, None, speed, 0.0, world.friction, grade, 0.0)
+    return FailureReason(way, sentence, station, None, None, speed, 0.0, world.site.friction, grade, 0.0)
 
 
 def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station: float) -> FailureReason:
@@ -147,16 +147,16 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
             f"left a straight to the {verdict.side} at {speed * 3.6:.0f} km/h after {station:.0f} m{slope}"
         )
         return FailureReason(
-            "off", sentence, station, None, None, entered, needed, world.friction, grade, hill
+            "off", sentence, station, None, None, entered, needed, world.site.friction, grade, hill
         )
     before = _after(road, begin, bend)
     did = "and ran wide" if how.way == "wide" else "and cut its inside"
     sentence = (
         f"entered an R {how.radius:.0f} m {how.side} at {entered * 3.6:.0f} km/h{before}{slope} {did} after "
-        f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.friction:.2f}"
+        f"{station:.0f} m; the lane's middle needs {needed:.2f} g of {world.site.friction:.2f}"
     )
     return FailureReason(
-        how.way, sentence, station, how.radius, how.side, entered, needed, world.friction, grade, hill
+        how.way, sentence, station, how.radius, how.side, entered, needed, world.site.friction, grade, hill
     )
 
 

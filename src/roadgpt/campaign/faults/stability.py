@@ -127,8 +127,8 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
     assert road is not None
     driver = LateDriver(driver_of(setup.driver), disturbance.delay, world)
     heeds = "friction" not in getattr(plugins.find("simulators", setup.simulator), "ignores", ())
-    grip = world.friction * (disturbance.friction if heeds else 1.0)
-    slippery = world.model_copy(update={"friction": grip})
+    grip = world.site.friction * (disturbance.friction if heeds else 1.0)
+    slippery = world.changed(friction=grip)
     drive = simulate(road, slippery, driver, run.seed, _engine(setup.simulator, disturbance), False)
     return judge(road, drive, slippery)
 

@@ -11,8 +11,8 @@ ROUNDING = 1e-6  # m
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the lowest place of the road if it is below the ground of the level."""
     s, z = lowest(road.elevation, road.length)
-    if z >= world.z_floor - ROUNDING:
+    if z >= world.site.z_floor - ROUNDING:
         return ()
     x, y, _ = (float(v) for v in road.at(s))
-    sentence = f"at s = {s:.0f} m: height {z:.1f} m is below the ground at {world.z_floor:g} m"
+    sentence = f"at s = {s:.0f} m: height {z:.1f} m is below the ground at {world.site.z_floor:g} m"
     return (Finding("below_floor", sentence, s, x, y),)

@@ -19,7 +19,7 @@ from roadgpt.road import Road, World
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports where the road leaves the map, and whether the road is larger than the map."""
-    samples, size = road.sample(), world.map_size
+    samples, size = road.sample(), world.site.map_size
     offsets = world.profile_of(road).edges(samples.s)
     low, high = extent(samples, offsets)
     room = min(low.min(), size - high.max())
@@ -44,10 +44,10 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 def _on_sbft_s_spline(road: Road, world: World) -> tuple[Finding, ...]:
     ways = splines(road.control_points())
     nodes = np.concatenate(ways)
-    edges = np.concatenate([np.stack(sbft_edges(way, world.road_width), axis=1) for way in ways])
-    if edges.min() > 0 and edges.max() < world.map_size:
+    edges = np.concatenate([np.stack(sbft_edges(way, world.section.road_width), axis=1) for way in ways])
+    if edges.min() > 0 and edges.max() < world.site.map_size:
         return ()
-    node = int(np.any((edges <= 0) | (edges >= world.map_size), axis=(1, 2)).argmax())
+    node = int(np.any((edges <= 0) | (edges >= world.site.map_size), axis=(1, 2)).argmax())
     x, y = (float(v) for v in nodes[node])
     sentence = (
         f"near ({x:.0f}, {y:.0f}): with SBFT's spline the road leaves the map; keep away from its border"

@@ -44,7 +44,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, ...]:
     ways = splines(road.control_points())
-    if all(keeps_clear(quads_of(*edges(nodes, world.road_width))) for nodes in ways):
+    if all(keeps_clear(quads_of(*edges(nodes, world.section.road_width))) for nodes in ways):
         return ()
     return (_finding(road, nearest, "with SBFT's spline the road touches itself; move the two parts apart"),)
 

@@ -32,7 +32,7 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 def promises_of(brief: Brief, world: World) -> Outline:
     """Returns the requirements of a Brief for a road on the map of ``world``, as an Outline."""
-    return outline(brief, world.map_size >= ROOMY, world.map_size)
+    return outline(brief, world.site.map_size >= ROOMY, world.site.map_size)
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:

@@ -10,7 +10,7 @@ from roadgpt.road import Road, World
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the error message of the competition's validator if it rejects the road's control points."""
     try:
-        is_valid, message = sbft_verdict(road.control_points(), world.map_size)
+        is_valid, message = sbft_verdict(road.control_points(), world.site.map_size)
     except UsageError as error:  # two points coincide in plan: the competition's code stops
         is_valid, message = False, str(error)
     return () if is_valid else (Finding("sbft", message),)

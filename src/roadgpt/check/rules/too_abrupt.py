@@ -26,7 +26,7 @@ ROUNDING = 1e-3  # of the limit
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the crest or dip that exceeds its limit by the largest factor, if there is one."""
     begin, end, bend = vertical_bends(road)
-    suspects = np.flatnonzero(np.abs(bend) * world.speed_limit**2 > MOST * (1 + ROUNDING))
+    suspects = np.flatnonzero(np.abs(bend) * world.limits.speed_limit**2 > MOST * (1 + ROUNDING))
     if not suspects.size:
         return ()
     s = np.linspace(0.0, road.length, max(1, round(road.length / STEP)) + 1)

@@ -18,12 +18,12 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     length = road.length
     if length <= LEAST:
         return (_without_room(length),)
-    if length > world.min_length + DOUBT:
+    if length > world.limits.min_length + DOUBT:
         return ()
     length = min(length, measured_length(interpolate(road.control_points())))
-    if length > world.min_length:
+    if length > world.limits.min_length:
         return ()
-    wanted = f"a road is longer than {world.min_length:g} m"
+    wanted = f"a road is longer than {world.limits.min_length:g} m"
     return (Finding("too_short", f"the road is {length:.1f} m long, and {wanted}"),)
 
 

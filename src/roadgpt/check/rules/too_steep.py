@@ -19,10 +19,10 @@ ROUNDING = 1e-6  # ratio
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the steepest place of the road if its grade exceeds the limit."""
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
-        if abs(grade) > world.max_grade + ROUNDING:
+        if abs(grade) > world.limits.max_grade + ROUNDING:
             x, y, _ = (float(v) for v in road.at(s))
             way = "uphill" if grade > 0 else "downhill"
-            limit = f"steeper than {100 * world.max_grade:g} %"
+            limit = f"steeper than {100 * world.limits.max_grade:g} %"
             sentence = f"at s = {s:.0f} m: grade {100 * abs(grade):.1f} % {way}{over} is {limit}"
             return (Finding("too_steep", sentence, s, x, y),)
     return ()

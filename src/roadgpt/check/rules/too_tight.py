@@ -17,14 +17,14 @@ ROUNDING = 1e-9  # of the limit
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the tightest place of the road if its radius is below the limit."""
     s, bend = tightest(road)
-    limit = f"tighter than {world.min_radius:.4g} m"
-    if abs(bend) * world.min_radius > 1 + ROUNDING:
+    limit = f"tighter than {world.limits.min_radius:.4g} m"
+    if abs(bend) * world.limits.min_radius > 1 + ROUNDING:
         x, y, _ = (float(v) for v in road.at(s))
         sentence = f"at s = {s:.0f} m: radius {1 / abs(bend):.1f} m is {limit}"
         return (Finding("too_tight", sentence, s, x, y),)
     nodes = interpolate(road.control_points())
     radius, middle = smallest_radius(nodes)
-    if radius >= world.min_radius:
+    if radius >= world.limits.min_radius:
         return ()
     x, y = (float(v) for v in nodes[middle])
     s = float(road.locate(x, y)[0])

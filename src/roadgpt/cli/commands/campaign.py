@@ -168,7 +168,7 @@ def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
     with Record.opened(out) as record:
         cells = record.cells()
     if len(plan.prompts) == 1 and cells[0].brief is not None:
-        click.echo(understood(cells[0].brief, plan.world.map_size))
+        click.echo(understood(cells[0].brief, plan.world.site.map_size))
     if len(cells) > 1:
         click.echo(f"{len(cells):,} cells, each with tests of its own")
     click.echo(f"{'resuming in' if was_there else 'into'} {out}")

@@ -18,7 +18,7 @@ UNREADABLE = 2
 
 OPTIONS = (
     *named(options.SETUP, "rules"),
-    *named(options.WORLD, "map_size", "lanes", "lane_width", "lane_width_end", "verge", "bank"),
+    *named(options.WORLD, "map_size", "lanes", "lane_width", "lane_width_end", "shoulder", "bank"),
     *named(options.SETUP, "geometry"),
     *options.SCREEN,
 )

@@ -94,11 +94,14 @@ def sbft_command(
     roadgpt compete sbft --module-name src.gen --class-name Gen --module-path ~/gen --time-budget 3600
     roadgpt compete sbft --module-name old --class-name Old --python ~/old/venv/bin/python --test-budget 100
     """
-    from roadgpt.road import World
+    from roadgpt.road import Limits, Site, World
     from roadgpt.run import Setup
     from roadgpt.sbft import Experiment, compete
 
-    world = World(map_size=map_size, oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH)
+    world = World(
+        site=Site(map_size=map_size),
+        limits=Limits(oob_tolerance=oob_tolerance, speed_limit=speed_limit / KMH),
+    )
     setup = Setup(driver=driver, simulator=simulator, rules="sbft")
     draw = options.drawing_of(picture_formats if has_pictures and not no_plot else (), axes)
     work = compete(Experiment(**experiment), world, setup, seed, out, draw)

@@ -31,7 +31,7 @@ OPTIONS = (
     *options.CHOICES,
     options.out("Folder for the files.", default=Path("exports")),
     *named(
-        options.WORLD, "speed_limit", "lanes", "lane_width", "lane_width_end", "verge", "bank", "friction"
+        options.WORLD, "speed_limit", "lanes", "lane_width", "lane_width_end", "shoulder", "bank", "friction"
     ),
     *(*named(options.SETUP, "geometry"), options.QUIET),
 )
@@ -109,7 +109,7 @@ class _Source:
         if Path(file).suffix.lower() == OPENDRIVE:
             found = read_opendrive(Path(file))
             self._tell(file, found.remarks)
-            world = found.world(self.world).model_copy(update=self.said)
+            world = found.world(self.world).changed(**self.said)
             return Run(Request(world=world), 1, 0, road=found.road)
         blueprint, remarks = blueprint_of(file, self.world)
         self._tell(file, remarks)
@@ -132,4 +132,4 @@ def _source(rest: dict[str, Any], geometry: "Geometry", is_quiet: bool) -> _Sour
     context = click.get_current_context()
     asked = [name for name in rest if context.get_parameter_source(name) is ParameterSource.COMMANDLINE]
     world = options.world_of(rest)
-    return _Source(world, {name: getattr(world, name) for name in asked}, geometry, is_quiet)
+    return _Source(world, {name: world.values()[name] for name in asked}, geometry, is_quiet)

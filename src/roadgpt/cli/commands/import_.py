@@ -73,7 +73,7 @@ def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
     road, world, remarks = found.road, found.world(World()), []
     low, high = extent(road.sample(), world.profile_of(road).edges(road.sample().s))
     wide = float((high - low).max()) + 2 * ROOM
-    size = max(world.map_size, ROUND * -(-wide // ROUND))
+    size = max(world.site.map_size, ROUND * -(-wide // ROUND))
     if size > LARGEST_MAP:
         remarks.append(f"with its lanes it is {wide:.0f} m wide, too large for a map; its place is kept")
         size, x, y = LARGEST_MAP, 0.0, 0.0
@@ -83,17 +83,17 @@ def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
         x, y = (round(float(each), 3) for each in size / 2 - (low + high) / 2)
         remarks.append(f"it is moved by ({x:g}, {y:g}) m into the middle of the map")
     deepest = lowest(road.elevation, road.length)[1]
-    z = round(-deepest, 3) if deepest < world.z_floor else 0.0
+    z = round(-deepest, 3) if deepest < world.site.z_floor else 0.0
     if z:
         remarks.append(f"it is lifted by {z:g} m: its lowest place was below the ground of the map")
-    return moved(road, x, y, z), world.model_copy(update={"map_size": size}), remarks
+    return moved(road, x, y, z), world.changed(map_size=size), remarks
 
 
 def _drive(file: Path, world: "World") -> str:
     """Returns the command that drives the road with the lanes and limits of the OpenDRIVE file."""
     # as a sign shows it: files in m/s are no whole km/h to the last digit
-    world = world.model_copy(update={"speed_limit": round(world.speed_limit * 3.6, 3) / 3.6})
-    return shlex.join(["roadgpt", "drive", str(file), *words_of(options.WORLD, world)])
+    world = world.changed(speed_limit=round(world.limits.speed_limit * 3.6, 3) / 3.6)
+    return shlex.join(["roadgpt", "drive", str(file), *words_of(options.WORLD, world.values())])
 
 
 def _new(folder: Path, stem: str) -> Path:

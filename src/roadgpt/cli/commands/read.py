@@ -47,13 +47,13 @@ def command(
     world = options.world_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
-        found = [_as_data(brief, world.map_size) for brief in briefs]
+        found = [_as_data(brief, world.site.map_size) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
     if number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
         return
-    click.echo(understood(briefs[0], world.map_size))
+    click.echo(understood(briefs[0], world.site.map_size))
     if as_table:
         click.echo(_table(briefs[0]))
 
@@ -67,7 +67,7 @@ def _readings(
     first = brief_of(words, world, Setup(reader=reader, chat=chat))
     if number == 1 or chat is not None:  # a language model says what it takes for likeliest
         return (first,)
-    return alternatives(words, number, reader, world.map_size, TEMPERATURE)
+    return alternatives(words, number, reader, world.site.map_size, TEMPERATURE)
 
 
 def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:

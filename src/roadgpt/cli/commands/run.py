@@ -132,7 +132,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, beside, meter)
     screen.junit = junit_writer(job.junit, work.request)
-    screen.say(understood(brief, job.world.map_size))
+    screen.say(understood(brief, job.world.site.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")

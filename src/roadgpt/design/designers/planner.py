@@ -173,8 +173,8 @@ class _Search:
         """Returns a lower speed limit in km/h at which the required slopes are possible, if they failed."""
         if self.failed_on_heights < FAILED_ON_HEIGHTS:
             return None
-        limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.speed_limit]
-        worlds = [self.world.model_copy(update={"speed_limit": kmh / 3.6}) for kmh in limits]
+        limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]
+        worlds = [self.world.changed(speed_limit=kmh / 3.6) for kmh in limits]
         return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
 
     def _plan(self, haste: float) -> PlacedPlan | None:
@@ -197,7 +197,7 @@ class _Search:
         if segments is None:
             return None
         low, high = STARTS_AT
-        ground = max(low, self.world.z_floor + 1) + self.rng.random() * (high - low)
+        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
         design = design_at(drafted.place, segments, ground)
         road = build(design)
         objections = check.inspect(road, self.brief, self.world)

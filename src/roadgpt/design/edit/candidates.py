@@ -194,10 +194,10 @@ def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> 
                 f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
             )
         return Adjust(element, near(aim, 1.0), Wanted(seen.radius, Range(0.5 * seen.radius, 2 * seen.radius)))
-    if aim < world.min_radius:
+    if aim < world.limits.min_radius:
         raise EditError(
-            f"a radius of {aim:.1f} m is tighter than the {world.min_radius:.1f} m that the rules allow; "
-            f"ask for {least_radius(world):.0f} m or more"
+            f"a radius of {aim:.1f} m is tighter than the {world.limits.min_radius:.1f} m that the rules "
+            f"allow; ask for {least_radius(world):.0f} m or more"
         )
     if aim > WIDEST:
         raise EditError(
@@ -271,8 +271,8 @@ def _road_lengths(change: Change, elements: Sequence[RoadElement], world: World)
     aim = _aim(change, own)
     if aim is None:
         aim = own * (1 + ((ROAD_LONGER if change.more > 0 else ROAD_SHORTER) - 1) * change.dose)
-    if aim < world.min_length:
-        raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.min_length:g} m or more")
+    if aim < world.limits.min_length:
+        raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.limits.min_length:g} m or more")
     slack = max(2.0, ROAD_SLACK * aim)
     whole = RoadLength(Range(aim - slack, aim + slack))
     lengths = [(e, e.seen.length) for e in elements if e.kind == "gap" and e.seen is not None]
@@ -301,7 +301,7 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
         degrees = Range(
             max(FLIPPED.lo * d, min(LEAST_ANGLE, d - 1)), min(FLIPPED.hi * d, max(MOST_ANGLE, d + 1))
         )
-        radius = Range(max(FLIPPED.lo * r, min(world.min_radius, 0.98 * r)), FLIPPED.hi * r)
+        radius = Range(max(FLIPPED.lo * r, min(world.limits.min_radius, 0.98 * r)), FLIPPED.hi * r)
         steps.append(Adjust(element, Wanted(d, degrees), Wanted(r, radius)))
     return (tuple(steps),)
 
@@ -315,7 +315,7 @@ def _straightened(element: RoadElement) -> list[EditStep]:
 def _slopes(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
     """One turn or straight on another grade."""
     now = element.seen.grade if element.seen else element.incline
-    limit = 100 * world.max_grade
+    limit = 100 * world.limits.max_grade
     sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
         1 if now >= LEVEL else -1 if now <= -LEVEL else 0
     )
@@ -365,7 +365,7 @@ def _road_slopes(
 ) -> tuple[EditCandidate, ...]:
     """Many elements on other grades."""
     names = frozenset(element.name for element in elements)
-    limit = 100 * world.max_grade
+    limit = 100 * world.limits.max_grade
     sign = {"up": 1, "down": -1}.get(change.way or "", 0)
     _refuse_too_steep(change.to or 0.0, limit)
     inclines = [segment.incline for element in elements for segment in element.segments]

@@ -145,10 +145,10 @@ def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
 def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     """Angle and radius of the new turns."""
     least = least_radius(world)
-    if change.radius is not None and change.radius < world.min_radius:
+    if change.radius is not None and change.radius < world.limits.min_radius:
         raise EditError(
-            f"a radius of {change.radius:g} m is tighter than the {world.min_radius:.1f} m that the rules "
-            f"allow; ask for {least:.0f} m or more"
+            f"a radius of {change.radius:g} m is tighter than the {world.limits.min_radius:.1f} m that the "
+            f"rules allow; ask for {least:.0f} m or more"
         )
     if change.degrees is not None and not 11 <= change.degrees <= 240:
         raise EditError(f"a turn of {change.degrees:g} degrees cannot be added; ask for 15 to 210 degrees")

@@ -154,7 +154,9 @@ def _started(
     x, y, z = design.starting_point
     if is_mirrored:
         theta = (180 - design.theta) % 360
-        return Design(starting_point=(world.map_size - x, y, z), theta=round(theta, 6), segments=segments)
+        return Design(
+            starting_point=(world.site.map_size - x, y, z), theta=round(theta, 6), segments=segments
+        )
     old = {element.name for element in before}
     front: list[Segment] = []
     for element in after:

@@ -235,7 +235,7 @@ class SlopeOfAll:
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
-        limit = 100 * world.max_grade - 0.2
+        limit = 100 * world.limits.max_grade - 0.2
 
         def sloped(segment: Segment) -> Segment:
             incline = round(min(max(self.slope(segment.incline), -limit), limit) * TENTH) / TENTH

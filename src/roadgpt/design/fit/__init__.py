@@ -125,7 +125,7 @@ def _moved(design: Design, road: Road, world: World) -> Design:
         design = moved_onto_map(design, world) or design
     if below_floor.inspect(road, None, world):
         x, y, _ = design.starting_point
-        height = start_height(design.segments, world.z_floor + ABOVE_GROUND)
+        height = start_height(design.segments, world.site.z_floor + ABOVE_GROUND)
         design = design.model_copy(update={"starting_point": (x, y, height)})
     return design
 
@@ -250,7 +250,7 @@ def _planned(
         found = least_change(Aim(lengths, turns, free, figure, rows, most, world, margins))
         if found is None:
             break
-        now = _written(proposed, found.lengths, found.turns, free, world.min_radius * margins.radius)
+        now = _written(proposed, found.lengths, found.turns, free, world.limits.min_radius * margins.radius)
     return now
 
 

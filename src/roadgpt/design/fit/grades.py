@@ -96,7 +96,7 @@ def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
     Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they become
     equal.
     """
-    limit = 100 * world.max_grade - 0.2
+    limit = 100 * world.limits.max_grade - 0.2
     aim = float(np.clip(grade, -limit, limit))
     inclines = np.array([s.incline for s in element.segments])
     mean = element.incline

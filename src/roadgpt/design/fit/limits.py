@@ -110,7 +110,7 @@ def limits_of(
         margins: The distances to keep from the limits.
     """
     rows = Rows(len(segments))
-    radius = world.min_radius * margins.radius
+    radius = world.limits.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_TRANSITION)
     for index, segment in enumerate(segments):
         rows.add({index: -1.0}, {}, -SHARE_KEPT * segment.distance)
@@ -124,7 +124,7 @@ def limits_of(
             _wish(rows, element, element.asked, peak, margins)
     _separate(rows, elements, margins)
     whole = range(len(segments))
-    rows.within(whole, Range(world.min_length + 2.0))
+    rows.within(whole, Range(world.limits.min_length + 2.0))
     if outline.length:
         rows.within(whole, _drawn_in(outline.length, margins.promise / 4))
     if outline.turning:

@@ -63,7 +63,7 @@ def sloped(
             grades = climbing(grades, np.array(lengths), loose, float(np.clip(climb, inner.lo, inner.hi)))
     road, pace = build(design), Pace.of(design, world)
     points, stations = road.centreline(), road.sample().s
-    most = 100 * world.max_grade
+    most = 100 * world.limits.max_grade
     unseen = {i for element in elements if not _is_seen(element) for i in element.members}
     runs = runs_of([segment.incline for segment in proposed], unseen)
     bounds = [(-most, most) if i in unseen else (room.lo, room.hi) for i, room in enumerate(loose)]
@@ -116,7 +116,7 @@ def _window(element: RoadElement, outline: Outline, world: World) -> Range:
 
 def _loose(segment: Segment, window: Range, world: World) -> Range:
     """Returns the inclines in percent that a segment may have: of its own class, and in a required window."""
-    limit = Range(-100 * world.max_grade, 100 * world.max_grade)
+    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
     span = CLASSES[way(segment.incline)]
     class_ = Range(max(min(span.lo, segment.incline), limit.lo), min(max(span.hi, segment.incline), limit.hi))
     if window in CLASSES.values():  # nothing is required: a turn of several slopes keeps every one

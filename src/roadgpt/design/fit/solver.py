@@ -200,11 +200,13 @@ def _laid(aim: Aim, v: Array, hands: Array) -> Array:
     z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
     turned = np.exp(1j * HEADINGS)[:, None] * z
     box = np.maximum(np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1))
-    fits = np.flatnonzero(box <= aim.world.map_size - aim.world.road_width - 2 * aim.margins.edge)
+    fits = np.flatnonzero(
+        box <= aim.world.site.map_size - aim.world.section.road_width - 2 * aim.margins.edge
+    )
     best = int(fits[0]) if fits.size else int(box.argmin())
     x, y = turned[best].real, turned[best].imag
     middle = np.array([np.ptp(x) / 2 + x.min(), np.ptp(y) / 2 + y.min()])
-    return np.concatenate([HEADINGS[best : best + 1], aim.world.map_size / 2 - middle])
+    return np.concatenate([HEADINGS[best : best + 1], aim.world.site.map_size / 2 - middle])
 
 
 def _settled(
@@ -258,14 +260,14 @@ def _misses_and_slopes(aim: Aim, hands: Array, v: Array, with_slopes: bool = Tru
     by_rows = aim.rows @ v[: 2 * n] - aim.most
     over = by_rows > 0
     z, steps = aim.figure.walk(v[:n], hands * v[n : 2 * n], v[2 * n])
-    border = aim.world.road_width / 2 + aim.margins.edge
+    border = aim.world.section.road_width / 2 + aim.margins.edge
     x, y = z.real + v[2 * n + 1], z.imag + v[2 * n + 2]
     outside = np.stack(
-        [border - x, border - y, x + border - aim.world.map_size, y + border - aim.world.map_size]
+        [border - x, border - y, x + border - aim.world.site.map_size, y + border - aim.world.site.map_size]
     )
     out = outside > 0
     one, other = _meeting(z, v[:n], aim)
-    apart = aim.world.road_width + aim.margins.clear
+    apart = aim.world.section.road_width + aim.margins.clear
     away = z[other] - z[one]
     size = np.maximum(np.abs(away), 1e-6)
     missed = np.concatenate([by_rows[over], outside[out], apart - size])
@@ -293,7 +295,7 @@ def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
     count = np.bincount(owner, minlength=len(lengths))
     s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
     moved = np.concatenate([[0], np.cumsum(aim.free[owner])])[::SPARSE]
-    points, apart = z[::SPARSE], aim.world.road_width + aim.margins.clear
+    points, apart = z[::SPARSE], aim.world.section.road_width + aim.margins.clear
     other, one = meeting(points, s, points, s, apart)
     free = moved[other] > moved[one]
     return SPARSE * one[free], SPARSE * other[free]

@@ -90,10 +90,10 @@ class BeamngLike:
         """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, self.offsets(road, world))
-        friction = world.friction if self.assumed_friction is None else self.assumed_friction
+        friction = world.site.friction if self.assumed_friction is None else self.assumed_friction
         most = 0.95 * friction
         limits = DrivingLimits(
-            min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.speed_limit
+            min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.limits.speed_limit
         )
         # Like BeamNG's, its plan knows slopes, and no crests; that it knows superelevation is assumed.
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
@@ -111,7 +111,7 @@ class BeamngLike:
         line."""
         s, bend, profile = stations(road), self.bend(road, world), world.profile_of(road)
         middle = profile.middle(s)
-        cut = self.cut * (world.speed_limit / USUAL) ** self.eagerness
+        cut = self.cut * (world.limits.speed_limit / USUAL) ** self.eagerness
         offset: FloatArray = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
         return offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
 

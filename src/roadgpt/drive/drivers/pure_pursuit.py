@@ -35,8 +35,8 @@ class PurePursuit:
         """Plans the speed along the middle of the lane."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))
-        lateral = min(self.risk, 0.95 * world.friction)
-        limits = DrivingLimits(lateral, lateral, lateral, world.speed_limit)
+        lateral = min(self.risk, 0.95 * world.site.friction)
+        limits = DrivingLimits(lateral, lateral, lateral, world.limits.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:

@@ -62,8 +62,8 @@ class Reference:
         """Plans the line and the speed for a road."""
         del seed  # the same road is driven the same way every time
         line = line_along(road, world.profile_of(road).middle(stations(road)))
-        lateral = min(self.risk, FRICTION_USED * world.friction)
-        limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.speed_limit)
+        lateral = min(self.risk, FRICTION_USED * world.site.friction)
+        limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.limits.speed_limit)
         self._line, self._speed = line, plan_speed(line, limits)
 
     def steer(self, view: View) -> Command:

@@ -122,7 +122,7 @@ def _limit(id_: int, place: Array, world: World) -> XmlElement:
     out = XmlElement("trafficSign", {"id": id_})
     told = out.add("trafficSignElement")
     told.add("trafficSignID", raw=SPEED_LIMIT)
-    told.add("additionalValue", raw=number(round(world.speed_limit, 6)))
+    told.add("additionalValue", raw=number(round(world.limits.speed_limit, 6)))
     out.add("position").extended(_point(place[:2].tolist()))
     out.add("virtual", raw="true")
     return out

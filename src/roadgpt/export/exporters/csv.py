@@ -32,7 +32,7 @@ class Csv:
         wide, shoulder = world.profile_of(road).width(of.s), world.profile_of(road).shoulder(of.s)
         columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]
         profile, names = world.profile_of(road), ROAD
-        if profile != Profile.of(1, 1, world.lane_width, world.verge):
+        if profile != Profile.of(1, 1, world.section.lane_width, world.section.shoulder):
             left, right = profile.lane_edges(of.s)
             edges = dict(enumerate(left, 1)) | {-n: t for n, t in enumerate(right, 1)}
             names = ",".join([ROAD, "superelevation_rad", *(f"lane_{n}_edge_m" for n in sorted(edges)[::-1])])

@@ -31,7 +31,7 @@ class GeoJson:
         ``roadgpt.export.georeference`` defines the geographic position of the map.
         """
         s = road.sample(STEP).s
-        about = {"length_m": road.length, "speed_kmh": world.speed_limit * 3.6}
+        about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
         features = [_line("centre line", road.at(s), about), *_lanes(road, world, s)]
         if poses is not None:
             way = np.stack([poses.x, poses.y, poses.z], axis=-1)
@@ -54,7 +54,7 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
             width = np.abs(outer[n] - inner)
             one = {"width_m": float(width[0])}
             several = {"width_min_m": float(width.min()), "width_max_m": float(width.max())}
-            properties = {**(several if np.ptp(width) > SAME else one), "friction": world.friction}
+            properties = {**(several if np.ptp(width) > SAME else one), "friction": world.site.friction}
             low, high = (outer[n], inner) if side == "right" else (inner, outer[n])
             name = f"{side} lane" if count == 1 else f"{side} lane {n + 1}"
             yield _area(name, road.at(s, low), road.at(s, high), properties)

@@ -46,7 +46,7 @@ def document(road: Road, world: World) -> XmlElement:
         ExportError: The road has a number that is not finite.
     """
     map_ = _MapBuilder()
-    limit = f"{world.speed_limit * 3.6:.6g} km/h"
+    limit = f"{world.limits.speed_limit * 3.6:.6g} km/h"
     for section in lanelet_sections(road, world):
         ways = {bound: map_.way(bound.points, bound.marking) for bound in section.bounds}
         for lane in section.lanes:

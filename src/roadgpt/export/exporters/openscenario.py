@@ -136,7 +136,7 @@ def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlEl
     board = root.add("Storyboard")
     actions = board.add("Init").add("Actions")
     environment = actions.add("GlobalAction").add("EnvironmentAction").add("Environment", {"name": "road"})
-    environment.add("RoadCondition", {"frictionScaleFactor": world.friction})
+    environment.add("RoadCondition", {"frictionScaleFactor": world.site.friction})
     return root, actions.add("Private", {"entityRef": EGO}), board.add("Story", {"name": "drive"})
 
 

@@ -107,7 +107,7 @@ def speed_zones(road: Road, world: World) -> list[SpeedZone]:
     out: list[SpeedZone] = []
     for a, b in pairwise(ends.tolist()):
         least = float(calm_speeds(road, world, np.linspace(a, b, LOOKS)).min())
-        rounded = float(np.clip(np.floor(least / ROUND) * ROUND, ROUND, world.speed_limit))
+        rounded = float(np.clip(np.floor(least / ROUND) * ROUND, ROUND, world.limits.speed_limit))
         if not out or rounded != out[-1].speed:
             out.append(SpeedZone(a, rounded))
     return out
@@ -128,7 +128,7 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
             "numLanes": len(widths),
             "speed": 0,
             "width": widths[0],
-            "friction": world.friction,
+            "friction": world.site.friction,
             "spreadType": "right",
         }
         told = " ".join(",".join(map(number, point)) for point in points.tolist())

@@ -37,7 +37,7 @@ DRIVE = {
     "outside": 4,
 }
 """Columns of a drive that the page uses, and their decimals."""
-WORLD = {"map_size", "speed_limit", "oob_tolerance", "friction", "z_floor"}
+WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
@@ -61,7 +61,7 @@ def scene(run: Run) -> dict[str, Any]:
         "about": origin(run),
         "words": _words(run.road),
         "road": _road(run.road, run.world),
-        "world": run.world.model_dump(include=WORLD),
+        "world": {name: run.world.values()[name] for name in WORLD},
         "marking": {"width": LINE, "dash": DASH, "gap": GAP},
         "severe": SCALE,
         "drive": _drive(run),

@@ -79,9 +79,9 @@ class ImportedRoad:
         """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:
-            told |= {"lane_width": self.lane_width, "verge": self.shoulder}
+            told |= {"lane_width": self.lane_width, "shoulder": self.shoulder}
         known = {name: value for name, value in told.items() if value is not None}
-        return base.model_copy(update=known)
+        return base.changed(**known)
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:

@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 from roadgpt.drive.drivers.beamng_like import PURSUIT_CUTS, BeamngLike
 from roadgpt.drive.driving_line import stations
 from roadgpt.errors import RoadGPTError
-from roadgpt.road import Road, World
+from roadgpt.road import Limits, Road, Site, World
 
 log = logging.getLogger(__name__)
 
 Array = NDArray[np.float64]
 
-PLAIN = World(map_size=10_000.0, speed_limit=120 / 3.6, oob_tolerance=0.5)
+PLAIN = World(site=Site(map_size=10_000.0), limits=Limits(speed_limit=120 / 3.6, oob_tolerance=0.5))
 FARTHEST = 20.0  # m, upper bound of the distance from the middle of the lane
 LONGEST = 20_000.0  # m, longest road that is examined
 SHORTEST = 0.01  # m; closer points count as one

@@ -62,8 +62,8 @@ def outside_sentences(found: Sequence[Passed], world: World) -> list[str]:
         return [f"On all {every:,} roads that it passed, the car was never outside its lane."]
     far = [each.beyond for each in found if each.beyond is not None]
     beyond = f", {max(far):.2f} m beyond the marking" if far else ""
-    tolerance = f"the tolerance of {percent(world.oob_tolerance)}"
-    within = "without a lane departure" if world.lane_departure else f"within {tolerance}"
+    tolerance = f"the tolerance of {percent(world.limits.oob_tolerance)}"
+    within = "without a lane departure" if world.limits.lane_departure else f"within {tolerance}"
     most = f"{percent(max(each.share for each in found))} of the car{beyond}"
     return [
         f"Of {every:,} roads that the car passed, it was partly outside its lane on "

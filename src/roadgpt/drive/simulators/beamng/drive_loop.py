@@ -63,7 +63,7 @@ class DriveLoop:
         loaded, world = self.loaded, self.world
         self._keep(loaded.now, (0.0, 0.0, 0.0))
         if self.guard is None:
-            loaded.let_ai_drive(world.speed_limit)
+            loaded.let_ai_drive(world.limits.speed_limit)
         while True:
             here = self.samples[-1]
             now = here.car

@@ -51,7 +51,7 @@ class LoadedRoad:
         self.session, self.bng = session, session.bng
         self.settings = session.settings
         # A road on the floor of the world lies on the level's ground.
-        self.lift = session.ground - world.z_floor
+        self.lift = session.ground - world.site.z_floor
         session.laid += 1
         self.prefix = f"roadgpt_{os.getpid()}_{session.laid}_"
         materials = TIG if session.level == "tig" else STOCK

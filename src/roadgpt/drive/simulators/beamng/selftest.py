@@ -72,7 +72,7 @@ class Selftest:
         if not first.is_fine:
             return
         yield self._tried("level", self._level)
-        yield self._tried("AI on a flat road of a prefab", lambda: self._ai(bent(WORLD.z_floor, 0.0)))
+        yield self._tried("AI on a flat road of a prefab", lambda: self._ai(bent(WORLD.site.z_floor, 0.0)))
         yield self._tried("AI on a floating road", lambda: self._ai(bent(-10.0, 0.0)))
         yield self._tried(f"AI up {STEEP:g} %", lambda: self._ai(bent(-20.0, STEEP)))
         yield self._tried(f"AI down {STEEP:g} %", lambda: self._ai(bent(40.0, -STEEP)))
@@ -105,8 +105,8 @@ class Selftest:
     def _level(self) -> tuple[bool, str]:
         session = self._session
         there = sorted(session.bng.scenario.get_levels())
-        with LoadedRoad(session, bent(WORLD.z_floor, 0.0), WORLD, 0) as loaded:
-            height = loaded.now.z - WORLD.z_floor
+        with LoadedRoad(session, bent(WORLD.site.z_floor, 0.0), WORLD, 0) as loaded:
+            height = loaded.now.z - WORLD.site.z_floor
         about = f"drives on {session.level}, ground assumed at {session.ground:g} m; known levels installed: "
         known = ", ".join(name for name in LEVELS if name in there)
         is_fine = 0.2 < height < 1.2
@@ -193,7 +193,7 @@ class Selftest:
             session.step_evenly()
             car.ai.set_waypoint(GOAL)
             car.ai.set_aggression(self.settings.aggression)
-            car.ai.set_speed(WORLD.speed_limit, "limit")
+            car.ai.set_speed(WORLD.limits.speed_limit, "limit")
             way, position = 0.0, scene.start
             for _ in range(int(PATIENCE)):
                 session.watchdog.due_in(self.settings.poll_timeout)

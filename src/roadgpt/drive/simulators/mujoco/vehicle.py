@@ -63,7 +63,7 @@ class Vehicle:
         sampled, profile = sample_road(road), world.profile_of(road)
         rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
-        return cls(car, Ground(sampled, rims, profile.reach, world.friction, lane))
+        return cls(car, Ground(sampled, rims, profile.reach, world.site.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         """Places the car on its springs at station s and offset t, facing along the road, and starts the

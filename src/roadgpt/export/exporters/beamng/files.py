@@ -58,7 +58,7 @@ def _object(level: str, name: str, kind: str, parent: str, **fields: Any) -> Ite
 
 def _surroundings(level: str, world: World, height: float) -> list[Item]:
     group = "sky_and_ground"
-    half = world.map_size / 2
+    half = world.site.map_size / 2
     ground = [half, half, round(height, DECIMALS)]
     return [
         _object(level, "level_info", "LevelInfo", group, gravity=-9.81, visibleDistance=4000, nearClip=0.1),
@@ -164,7 +164,7 @@ def rotation(heading: float, grade: float) -> Array:
 
 def materials(world: World) -> Item:
     """Returns the content of ``main.materials.json``: plain colours, and ground models for friction."""
-    ground = ground_model(world.friction)
+    ground = ground_model(world.site.friction)
     wanted = (
         (OWN.road, (0.16, 0.16, 0.17), ground),
         (OWN.surface, (0.16, 0.16, 0.17), ground),
@@ -195,7 +195,7 @@ def _material(name: str, colour: tuple[float, float, float], model: str) -> Item
 
 def info(name: str, title: str, world: World) -> Item:
     """Returns the content of the level's ``info.json``."""
-    side = int(np.ceil(world.map_size))
+    side = int(np.ceil(world.site.map_size))
     return {
         "title": title,
         "description": "A road to be driven, as RoadGPT made it.",

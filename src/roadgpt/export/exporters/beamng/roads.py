@@ -134,7 +134,7 @@ def level_road(
 def _ground(road: Road, profile: Profile, s: Array, world: World) -> float:
     """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
     if not profile.has_shoulders:
-        return world.z_floor - CLEAR
+        return world.site.z_floor - CLEAR
     lowest = min(float(line(road, s, t)[:, 2].min()) for t in (0.0, *profile.rims(s)))
     return lowest - UNDER - CLEAR
 

@@ -47,7 +47,7 @@ def _side(side: Sequence[Lane], sign: int, length: float, world: World) -> Itera
         if lane.kind == "driving":
             made.add(
                 "material",
-                {"sOffset": 0, "friction": world.friction, "surface": "asphalt", "roughness": 0},
+                {"sOffset": 0, "friction": world.site.friction, "surface": "asphalt", "roughness": 0},
             )
             made.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
         yield made
@@ -91,4 +91,4 @@ def _mark(kind: Marking) -> list[XmlElement]:
 
 def speed_kmh(world: World) -> float:
     """Returns the speed limit in km/h, rounded to six decimals."""
-    return round(world.speed_limit * 3.6, 6)
+    return round(world.limits.speed_limit * 3.6, 6)
