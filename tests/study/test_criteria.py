@@ -8,7 +8,7 @@ from roadgpt.brief import read
 from roadgpt.check.measures import Measures, measure
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.road import Design, World, build, read_design
-from roadgpt.study.criteria import criteria_of_outline, criteria_of_truth
+from roadgpt.study.criteria import criteria_of
 from roadgpt.study.truth import Truth
 
 
@@ -48,19 +48,19 @@ TWO = [{"kind": "turn", "dir": "left", "grade": "up"}, {"kind": "turn", "dir": "
     ],
 )
 def test_one_thing_wrong(truth: dict[str, Any], broken: set[str]) -> None:
-    found = criteria_of_truth(UP, Truth.model_validate(truth))
+    found = criteria_of(UP, Truth.model_validate(truth).outline())
     assert {name for name, good in found.items() if not good} == broken | ({"general"} if broken else set())
     assert "general" in found
 
 
 def test_what_nobody_asked_for_is_no_criterion() -> None:
-    assert {*criteria_of_truth(UP, Truth(turns=(2, 2)))} == {"turns", "general"}
-    found = criteria_of_truth(UP, Truth.model_validate({"sequence": TWO}))
+    assert {*criteria_of(UP, Truth(turns=(2, 2)).outline())} == {"turns", "general"}
+    found = criteria_of(UP, Truth.model_validate({"sequence": TWO}).outline())
     assert {*found} == {"turns", "incline", "order", "general"}
 
 
 def test_a_wrong_number_of_turns_spoils_what_is_told_turn_by_turn() -> None:
-    found = criteria_of_truth(UP, Truth.model_validate({"sequence": [*TWO, {"kind": "turn"}]}))
+    found = criteria_of(UP, Truth.model_validate({"sequence": [*TWO, {"kind": "turn"}]}).outline())
     assert found == {"turns": False, "incline": False, "order": False, "general": False}
 
 
@@ -77,11 +77,11 @@ def test_a_wrong_number_of_turns_spoils_what_is_told_turn_by_turn() -> None:
 )
 def test_without_a_truth_the_reading_is_the_truth(words: str, broken: set[str]) -> None:
     asked = promises_of(read(words, "grammar"), World())
-    found = criteria_of_outline(UP, asked)
+    found = criteria_of(UP, asked)
     assert {name for name, good in found.items() if not good} == broken
 
 
 def test_a_road_that_is_too_short_keeps_nothing() -> None:
     stub = measure([[0, 0], [15, 0]])
-    found = criteria_of_truth(stub, Truth.model_validate({"turns": 0, "sequence": [], "grade": "flat"}))
+    found = criteria_of(stub, Truth.model_validate({"turns": 0, "sequence": [], "grade": "flat"}).outline())
     assert not any(found.values())

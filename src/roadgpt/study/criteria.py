@@ -19,7 +19,7 @@ from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
-from roadgpt.study.truth import FREE, SHORTEST, Truth, feature_of, groups_of, holds, sequence_holds
+from roadgpt.study.truth import FREE, SHORTEST
 
 Criterion = Literal["turns", "incline", "order", "extent", "general"]
 CRITERIA: tuple[Criterion, ...] = ("turns", "incline", "order", "extent", "general")
@@ -32,85 +32,49 @@ ASKED = {
 }
 """Names of the criteria in reports."""
 
-KEYS: Mapping[str, Criterion] = {
-    "turns": "turns",
-    "left": "turns",
-    "right": "turns",
-    "grade": "incline",
-    "max_grade": "incline",
-    "climb": "incline",
-    "hilly": "incline",
-    "alternating": "order",
-    "length": "extent",
-    "min_radius": "extent",
-    "turning": "extent",
-}
-"""The criterion of each key of a Truth; the keys ``sequence``, ``starts`` and ``ends`` concern several
-criteria."""
-
 FIELDS: Mapping[Criterion, tuple[str, ...]] = {
     "turns": ("turns", "left", "right"),
     "incline": ("grade", "grade_range", "steepest", "climb", "hills"),
     "order": ("alternating",),
-    "extent": ("each_turn", "length"),
+    "extent": ("each_turn", "length", "radius", "turning"),
 }
 """The fields of an Outline that set requirements for the whole road or for every turn, by criterion."""
 
 Part = Callable[[Feature], Feature]
 
 
-def criteria_of_truth(found: Measures, truth: Truth) -> dict[Criterion, bool]:
-    """Returns, for each criterion of a Truth (requirements that people wrote down), whether a measured
-    road meets it."""
-    kept = holds(found, truth)
-    out: dict[Criterion, bool] = {}
-    for key, criterion in KEYS.items():
-        if key in kept:
-            out[criterion] = out.get(criterion, True) and kept[key]
-    groups = groups_of(truth)
-    if groups and truth.turns is None:
-        turns = sum(group.feature.kind == "turn" for group in groups)
-        out["turns"] = out.get("turns", True) and len(found.turns) == turns
-    of_features = _of_features(found, groups, feature_of(truth.starts), feature_of(truth.ends))
-    for criterion, good in of_features.items():
-        out[criterion] = out.get(criterion, True) and good and found.length >= SHORTEST
-    out["general"] = all(kept.values())
-    return out
+def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
+    """Returns, for each criterion of an Outline, whether a measured road meets it.
 
-
-def criteria_of_outline(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns, for each criterion of an Outline (requirements that a reader found in a description),
-    whether a measured road meets it."""
+    The Outline has the requirements that people wrote down in a Truth, or those that a reader found in a
+    description. A road shorter than 20 m meets no criterion.
+    """
     out: dict[Criterion, bool] = {}
     for criterion, fields in FIELDS.items():
         own = {name: getattr(asked, name) for name in fields}
-        if criterion == "turns" or any(
-            _is_specified(value) if isinstance(value, Feature) else value for value in own.values()
-        ):
+        if any(value != getattr(FREE, name) for name, value in own.items()):
             out[criterion] = not complaints(found, replace(FREE, **own))
-    for criterion, good in _of_features(found, asked.groups, asked.starts, asked.ends).items():
+    for criterion, good in _of_features(found, asked).items():
         out[criterion] = out.get(criterion, True) and good
     out["general"] = not complaints(found, asked)
-    return out
+    return {criterion: good and found.length >= SHORTEST for criterion, good in out.items()}
 
 
-def _of_features(
-    found: Measures, groups: tuple[Group, ...], starts: Feature | None, ends: Feature | None
-) -> dict[Criterion, bool]:
+def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     """Returns the criteria of single turns and straights. Each is checked with all others left open."""
     parts: dict[Criterion, Part] = {"incline": _incline, "order": _order, "extent": _extent}
     out: dict[Criterion, bool] = {}
     for criterion, part in parts.items():
-        wanted = _merged(tuple(replace(group, feature=part(group.feature)) for group in groups))
+        wanted = _merged(tuple(replace(group, feature=part(group.feature)) for group in asked.groups))
         if criterion != "order":
             wanted = tuple(replace(group, alternating=False) for group in wanted)
-        first, last = (each and part(each) for each in (starts, ends))
-        asked = replace(FREE, starts=first, ends=last)
+        first, last = (each and part(each) for each in (asked.starts, asked.ends))
+        ends = replace(FREE, starts=first, ends=last)
         says = [_says(criterion, group) for group in wanted]
         ends_say = [each for each in (first, last) if each and (criterion == "order" or _is_specified(each))]
         if any(says) or ends_say:
-            good = not any(says) or sequence_holds(found, wanted)
-            out[criterion] = good and (not ends_say or not complaints(found, asked))
+            good = not any(says) or _has_sequence(found, wanted)
+            out[criterion] = good and (not ends_say or not complaints(found, ends))
     return out
 
 
@@ -147,3 +111,15 @@ def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:
             continue
         out.append(group)
     return tuple(out)
+
+
+def _has_sequence(found: Measures, groups: tuple[Group, ...]) -> bool:
+    """Returns whether a road has the turns of the groups in the given order, with the required straights
+    between them.
+
+    If every group names exactly one element, the road must not have more turns.
+    """
+    turns = sum(group.feature.kind == "turn" for group in groups)
+    if len(found.turns) != turns and all(group.lo == group.hi == 1 for group in groups):
+        return False
+    return not complaints(found, replace(FREE, groups=groups))

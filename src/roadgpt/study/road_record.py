@@ -20,10 +20,10 @@ from roadgpt.road import Road, World
 from roadgpt.run import Run, read_run
 from roadgpt.run.folder import finished, run_folder
 from roadgpt.run.sbft_json import test_name
-from roadgpt.study.criteria import Criterion, criteria_of_outline, criteria_of_truth
+from roadgpt.study.criteria import Criterion, criteria_of
 from roadgpt.study.plan import StudyPart
 from roadgpt.study.similarity import Likeness, Spread, likeness, spread
-from roadgpt.study.truth import SHORTEST, Truth
+from roadgpt.study.truth import Truth
 
 Array = NDArray[np.float64]
 
@@ -211,15 +211,12 @@ def kept_of(
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT
-    asked = promises_of(brief, world) if brief is not None else None
-    found = measure(points, asked.widest) if asked else measure(points)
-    if truth is not None:
-        kept = criteria_of_truth(found, truth)
-    elif asked is not None:
-        kept = criteria_of_outline(found, asked)
-    else:
+    read = promises_of(brief, world) if brief is not None else None
+    asked = truth.outline() if truth is not None else read
+    if asked is None:
         return {}
-    return {criterion: good and is_road and found.length >= SHORTEST for criterion, good in kept.items()}
+    found = measure(points, read.widest) if read else measure(points)
+    return {criterion: good and is_road for criterion, good in criteria_of(found, asked).items()}
 
 
 def _likeness(road: Road | None) -> Likeness | None:

@@ -1,7 +1,8 @@
-"""Defines a truth: the requirements of a description, which people wrote down before they saw a road.
+"""Reads a truth: the requirements of a description, which people wrote down before they saw a road.
 
 The keys and their meaning are those of the project's referee, an independent judge of roads; tests compare
-``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys.
+``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys. A truth is
+checked as an Outline, as the requirements are that a reader finds.
 """
 
 from dataclasses import replace
@@ -12,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, ConfigDict, Field
 
 from roadgpt.brief.model import Frozen
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import Range, overlap
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
 
@@ -25,7 +26,7 @@ SLOPES = {
 }
 FREE = Outline(groups=(), turns=Range())
 """An Outline without any requirement."""
-CALLED = {"max_grade": "steepest", "hilly": "hills"}
+CALLED = {"max_grade": "steepest", "hilly": "hills", "min_radius": "radius", "sequence": "groups"}
 """The fields of an Outline whose names differ from the keys of a Truth, by key."""
 
 
@@ -95,66 +96,42 @@ class Truth(Frozen):
         """Returns the names of the keys that are not None."""
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
+    def outline(self, *keys: str) -> Outline:
+        """Returns the requirements of these keys, or of all keys if none is named, as an Outline.
 
-def feature_of(wish: ExpectedElement | None) -> Feature | None:
-    """Converts an expected element to a Feature of an Outline; returns None if the element is None."""
-    if wish is None:
-        return None
-    return Feature(
-        wish.kind,
-        wish.kind,
-        side=wish.side,
-        degrees=_range(wish.degrees),
-        radius=_range(wish.radius),
-        length=_range(wish.length),
-        grade=SLOPES[wish.grade] if wish.grade else None,
-    )
+        A sequence names all turns of the road. The slack makes "no turn" a little more than 0, which says
+        nothing of how much a straight road may bend: 'turning' does.
+        """
+        asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
+        if "groups" in asked:
+            turns = sum(group.feature.kind == "turn" for group in asked["groups"])
+            asked["turns"] = overlap(_asked((turns, turns)), asked.get("turns"))
+        return replace(FREE, **asked)
 
 
-def groups_of(truth: Truth) -> tuple[Group, ...]:
-    """Converts the key ``sequence`` of a truth to the groups of an Outline; empty if the key is None."""
-    return tuple(Group(feature) for wish in truth.sequence or () if (feature := feature_of(wish)))
+def _asked(value: Any) -> Any:
+    """Returns the value of a key as the Outline has it."""
+    if isinstance(value, ExpectedElement):
+        return Feature(
+            value.kind,
+            value.kind,
+            side=value.side,
+            degrees=_asked(value.degrees),
+            radius=_asked(value.radius),
+            length=_asked(value.length),
+            grade=SLOPES[value.grade] if value.grade else None,
+        )
+    if not isinstance(value, tuple):
+        return value
+    if all(isinstance(each, ExpectedElement) for each in value):
+        return tuple(Group(_asked(each)) for each in value)
+    low, high = value
+    return Range(-inf if low is None else low - SLACK, inf if high is None else high + SLACK)
 
 
 def holds(found: Measures, truth: Truth) -> dict[str, bool]:
     """Returns, for each key of a truth, whether a measured road meets it. A road shorter than 20 m meets
     no key."""
-    return {key: found.length >= SHORTEST and _holds(found, truth, key) for key in truth.given()}
-
-
-def _holds(found: Measures, truth: Truth, key: str) -> bool:
-    """Compares a road with an Outline that requires one key and nothing else.
-
-    The slack makes "no turn" a little more than 0, which says nothing of how much a straight road may bend:
-    'turning' does.
-    """
-    value = getattr(truth, key)
-    if key == "sequence":
-        return sequence_holds(found, groups_of(truth))
-    if isinstance(value, tuple):
-        value = _range(value)
-    elif isinstance(value, ExpectedElement):
-        value = feature_of(value)
-    if key == "min_radius":
-        return found.radius in value
-    return not complaints(found, replace(FREE, **{CALLED.get(key, key): value}))
-
-
-def sequence_holds(found: Measures, groups: tuple[Group, ...]) -> bool:
-    """Returns whether a road has the turns of the groups in the given order, with the required straights
-    between them.
-
-    If every group names exactly one element, the road must not have more turns.
-    """
-    turns = sum(group.feature.kind == "turn" for group in groups)
-    exact = all(group.lo == group.hi == 1 for group in groups)
-    if exact and len(found.turns) != turns:
-        return False
-    return not complaints(found, replace(FREE, groups=groups))
-
-
-def _range(span: Span | None) -> Range | None:
-    if span is None:
-        return None
-    low, high = span
-    return Range(-inf if low is None else low - SLACK, inf if high is None else high + SLACK)
+    return {
+        key: found.length >= SHORTEST and not complaints(found, truth.outline(key)) for key in truth.given()
+    }
