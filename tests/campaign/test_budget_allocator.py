@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from campaign.quick import Inline, made, plan, put_on_shelves
 from roadgpt.campaign import scheduler
 from roadgpt.campaign.budget_allocator import BudgetAllocator
-from roadgpt.campaign.lifecycle import begin, plan_of, work
+from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record
@@ -73,18 +73,18 @@ def test_a_limit_is_never_passed_and_hardly_anything_is_left(
         assert ("continue with: roadgpt resume" in said) == (status_of(folder).done < 30)
         with Record.opened(folder) as record:
             tokens, cost = record.spent()
-            there = plan_of(record)
+            there = record.plan()
         assert tokens <= TOKENS * questions
         assert cost <= PRICE * questions + 1e-9
         if status_of(folder).done < 30:
             assert tokens > TOKENS * (questions - 3)  # less is left than one test may need
         free = with_limits(there, max_tokens=None, max_cost=None)
-        for _ in work(folder, workers, "inline", plan=free):
+        for _ in work(folder, workers, "inline", chat=free.chat):
             pass
         assert status_of(folder).done == 30
         assert status_of(folder).tokens >= TOKENS * needed
         with Record.opened(folder) as record:
-            assert plan_of(record) == free  # the next sitting has the limits of this one
+            assert record.plan() == free  # the next sitting has the limits of this one
 
 
 @given(

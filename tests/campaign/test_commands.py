@@ -5,6 +5,7 @@ import json
 import os
 import random
 import re
+import shutil
 import signal
 import sqlite3
 import subprocess
@@ -220,15 +221,51 @@ def test_what_cannot_be_is_told_in_a_sentence(driven: Path, words: list[str], se
     assert done.exit_code != 0
 
 
-@pytest.mark.parametrize("command", ["status", "resume", "top"])
-def test_a_folder_of_roadgpt_run_is_told_from_a_campaign(tmp_path: Path, command: str) -> None:
-    done = roadgpt("run", "a road", "-n", 1, "--no-drive", "--no-plot", "--seed", 7, "--out", tmp_path / "r")
+def of_a_folder(folder: Path) -> dict[str, bytes]:
+    """The files of a folder of runs, but for those of the clock."""
+    clock = ("seconds.json", "generation_stats.csv", "campaign.lock")
+    files = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.name not in clock)
+    return {str(path.relative_to(folder)): path.read_bytes() for path in files}
+
+
+def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> None:
+    """Runs that were taken away or broken are made again, with pictures and road files like the others."""
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    words = ["a road with 2 turns", "-n", 4, "--seed", 7, "--reader", "grammar", "--format", "svg"]
+    assert roadgpt("run", *words, "--export", "opendrive", "--out", whole).exit_code == 0
+    shutil.copytree(whole, broken)
+    (broken / "test.0002.json").unlink()
+    (broken / "test.0004.json").unlink()
+    (broken / "runs/0003/run.json").write_text("{}")
+    card = json.loads((broken / "campaign.json").read_text())
+    (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
+    done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
-    done = roadgpt(command, tmp_path / "r")
+    told = json.loads(done.stdout)
+    assert (told["done"], told["total"], told["is_finished"]) == (4, 4, True)
+    assert (tmp_path / "tests.xml").read_text().count("<testcase") == 4
+    first, second = of_a_folder(whole), of_a_folder(broken)
+    assert {*first} == {*second}
+    assert {"runs/0002/road.xodr", "runs/0002/birds_eye.svg"} <= {*second}
+    assert [name for name in first if first[name] != second[name]] == []
+    status = roadgpt("status", broken).stdout
+    assert status.startswith(f"{broken}: finished, 4 of 4 tests")
+    assert "continue with" not in status
+
+
+def test_what_cannot_be_resumed_is_told(tmp_path: Path) -> None:
+    (tmp_path / "road.json").write_text("[[60, 100], [100, 100], [140, 100]]")
+    done = roadgpt("run", "a road", "-n", 1, "--no-drive", "--no-plot", "--seed", 7, "--out", tmp_path / "r")
+    card = json.loads((tmp_path / "r/campaign.json").read_text())
+    card["request"]["words"] = ""
+    (tmp_path / "r/campaign.json").write_text(json.dumps(card))
+    done = roadgpt("resume", tmp_path / "r")
     assert done.exit_code == 2
-    assert "was made by roadgpt run, not by roadgpt campaign" in done.output
-    assert f"the same roadgpt run with --out {tmp_path / 'r'} continues" in done.output
-    assert done.stdout == ""
+    assert "were not made from a description, so nothing can be resumed" in done.output
+    done = roadgpt("resume", tmp_path / "r", "--max-cost", "1")
+    assert "asks none" in done.output
+    done = roadgpt("resume", tmp_path / "r", "--driver", "mine.py:Mine")
+    assert done.exit_code == 2
 
 
 def test_a_campaign_that_cannot_be_leaves_no_folder(tmp_path: Path) -> None:

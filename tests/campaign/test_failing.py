@@ -242,7 +242,7 @@ def test_a_test_as_it_was_kept_is_the_test_as_it_is_driven_again(looked: Path) -
 def test_nobody_drives_where_a_test_is_taken_as_it_was_kept(
     looked: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("roadgpt.run.simulate", "roadgpt.campaign.rerun.run_of"):
+    for name in ("roadgpt.run.simulate", "roadgpt.campaign.rerun.prove"):
         monkeypatch.setattr(name, lambda *_: pytest.fail("somebody drives"))
     assert kept_run(looked, "c01", 1).outcome == "FAIL"
 

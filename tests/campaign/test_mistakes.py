@@ -19,7 +19,7 @@ from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.status import status_of
 from roadgpt.chat import Meter, Spent, Usage
 from roadgpt.cli import app
-from roadgpt.cli.commands.report import command_of_many
+from roadgpt.cli.commands.report import command_of
 from roadgpt.road import World
 from roadgpt.run import Setup
 
@@ -196,7 +196,7 @@ def test_the_command_on_the_card_makes_the_same_campaign(
 ) -> None:
     plain = plan(5).model_copy(update={"settings": {}, **given})
     begin_quickly(tmp_path / "c", monkeypatch, plain)
-    words = command_of_many(tmp_path / "c")
+    words = command_of(tmp_path / "c")
     assert all(word in words for word in wanted), words
     monkeypatch.setattr("roadgpt.campaign.lifecycle.work", lambda *_: iter(()))
     again = CliRunner().invoke(app, shlex.split(words)[1:])

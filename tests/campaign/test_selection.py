@@ -197,7 +197,8 @@ def test_films_of_several_go_into_a_folder(monkeypatch: pytest.MonkeyPatch) -> N
         ),
         (["show", "runs/runs/0001", "--worst"], "runs/runs/0001 is neither"),
         (["redrive", "one"], "say which tests of one: their numbers"),
-        (["redrive", "runs", "1"], "was made by roadgpt run, not by roadgpt campaign"),
+        (["redrive", "runs", "9"], "there is no run 9 in runs; its runs are 1 to 3"),
+        (["redrive", "out", "1"], "there is no campaign in out, and there are no runs"),
     ],
 )
 def test_what_cannot_be_meant_is_told(words: list[str], said: str) -> None:
@@ -224,6 +225,17 @@ def test_tests_are_driven_again_by_any_of_their_names() -> None:
     ]
     worst = lines("redrive", "two", "--worst", "--no-plot", "--out", "again")
     assert [line.split()[1] for line in worst] == names("two", "worst")
+
+
+def test_a_run_is_driven_again_as_a_test_of_a_campaign_is() -> None:
+    done = roadgpt("redrive", "runs", "2", "runs/3", "--no-plot", "--out", "again")
+    assert done.exit_code == 0, done.output
+    assert [line.split()[1] for line in done.stdout.splitlines()] == ["2", "3"]
+    assert " before (" not in done.stderr
+    for number in ("0002", "0003"):
+        for name in ("road.json", "design.json", "drive.npz", "verdict.json"):
+            first, second = (Path(home, "runs", number, name).read_bytes() for home in ("runs", "again"))
+            assert first == second, name
 
 
 def test_a_test_of_a_campaign_is_changed_by_words() -> None:

@@ -168,7 +168,7 @@ def test_an_interrupted_campaign_is_complete_as_far_as_it_went_and_goes_on(
         result = invoke(*words)
     assert result.exit_code == 130
     assert "roadgpt: stopped; 2 of 4 roads are finished and complete" in result.stderr
-    assert f"continue with: roadgpt run '{WORDS}' -n 4 --out here and the same options" in result.stderr
+    assert "\nroadgpt: continue with: roadgpt resume here\n" in result.stderr
     assert "2 of 4 roads in " in result.stdout
     tests = sorted(Path("here").glob("test.*.json"))
     assert [test.name for test in tests] == ["test.0001.json", "test.0002.json"]

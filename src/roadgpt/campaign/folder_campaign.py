@@ -9,7 +9,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.executors import Executor, WorkerConfig
 from roadgpt.campaign.folder_store import FolderStore
-from roadgpt.campaign.model import PATIENCE, WITHOUT_GOAL, Budget, Cell
+from roadgpt.campaign.model import PATIENCE
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.scheduler import Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
@@ -72,10 +72,7 @@ def _worked(
     home: Path, left: dict[str, RunFolder], draw: Draw | None, meter: Meter | None, workers: int
 ) -> Iterator[tuple[str, FinishedRun]]:
     """Runs the tests of folders that are ready for it; removes finished folders from ``left``."""
-    cells = [
-        Cell(name, each.request, each.brief, WITHOUT_GOAL, None, {}, Budget(tests=each.roads), True)
-        for name, each in left.items()
-    ]
+    cells = [each.cell(name) for name, each in left.items()]
     setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
     refuse_links(home / LOG)
     staff = WorkerConfig(max(workers, 1), WorkerSetup(setups), PATIENCE, home / LOG)

@@ -6,21 +6,23 @@ both kinds of campaigns.
 """
 
 import sqlite3
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.model import Cell, Proposal
-from roadgpt.campaign.record import STORE
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.single_test import FinishedTest, Task, error_run
 from roadgpt.campaign.store import SCHEMA, Store
+from roadgpt.run.card import CARD
 
 
 class FolderStore(Store):
     """The store of the tests in folders of runs."""
 
     group_seconds = 0.0
+
+    has_run = "1"
 
     def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
         """Makes the tables of the tests that are in the folders.
@@ -30,7 +32,7 @@ class FolderStore(Store):
             folders: the folder of each cell, by the cell's name.
             cells: the cells.
         """
-        super().__init__(home / STORE, sqlite3.connect(":memory:", isolation_level=None))
+        super().__init__(home / CARD, sqlite3.connect(":memory:", isolation_level=None))
         self._folders = folders
         self._cells = {cell.name: cell for cell in cells}
         self.written: list[tuple[str, FinishedRun]] = []
@@ -40,20 +42,41 @@ class FolderStore(Store):
         self._db.executemany(
             "INSERT INTO cells(name, cell) VALUES (?, '')", [(name,) for name in self._cells]
         )
-        for cell in cells:
-            there = folders[cell.name].tests
-            for number in range(1, max(there, default=0) + 1):
-                self.add_batch(cell.name, number - 1, number, [Proposal(None, cell.request.seed, "draft")])
-            super().keep([(cell.name, one) for one in there.values()], None, (), {})
+        for name, folder in folders.items():
+            self._enter(name, folder.tests, range(1, max(folder.tests, default=0) + 1))
+
+    def _enter(
+        self, cell: str, ended: Mapping[int, FinishedTest], numbers: Iterable[int] | None = None
+    ) -> None:
+        """Enters tests into the tables; tests of ``numbers`` that have not ended are still to be run."""
+        seed = self._cells[cell].request.seed
+        for number in ended if numbers is None else numbers:
+            made = ended[number].result.proposal if number in ended else Proposal(None, seed, "draft")
+            self.add_batch(cell, number - 1, number, [made])
+        super().keep([(cell, one) for one in ended.values()], None, (), {})
 
     @property
     def how_to_continue(self) -> str:
         """Text at the end of an error message that explains how to continue the campaign."""
+        if all(each.folder == self.folder for each in self._folders.values()):
+            return super().how_to_continue
         return f"continue with the same command and --out {self.folder}"
 
+    def names(self) -> list[str]:
+        """Returns the names of all cells."""
+        return [*self._cells]
+
+    def cells(self) -> list[Cell]:
+        """Returns all cells."""
+        return [*self._cells.values()]
+
     def cell(self, name: str) -> Cell:
-        """Returns one cell."""
-        return self._cells[name]
+        """Returns one cell.
+
+        Raises:
+            UsageError: there is no cell of that name.
+        """
+        return self._cells[name] if name in self._cells else super().cell(name)
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
         """Writes the files of tests that have ended.

@@ -5,6 +5,7 @@ work      runs the tests that have not ended; interruptions do not change the re
 """
 
 import sqlite3
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,23 +13,25 @@ from pathlib import Path
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.executors import Executor, WorkerConfig
+from roadgpt.campaign.folder_campaign import campaign
+from roadgpt.campaign.folder_record import has_tests, is_store
 from roadgpt.campaign.plan import Plan
-from roadgpt.campaign.record import STORE, Record, no_campaign
+from roadgpt.campaign.record import STORE, no_tests
 from roadgpt.campaign.scheduler import Progress, Scheduler
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.store import Store, refused
-from roadgpt.campaign.store_check import reading_store
 from roadgpt.campaign.table import CELLS, RESULTS, write_tables
 from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
 from roadgpt.campaign.workers.worker_log import LOG
-from roadgpt.chat import Meter, Spent
+from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.drive import refuse_ignored
 from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
-from roadgpt.run import Setup, brief_of
+from roadgpt.run import Draw, Setup, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
+from roadgpt.run.card import read_card
 from roadgpt.run.versions import versions_of
 
 USER_NAMES = {
@@ -125,7 +128,7 @@ def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
 
 def _same(plan: Plan, folder: Path) -> None:
     with Store.opened(folder) as store:
-        there = plan_of(store)
+        there = store.plan()
         kept = there.essence()
         other = [USER_NAMES.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
         if other:
@@ -137,40 +140,43 @@ def _same(plan: Plan, folder: Path) -> None:
         store.set_plan(plan.model_dump_json())
 
 
-def plan_of(record: Record) -> Plan:
-    """Returns the plan that a store holds."""
-    with reading_store(record.path):
-        return Plan.model_validate_json(record.meta("plan")).came_with(record.path)
-
-
 def work(
-    folder: Path, workers: int = 1, executor: str = "processes", address: str = "", plan: Plan | None = None
+    folder: Path,
+    workers: int = 1,
+    executor: str = "processes",
+    address: str = "",
+    chat: ChatSettings | None = None,
+    draw: Draw | None = None,
 ) -> Iterator[Progress]:
-    """Runs the tests of a campaign that have not ended; the work happens while the caller iterates.
+    """Runs the tests that have not ended, of a campaign or of a folder that ``roadgpt run`` made; the work
+    happens while the caller iterates.
 
     Args:
-        folder: the campaign's folder, made by ``begin``.
-        workers: number of workers.
+        folder: the campaign's folder, made by ``begin``, or the folder of runs.
+        workers: number of workers; the roads of a folder of runs are made one after another.
         executor: name of an installed executor.
         address: address of the workers, for executors that connect to other machines.
-        plan: the campaign's plan with changed limits; None: the stored plan.
+        chat: the settings of the language model with changed limits; None: the stored settings.
+        draw: draws pictures into a folder of runs; None: no pictures.
 
     Yields:
         The progress, after every group of results.
 
     Raises:
-        UsageError: there is no campaign, or another process is working on it, or a plug-in is not installed.
+        UsageError: there are no tests to run, or another process is working on them, or a plug-in is not
+            installed.
         ChatError: a language model could not be asked, or a limit is reached; finished tests are stored.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)
-    if not (folder / STORE).is_file():
-        raise no_campaign(folder)
+    if not is_store(folder):
+        yield from _make_runs(folder, chat, draw)
+        return
     with alone_in(folder), Store.opened(folder) as store:
-        if plan is not None:
+        plan = store.plan()
+        if chat is not None:
+            plan = plan.model_copy(update={"chat": chat})
             store.set_plan(plan.model_dump_json())
-        else:
-            plan = plan_of(store)
         if not store.meta("finished"):
             _admit(plan)
             try:
@@ -183,6 +189,26 @@ def work(
                 raise refused(folder, error) from error
         if not store.meta("finished") or not all((folder / name).is_file() for name in (RESULTS, CELLS)):
             _conclude(folder, store)
+
+
+def _make_runs(folder: Path, chat: ChatSettings | None, draw: Draw | None) -> Iterator[Progress]:
+    """Makes the missing roads of a folder that ``roadgpt run`` made."""
+    if not has_tests(folder):
+        raise no_tests(folder)
+    card = read_card(folder)
+    request = card.request
+    if not request.words:
+        raise UsageError(
+            f"the roads in {folder} were not made from a description, so nothing can be resumed; "
+            f"roadgpt show {folder} shows them"
+        )
+    setup = request.setup if chat is None else request.setup.model_copy(update={"chat": chat})
+    require_permission(setup.driver)
+    made = campaign(request.words, card.roads, request.seed, request.world, setup, folder, draw)
+    progress = Progress(card.roads, Counter(one.result.outcome for one in made.tests.values()))
+    for run in made:
+        progress.outcomes[run.outcome] += 1
+        yield progress
 
 
 def _setups(plan: Plan) -> tuple[Setup, ...]:
@@ -209,4 +235,4 @@ def _sweep(folder: Path, store: Store) -> None:
                 path.unlink()
 
 
-__all__: Sequence[str] = ("begin", "plan_of", "work")
+__all__: Sequence[str] = ("begin", "work")

@@ -1,20 +1,34 @@
 """Reads a campaign's store, even while another process is working on the campaign."""
 
 import sqlite3
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Self
+from typing import TYPE_CHECKING, Any, Self
 
 from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
+from roadgpt.campaign.single_test import seed_of_driver
 from roadgpt.campaign.store_check import LATER, check_store, reading_store
 from roadgpt.errors import UsageError
-from roadgpt.run.card import CARD, read_card
+from roadgpt.road import Road, build
+from roadgpt.run import Run
+
+if TYPE_CHECKING:
+    from roadgpt.campaign.plan import Plan
 
 STORE = "campaign.sqlite"
 FORMAT = 1
 PATIENCE = 30.0  # s for another process
+FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
+WHICH = {
+    None: ("1", ""),
+    "failures": ("outcome = 'FAIL'", ""),
+    "worst": ("outcome IN ('FAIL', 'PASS')", "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"),
+}
+"""Conditions in SQL on the tests that users choose, and their order."""
 
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
@@ -46,16 +60,11 @@ def _missing(db: sqlite3.Connection) -> tuple[str, ...]:
     return tuple(name for name in LATER if name not in there)
 
 
-def no_campaign(folder: Path) -> UsageError:
-    """Returns the error for a folder that holds no store."""
-    if not (folder / CARD).is_file():
-        return UsageError(f"there is no campaign in {folder}; give a folder that roadgpt campaign made")
-    show = f"{folder} holds single runs and no campaign; roadgpt show {folder} shows them"
-    if not read_card(folder).request.words:
-        return UsageError(show)
+def no_tests(folder: Path) -> UsageError:
+    """Returns the error for a folder that holds neither a campaign nor runs."""
     return UsageError(
-        f"{folder} was made by roadgpt run, not by roadgpt campaign; roadgpt show {folder} shows what is in "
-        f"it, and the same roadgpt run with --out {folder} continues where it stopped"
+        f"there is no campaign in {folder}, and there are no runs; give a folder that roadgpt campaign or "
+        "roadgpt run made"
     )
 
 
@@ -71,6 +80,9 @@ class Batch:
 
 class Record:
     """A campaign's store, open for reading; ``campaign.store`` describes its tables."""
+
+    has_run = "design IS NOT NULL"
+    """The condition in SQL on tests that ``run`` can read."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -91,7 +103,7 @@ class Record:
     def _opened(cls, folder: Path, mode: str) -> Self:
         path = folder / STORE
         if not path.is_file():
-            raise no_campaign(folder)
+            raise no_tests(folder)
         try:
             db, version = _connected(path, mode)
         except sqlite3.Error as error:
@@ -131,15 +143,18 @@ class Record:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
+        return self._db.execute(sql, values)
+
     def query(self, sql: str, values: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """Returns all rows of a SELECT as a list; use ``stream`` for large results."""
         with reading_store(self.path):
-            return self._db.execute(sql, values).fetchall()
+            return self._execute(sql, values).fetchall()
 
     def stream(self, sql: str, values: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
         """Yields the rows of a SELECT one by one."""
         with reading_store(self.path):
-            cursor = self._db.execute(sql, values)
+            cursor = self._execute(sql, values)
         while True:
             with reading_store(self.path):
                 row = cursor.fetchone()
@@ -150,6 +165,18 @@ class Record:
     def meta(self, name: str) -> str:
         """Returns one value of the table ``meta``, by its key: ``plan``, ``versions`` or ``finished``."""
         return str(self.query("SELECT value FROM meta WHERE name = ?", (name,))[0][0])
+
+    def plan(self) -> "Plan":
+        """Returns the campaign's plan."""
+        from roadgpt.campaign.plan import Plan
+
+        with reading_store(self.path):
+            return Plan.model_validate_json(self.meta("plan")).came_with(self.path)
+
+    def total(self) -> int | None:
+        """Returns the number of tests that were asked for; None if only time limits them."""
+        tests = self.plan().budget.tests
+        return tests and tests * len(self.names())
 
     def names(self) -> list[str]:
         """Returns the names of all cells, in the order of the plan."""
@@ -215,6 +242,67 @@ class Record:
         for result in self.results(cell, "tests.number = ?", (number,)):
             return result
         raise UsageError(f"{self.path.parent} holds no result of test {number} of {cell}")
+
+    def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
+        """Returns the stored Run of a test; see ``rerun.kept_run``."""
+        from roadgpt.campaign.rerun import kept_in
+
+        return kept_in(self, self.cell(cell), self.result(cell, number), has_drive)
+
+    def road(self, cell: Cell, result: Result) -> Road | None:
+        """Returns the road of a test that has ended; None if it has none."""
+        if result.design is None:
+            return None
+        return cell.request.world.lay(build(result.design, cell.request.setup.geometry))
+
+    def seed(self, result: Result) -> int:
+        """Returns the driver's seed in a test."""
+        return seed_of_driver(result.number, result.proposal)
+
+    def file(self, number: int) -> str:
+        """Returns the path of the file of a test; empty if the tests have no files of their own."""
+        del number
+        return ""
+
+    def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
+        """Returns the names of tests that have ended and whose Runs can be read.
+
+        Args:
+            cell: name of the cell; empty: all cells.
+            which: None: all tests, in order; "failures": those that failed; "worst": all that were driven,
+                beginning with the failure with the smallest margin.
+        """
+        condition, order = WHICH[which]
+        sql = (
+            "SELECT tests.cell, tests.number FROM tests JOIN details USING (cell, number) "  # noqa: S608 - ours
+            f"WHERE outcome IS NOT NULL AND {self.has_run} AND {condition} AND (? = '' OR tests.cell = ?) "
+            f"ORDER BY {order} tests.cell, tests.number"
+        )
+        return [NumberedTest(*row) for row in self.query(sql, (cell, cell))]
+
+    def check_ended(self, cell: str, number: int) -> None:
+        """Raises UsageError if there is no such test, or if it has not ended."""
+        found = self.query("SELECT outcome FROM tests WHERE cell = ? AND number = ?", (cell, number))
+        if found and found[0][0] is not None:
+            return
+        if found:
+            raise UsageError(f"test {number} of {cell} in {self.folder} has not ended yet")
+        ((low, high),) = self.query("SELECT min(number), max(number) FROM tests WHERE cell = ?", (cell,))
+        there = "it has no tests yet" if low is None else f"its tests are {low} to {high}"
+        raise UsageError(f"{self.folder} holds no result of test {number} of {cell}; {there}")
+
+    def drivers(self) -> set[str]:
+        """Returns the names of the drivers of all tests."""
+        return {cell.request.setup.driver for cell in self.cells()}
+
+    def is_running(self) -> bool:
+        """Returns whether a process is running the tests."""
+        ((seen,),) = self.query("SELECT coalesce(max(seen * (1 - is_over)), 0) FROM sittings")
+        return not self.meta("finished") and time.time() - float(seen) < FRESH
+
+    def seconds(self) -> float:
+        """Returns the working time in seconds, summed over all sessions."""
+        return float(self.query("SELECT coalesce(sum(seen - begun), 0) FROM sittings")[0][0])
 
     def batches(self, cell: str) -> list[Batch]:
         """Returns the batches of a cell that have been requested, in order."""

@@ -6,18 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.campaign.folder_record import open_record
+from roadgpt.campaign.model import Cell, Result
+from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.record import Record
-from roadgpt.campaign.single_test import run_of, seed_of_driver
+from roadgpt.campaign.single_test import seed_of_driver
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.campaign.traces import TRACES, read_traces
 from roadgpt.check import inspect
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.reading import json_of
-from roadgpt.road import Design, Road, build
-from roadgpt.run import Run, read_run
-from roadgpt.run.folder import is_run, run_folder
+from roadgpt.road import Road
+from roadgpt.run import Run, prove
 from roadgpt.verdict import Verdict, judge
 
 
@@ -50,17 +51,16 @@ def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Ru
     Raises:
         UsageError: there is no campaign or no such test, it has no road, or its drive cannot be read.
     """
-    if not cell:
-        return read_run(folder if is_run(folder) else run_folder(folder, number))
-    with Record.opened(folder) as record:
-        return kept_in(record, record.cell(cell), record.result(cell, number), has_drive)
+    with open_record(folder) as record:
+        return record.run(cell, number, has_drive)
 
 
 def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) -> Run:
     """Returns the Run of a test whose result was read from an open Record; see ``kept_run``."""
     request, brief = cell.request, cell.brief
-    design = _design_of(record.folder, cell.name, result)
-    road = request.world.lay(build(design, request.setup.geometry))
+    road = record.road(cell, result)
+    if road is None:
+        raise _no_road(record.folder, cell.name, result)
     drive = _kept_drive(record, cell.name, result.number) if has_drive else None
     is_invalid = result.outcome == "INVALID"
     with reading_store(record.path):
@@ -101,10 +101,9 @@ def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict
     return replace(judged, **{name: value for name, value in kept.items() if value is not None})
 
 
-def _design_of(folder: Path, cell: str, result: Result) -> Design:
-    if result.design is None:
-        raise UsageError(f"test {result.number} of {cell} in {folder} has no road: {result.description}")
-    return result.design
+def _no_road(folder: Path, cell: str, result: Result) -> UsageError:
+    name = NumberedTest(cell, result.number)
+    return UsageError(f"test {name} in {folder} has no road: {result.description}")
 
 
 def _kept_drive(record: Record, cell: str, number: int) -> Drive | None:
@@ -113,19 +112,24 @@ def _kept_drive(record: Record, cell: str, number: int) -> Drive | None:
 
 
 def run_again(folder: Path, cell: str, number: int) -> tuple[Run, Result]:
-    """Checks and drives the road of a campaign's test again; returns the new Run and the stored Result.
+    """Checks and drives the road of a test again; returns the new Run and the stored Result.
 
     The same design, seed and setup give the same Run, bit for bit, on one machine.
 
+    Args:
+        folder: the folder of a campaign or of runs.
+        cell: name of the test's cell; empty for a run in a folder of runs.
+        number: number of the test.
+
     Raises:
-        UsageError: there is no campaign or no such test, or it has no road.
+        UsageError: there is no such test, or it has no road.
     """
-    with Record.opened(folder) as record:
-        found, result = record.cell(cell), record.result(cell, number)
-    design = _design_of(folder, cell, result)
-    seed = seed_of_driver(number, result.proposal)
-    run = run_of(found, number, Proposal(design, seed, result.proposal.origin))
-    return replace(run, request=found.request), result
+    with open_record(folder) as record:
+        result, kept = record.result(cell, number), record.run(cell, number, has_drive=False)
+    if kept.road is None:
+        raise _no_road(folder, cell, result)
+    run = prove(kept.road, kept.seed, kept.world, kept.request.setup, number, kept.brief)
+    return replace(run, request=kept.request, design=kept.design), result
 
 
 def is_same(run: Run, result: Result) -> bool:

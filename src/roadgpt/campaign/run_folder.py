@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Self
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.model import Cell, Proposal
+from roadgpt.campaign.model import WITHOUT_GOAL, Budget, Cell, Proposal
 from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
 from roadgpt.chat import Meter, Spent
 from roadgpt.errors import RoadGPTError, UsageError, explained
@@ -68,6 +68,13 @@ class RunWriter:
         return FinishedRun(result, None, run.seconds, run.spent, run.trace, lost, test_text(run), entry, own)
 
 
+def finished_run(run: Run) -> FinishedRun:
+    """Returns the Run of an earlier session as a test that has ended."""
+    proposal = Proposal(run.design, run.seed, "draft" if run.words else "given")
+    task = Task(run.index, run.index - 1, proposal)
+    return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
+
+
 def writing(folder: Path) -> AbstractContextManager[None]:
     """Returns a context manager that turns an error while writing into a folder into one clear sentence."""
     advice = "make room there and continue with the same command and --out"
@@ -80,8 +87,8 @@ class RunFolder:
 
     folder: Path
     request: Request
-    brief: Brief
-    """The requirements that were read from the description."""
+    brief: Brief | None
+    """The requirements that were read from the description; None if there is no description."""
     roads: int
     """Number of roads requested."""
     made: tuple[Path, ...] = ()
@@ -155,10 +162,13 @@ class RunFolder:
         except UsageError:
             return
         if run.index == index:
-            task = Task(index, index - 1, Proposal(None, self.request.seed, "draft"))
-            result = result_of(run, task, {})
-            self._count(FinishedRun(result, None, run.seconds, run.spent, entry=TallyEntry.of(run)))
+            self._count(replace(finished_run(run), entry=TallyEntry.of(run)))
             self.spent += run.spent or Spent()
+
+    def cell(self, name: str) -> Cell:
+        """Returns the cell whose tests this folder holds."""
+        budget = Budget(tests=self.roads)
+        return Cell(name, self.request, self.brief, WITHOUT_GOAL, None, {}, budget, in_sequence=True)
 
     def begin(self) -> bool:
         """Prepares the folder for a session. If all tests have ended, changes nothing and returns True.

@@ -8,10 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.campaign.cell_status import CellStatus, cell_statuses
-from roadgpt.campaign.lifecycle import plan_of
+from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.record import Record
 
-FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
 LATELY = 60.0  # s over which the speed of the moment is taken
 
 
@@ -68,29 +67,24 @@ class Status:
 
 
 def status_of(folder: Path) -> Status:
-    """Returns the state of the campaign in a folder.
+    """Returns the state of a campaign or of a folder of runs.
 
     Raises:
-        UsageError: the folder holds no campaign.
+        UsageError: the folder holds neither, or a file cannot be read.
     """
-    with Record.opened(folder) as record:
+    with open_record(folder) as record:
         cells = cell_statuses(record)
         outcomes: Counter[str] = Counter()
         for cell in cells:
             outcomes.update(cell.outcomes)
-        ((seconds, seen),) = record.query(
-            "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen * (1 - is_over)), 0) FROM sittings"
-        )
-        is_finished = bool(record.meta("finished"))
-        is_running = not is_finished and time.time() - seen < FRESH
-        plan = plan_of(record)
+        seconds, is_running = record.seconds(), record.is_running()
         leases = record.query("SELECT cell, number, worker FROM leases ORDER BY worker")
         tokens, cost = record.spent()
         return Status(
             folder=str(folder),
-            is_finished=is_finished,
+            is_finished=bool(record.meta("finished")),
             is_running=is_running,
-            total=plan.budget.tests and plan.budget.tests * len(cells),
+            total=record.total(),
             outcomes=dict(outcomes),
             seconds=round(seconds, 3),
             rate=round(_rate(record, outcomes.total(), seconds, is_running), 3),
@@ -102,9 +96,9 @@ def status_of(folder: Path) -> Status:
 
 
 def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
-    if not is_running:
-        return done / seconds if seconds else 0.0
     ((begun,),) = record.query("SELECT max(begun) FROM sittings")
+    if not is_running or begun is None:
+        return done / seconds if seconds else 0.0
     since = max(begun, time.time() - LATELY)
     return _ended_since(record, float(since)) / max(time.time() - float(since), 1.0)
 

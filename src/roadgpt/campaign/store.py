@@ -100,8 +100,8 @@ class Store(Record):
         with _refusals(folder):
             draft.unlink(missing_ok=True)
             db = sqlite3.connect(draft, isolation_level=None)
-            db.executescript(SCHEMA)
             meta = {"plan": plan, "versions": json.dumps(dict(versions)), "finished": ""}
+            db.executescript(SCHEMA)
             db.execute("BEGIN")
             db.executemany("INSERT INTO meta VALUES (?, ?)", meta.items())
             db.executemany(

@@ -9,7 +9,7 @@ import click
 from roadgpt.cli.next_steps import lines, of_status
 from roadgpt.cli.progress import duration, progress
 from roadgpt.cli.result_row import COLOURS, metres
-from roadgpt.cli.streams import warn
+from roadgpt.cli.streams import apart, warn
 
 if TYPE_CHECKING:
     from roadgpt.campaign.cell_status import CellStatus
@@ -28,11 +28,12 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
     """Runs a campaign, shows its progress and prints its results; after Ctrl-C, prints how to resume it."""
     try:
         with progress("tests", None, quiet, has_lines=False) as tell:
-            for step in steps:
+            for step in apart(steps):
                 tell(step.done, total=step.total, rate=outcomes_line(step.outcomes))
     except KeyboardInterrupt:
         warn(f"stopped; finished tests are kept; continue with: roadgpt resume {folder}")
         raise
+    from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.status import status_of
 
     status = status_of(folder)
@@ -42,7 +43,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
     elif not quiet:
         for line in told(status, found):
             click.echo(line)
-        click.echo(f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}")
+        tables = f"tables: {folder / 'results.csv'} and {folder / 'cells.csv'}"
+        click.echo(tables if is_store(folder) else f"tests and tables: {folder}")
 
 
 def faults_of(status: "Status") -> "Faults | None":
@@ -66,7 +68,8 @@ def as_line(status: "Status", found: "Faults | None") -> str:
 
 def outcomes_line(outcomes: Mapping[str, int]) -> str:
     """Returns the number of tests with each outcome as text, such as '120 PASS, 31 FAIL'."""
-    return ", ".join(f"{outcomes[name]:,} {name}" for name in COLOURS if outcomes.get(name)) or "nothing yet"
+    names = [*COLOURS, *sorted(outcomes.keys() - COLOURS.keys())]
+    return ", ".join(f"{outcomes[name]:,} {name}" for name in names if outcomes.get(name)) or "nothing yet"
 
 
 def told(status: "Status", found: "Faults | None") -> Iterator[str]:
@@ -129,7 +132,7 @@ def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
     what = f"{words} ({one_line(cell.driver)}, {cell.generator}, seed {cell.seed})"
     why = f"; {one_line(cell.closed)}" if cell.closed else ""
     counts = (cell.done, passed, failed, cell.done - passed - failed)
-    return (cell.name, *(f"{count:,}" for count in counts), margin, what + why)
+    return (cell.name or "-", *(f"{count:,}" for count in counts), margin, what + why)
 
 
 def one_line(text: str, most: int = 300) -> str:

@@ -20,7 +20,7 @@ HEADINGS = {
     },
     "Search": {
         "campaign": "Search for failures, or make thousands of roads, with parallel workers.",
-        "resume": "Continue a campaign that was interrupted.",
+        "resume": "Continue a campaign or a run that was interrupted.",
         "faults": "Group failures into distinct faults, and find why each occurs.",
     },
     "Evaluate": {

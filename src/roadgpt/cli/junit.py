@@ -1,17 +1,20 @@
 """``--junit``: writes tests as JUnit XML, for continuous integration."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.cli.result_row import Row, row_of
+from roadgpt.cli.result_row import Row, row_of_result
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.model import Cell
     from roadgpt.report.junit import Case, Properties, Suite
     from roadgpt.run.model import Request
 
 LONGEST = 120  # letters of a suite's name
+IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "side")  # columns of a row
 UNKNOWN = "roads that were given"
 
 
@@ -46,79 +49,49 @@ def write_folder(path: Path, folder: Path) -> None:
 
 
 def _suites(folder: Path) -> Iterator["Suite"]:
-    from roadgpt.campaign.record import STORE
     from roadgpt.study import plan
 
-    if (folder / plan.CARD).is_file():
-        for part in plan.read_plan(folder).parts():
-            if (folder / part.name).is_dir():
-                yield _of_runs(folder / part.name)
-    elif (folder / STORE).is_file():
-        yield from _of_campaign(folder)
-    else:
-        yield _of_runs(folder)
+    if not (folder / plan.CARD).is_file():
+        yield from _of_folder(folder)
+        return
+    for part in plan.read_plan(folder).parts():
+        if (folder / part.name).is_dir():
+            yield from _of_folder(folder / part.name)
 
 
-def _of_runs(folder: Path) -> "Suite":
-    from roadgpt.report.junit import Suite
-    from roadgpt.run import read_run
-    from roadgpt.run.card import read_card
-    from roadgpt.run.folder import finished, run_folder
-    from roadgpt.run.sbft_json import test_name
-
-    request = read_card(folder).request
-    names = [(test_name(index), run_folder(folder, index)) for index in finished(folder)]
-    return Suite(
-        _named(request.words),
-        common(request),
-        lambda: (_case(row_of(read_run(place), str(folder / name), name)) for name, place in names),
-    )
-
-
-def _of_campaign(folder: Path) -> Iterator["Suite"]:
-    """Yields a suite for each cell; reads the rows of the store one at a time."""
-    from roadgpt.campaign.record import Record
+def _of_folder(folder: Path) -> Iterator["Suite"]:
+    """Yields a suite for each cell."""
+    from roadgpt.campaign.folder_record import open_record
     from roadgpt.report.junit import Suite
 
-    with Record.opened(folder) as record:
+    with open_record(folder) as record:
         cells = record.cells()
         for cell in cells:
             name = _named(cell.request.words)
             shown = name if len(cells) == 1 else f"{cell.name}: {name}"
-            told = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal}
-            cases = partial(_of_cell, folder, cell.name, cell.request.words)
-            yield Suite(shown, {**common(cell.request), **told}, cases)
+            of_cell = {"cell": cell.name, "generator": cell.generator, "goal": cell.goal} if cell.name else {}
+            yield Suite(shown, {**common(cell.request), **of_cell}, partial(_of_cell, folder, cell))
 
 
-def _of_cell(folder: Path, cell: str, words: str) -> Iterator["Case"]:
-    from roadgpt.campaign.record import Record
-    from roadgpt.campaign.single_test import seed_of_driver
-    from roadgpt.report.junit import Case
+def _of_cell(folder: Path, cell: "Cell") -> Iterator["Case"]:
+    """Yields the tests of a cell; reads them one at a time."""
+    from roadgpt.campaign.folder_record import open_record
+    from roadgpt.campaign.numbered_test import NumberedTest
 
-    with Record.opened(folder) as record:
-        took: dict[int, float] = dict(
-            record.query("SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
-                         "WHERE cell = ? AND outcome IS NOT NULL", (cell,))
-        )  # fmt: skip
-        for result in record.results(cell):
-            yield Case(
-                name=f"{cell}/{result.number}",
-                outcome=result.outcome,
-                says=result.description,
-                kind=result.cause or "",
-                seconds=took.get(result.number, 0.0),
-                properties={
-                    "words": words or None,
-                    "seed": seed_of_driver(result.number, result.proposal),
-                    "origin": result.proposal.origin,
-                    "max_oob": result.max_oob,
-                    "beyond_m": result.beyond,
-                    "margin_m": result.margin,
-                    "length_m": result.length,
-                    "at_s_m": result.at_s,
-                    "side": result.side,
-                },
-            )
+    times = (
+        "SELECT number, coalesce(design_s, 0) + coalesce(drive_s, 0) FROM tests "
+        "WHERE cell = ? AND outcome IS NOT NULL"
+    )
+    errors = "SELECT number, error FROM details WHERE cell = ? AND error IS NOT NULL"
+    with open_record(folder) as record:
+        took: dict[int, float] = dict(record.query(times, (cell.name,)))
+        said: dict[int, str] = dict(record.query(errors, (cell.name,)))
+        for result in record.results(cell.name):
+            number, file = result.number, record.file(result.number)
+            name = Path(file).name or str(NumberedTest(cell.name, number))
+            row = row_of_result(result, cell.request.words, record.seed(result), name)
+            row = replace(row, seconds=took.get(number, 0.0), file=file, trace=str(said.get(number, "")))
+            yield _case(row, result.proposal.origin if cell.name else None)
 
 
 def _named(words: str) -> str:
@@ -141,11 +114,12 @@ def common(request: "Request") -> "Properties":
     }
 
 
-def _case(row: Row) -> "Case":
+def _case(row: Row, origin: str | None = None) -> "Case":
     from roadgpt.report.junit import Case
 
-    numbers = {name: getattr(row, name) for name in ("seed", "max_oob", "beyond_m", "margin_m", "length_m")}
+    numbers = {name: getattr(row, name) for name in IN_CASE}
+    properties = {"words": row.words or None, "origin": origin, **numbers}
     return Case(
         row.name or row.file, row.test_outcome, row.description, row.cause or "", row.seconds, row.file,
-        row.trace, {"words": row.words or None, **numbers},
+        row.trace, properties,
     )  # fmt: skip

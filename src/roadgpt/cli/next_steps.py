@@ -102,33 +102,21 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Summarises a campaign in which no test failed.
+    """Summarises a campaign or a folder of runs in which no test failed.
 
-    Returns None if the campaign is still running or a test failed.
+    Returns None if it is still running or a test failed.
     """
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
-    from roadgpt.campaign.record import Record
+    from roadgpt.campaign.folder_record import open_record
 
-    with Record.opened(Path(status.folder)) as record:
+    with open_record(Path(status.folder)) as record:
         first = record.cells()[0]
     partly = sum(cell.partly_outside for cell in status.cells)
     mostly = sum(cell.mostly_outside for cell in status.cells)
-    tests = first.budget.tests or SEARCHED
+    tests, is_search = first.budget.tests or SEARCHED, not first.in_sequence
     passed = status.outcomes["PASS"]
-    return WithoutFailure(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search=True)
-
-
-def of_runs(folder: Path) -> WithoutFailure | None:
-    """Summarises a folder of runs in which no test failed; returns None if a test failed."""
-    from roadgpt.cli.result_row import row_of
-    from roadgpt.run import read_run
-    from roadgpt.run.card import read_card
-    from roadgpt.run.folder import finished, run_folder
-
-    card = read_card(folder)
-    rows = [row_of(read_run(run_folder(folder, index)), "") for index in finished(folder)]
-    return of_rows(card.request, card.roads, rows)
+    return WithoutFailure(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search)
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
+    from roadgpt.campaign.model import Result
     from roadgpt.chat import Spent
     from roadgpt.run.model import Run
 
@@ -62,6 +63,10 @@ class Row:
     """Largest distance of the car's body beyond the lane marking, m."""
     margin_m: float | None = None
     length_m: float | None = None
+    at_s_m: float | None = None
+    """Station of the failure, metres along the road; None if the car did not fail."""
+    side: str | None = None
+    """The side on which the car left its lane."""
     seconds: float = 0.0
     name: str = ""
     """A shorter name, which is printed instead of ``file``; if empty, ``file`` is printed."""
@@ -194,12 +199,34 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
         beyond_m=verdict.beyond if verdict else None,
         margin_m=verdict.margin if verdict else None,
         length_m=run.length if run.road else None,
-        seconds=run.seconds.total,
+        at_s_m=verdict.at_s if verdict else None,
+        side=verdict.side if verdict else None,
+        seconds=round(run.seconds.design, 4) + round(run.seconds.drive, 4),  # as tables of tests hold them
         name=name,
         spent=run.spent,
         words=run.words,
         seed=run.seed,
         trace=run.trace,
+    )
+
+
+def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
+    """Returns the row of a test from its stored result, its description, the driver's seed and its name."""
+    return Row(
+        "",
+        result.outcome,
+        result.description,
+        is_valid=result.outcome not in ("INVALID", "ERROR"),
+        cause=result.cause,
+        max_oob=result.max_oob,
+        beyond_m=result.beyond,
+        margin_m=result.margin,
+        length_m=result.length or None,
+        at_s_m=result.at_s,
+        side=result.side,
+        name=name,
+        words=words,
+        seed=seed,
     )
 
 

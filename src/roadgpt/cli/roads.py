@@ -96,14 +96,12 @@ def _too_many(place: "Selection", found: "Sequence[Selection]") -> str:
 
 
 def _test(place: "Selection") -> NamedRoad:
-    if place.is_campaign:
-        return NamedRoad(
-            place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run
-        )
     from roadgpt.run.folder import run_folder
 
     assert place.number is not None
-    return _run(run_folder(place.folder, place.number), place.said)
+    if not place.cell:
+        return _run(run_folder(place.folder, place.number), place.said)
+    return NamedRoad(place.said, place.stem, (place.folder.resolve(), place.cell, place.number), place.run)
 
 
 def _run(folder: Path, said: str) -> NamedRoad:

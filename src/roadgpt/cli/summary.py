@@ -3,21 +3,23 @@
 import shlex
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
-from roadgpt.campaign.selection import Choice, Selection, chosen, selection_of
-from roadgpt.campaign.status import Status, status_of
+from roadgpt.campaign.folder_record import is_store, open_record
+from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.selection import Choice, Selection, selection_of
+from roadgpt.campaign.status import status_of
 from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
-from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, told
+from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, outcomes_line, told
 from roadgpt.cli.repeat_commands import replay_lines
-from roadgpt.cli.result_row import WIDEST, metres, row_of, spending
+from roadgpt.cli.result_row import WIDEST, Row, metres, row_of, row_of_result, spending
 from roadgpt.cli.roads import NamedRoad, roads_named
 from roadgpt.errors import UsageError
-from roadgpt.run.card import read_card
-from roadgpt.run.folder import finished, read_run, run_folder
+from roadgpt.run.folder import read_run, run_folder
 from roadgpt.run.model import Run
 from roadgpt.verdict import Verdict
 from roadgpt.verdict.severity import percent
@@ -57,7 +59,7 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
         UsageError: No run, folder, campaign, cell or test has that name.
     """
     place = selection_of(str(path))
-    if place is not None and place.is_campaign and not place.cell and choice is None:
+    if place is not None and is_store(place.folder) and not place.cell and choice is None:
         yield from progress_lines(place.folder, as_json=True)
         return
     for named in roads_named([str(path)], choice, takes_all=True):
@@ -68,51 +70,48 @@ def json_lines(path: Path | str, choice: Choice | None = None) -> Iterator[str]:
 
 def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
     place = selection_of(str(path))
-    if choice is not None:
+    if choice is not None or (place is not None and place.number is not None):
         named = [*roads_named([str(path)], choice)]
         yield from _run_of(named[0]) if len(named) == 1 else map(_one_line, named)
     elif place is None:
         run = read_run(path)
         folder = Path(path) if Path(path).is_dir() else run_folder(Path(path).parent, run.index)
         yield from _run_lines(run, replay_lines(run, folder))
-    elif place.number is not None:
-        (one,) = roads_named([str(path)], None)
-        yield from _run_of(one)
-    elif place.is_campaign:
+    elif place.cell:
+        yield from _cell_lines(place)
+    elif is_store(place.folder):
         status = status_of(place.folder)
-        if place.cell:
-            yield from _cell_lines(place, status)
-            return
         yield from told(status, faults_of(status))
         yield f"one test: roadgpt show {place.folder}/{status.cells[0].name}/1; all failures: --failures"
     else:
-        yield from _campaign_lines(place.folder)
+        yield from _folder_lines(place.folder)
 
 
-def _cell_lines(place: Selection, status: Status) -> Iterator[str]:
+def _cell_lines(place: Selection) -> Iterator[str]:
     """Yields a cell of a campaign and its first tests."""
-    (cell,) = [cell for cell in status.cells if cell.name == place.cell]
+    (cell,) = [cell for cell in status_of(place.folder).cells if cell.name == place.cell]
     yield LINE.format(*HEAD)
     yield LINE.format(*cell_columns(cell))
-    tests = chosen(place, None)
-    for each in tests[:MOST_TESTS]:
-        yield _one_line(NamedRoad(each.said, each.stem, each, each.run))
-    if not tests:
+    with open_record(place.folder) as record:
+        for result in islice(record.results(place.cell), MOST_TESTS):
+            name = place.of(NumberedTest(place.cell, result.number)).said
+            yield _line_of(row_of_result(result, cell.words, record.seed(result), name))
+    if not cell.done:
         yield "no test has ended yet"
-    elif len(tests) > MOST_TESTS:
-        yield f"and {len(tests) - MOST_TESTS:,} more tests; all: {place.folder / RESULTS}"
+    elif cell.done > MOST_TESTS:
+        yield f"and {cell.done - MOST_TESTS:,} more tests; all: {place.folder / RESULTS}"
 
 
 def _one_line(named: NamedRoad) -> str:
     assert named.run is not None
-    return _line_of(named.said, named.run())
+    return _line_of(row_of(named.run(), named.said))
 
 
-def _line_of(name: str, run: Run) -> str:
+def _line_of(row: Row) -> str:
     """Returns a line of a list of roads: name, outcome, length, margin and a sentence."""
-    margin = metres(run.verdict.margin) if run.verdict else ""
-    outcome = row_of(run, name).outcome
-    return f"{name}  {outcome:<{WIDEST}} {run.length:>5.0f} m {margin:>9}  {run.description}"
+    margin = "" if row.margin_m is None else metres(row.margin_m)
+    measured = f"{row.outcome:<{WIDEST}} {row.length_m or 0:>5.0f} m {margin:>9}"
+    return f"{row.file or row.name}  {measured}  {row.description}"
 
 
 def _run_of(named: NamedRoad) -> Iterator[str]:
@@ -186,24 +185,26 @@ def _road_line(run: Run) -> str:
     return f"{run.length:.0f} m, {tightest}, {climb:+.1f} m in height, steepest {steep:+.1%}"
 
 
-def _campaign_lines(folder: Path) -> Iterator[str]:
-    card = read_card(folder)
-    yield f"{card.request.words or 'roads that were given'} (seed {card.request.seed})"
-    yield f"{'road':>6}  {'outcome':<{WIDEST}} {'length':>7} {'margin':>9}  description"
+def _folder_lines(folder: Path) -> Iterator[str]:
+    """Yields the runs of a folder of runs."""
     counts: Counter[str] = Counter()
     spent = Spent()
-    for index in finished(folder):
-        try:
-            run = read_run(run_folder(folder, index))
-        except UsageError as error:
-            counts["unreadable"] += 1
-            yield f"{index:>6}  cannot be read: {error}"
-            continue
-        counts[run.outcome] += 1
-        spent = spent + (run.spent or Spent())
-        yield _line_of(f"{index:>6}", run)
-    told = ", ".join(f"{number} {outcome}" for outcome, number in counts.most_common())
+    with open_record(folder) as record:
+        (cell,) = record.cells()
+        yield f"{cell.request.words or 'roads that were given'} (seed {cell.request.seed})"
+        yield f"{'road':>6}  {'outcome':<{WIDEST}} {'length':>7} {'margin':>9}  description"
+        for name in record.tests():
+            try:
+                run = record.run(*name)
+            except UsageError as error:
+                counts["unreadable"] += 1
+                yield f"{name!s:>6}  cannot be read: {error}"
+                continue
+            counts[run.outcome] += 1
+            spent = spent + (run.spent or Spent())
+            yield _line_of(row_of(run, f"{name!s:>6}"))
     if spent.calls:
         yield f"language model: {spending(spent)}"
-    rest = card.roads - counts.total()
-    yield f"{told or 'nothing yet'}" + (f"; {rest} of {card.roads} still to be made" if rest else "")
+    roads = cell.budget.most
+    rest = f"; {roads - counts.total()} of {roads} still to be made" if counts.total() < roads else ""
+    yield outcomes_line(counts) + rest

@@ -20,6 +20,8 @@ from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.campaign.plan import Plan
+    from roadgpt.chat import ChatSettings
+    from roadgpt.run import Draw
 
 MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
@@ -84,22 +86,25 @@ def command(ctx: click.Context, /, words: tuple[str, ...], out: Path | None, **g
         was_there = begin(plan, out)
     if not given["quiet"] and not given["as_json"]:
         _tell(out, plan, was_there)
-    work_to_the_end(out, plan, given)
+    work_to_the_end(out, given)
 
 
-def work_to_the_end(folder: Path, plan: "Plan", given: dict[str, Any]) -> None:
-    """Runs the remaining tests of a campaign and prints the results.
+def work_to_the_end(
+    folder: Path, given: dict[str, Any], chat: "ChatSettings | None" = None, draw: "Draw | None" = None
+) -> None:
+    """Runs the remaining tests of a campaign or a folder of runs and prints the results.
 
     If requested, writes a JUnit file and analyses the failures.
 
     Args:
-        folder: The campaign's folder.
-        plan: The campaign's plan.
+        folder: The folder of the campaign or of the runs.
         given: Values of the options for workers, analysis of faults, JUnit file and output.
+        chat: Settings of the language model with changed limits; None: the stored settings.
+        draw: Draws pictures into a folder of runs; None: no pictures.
     """
     from roadgpt.campaign.lifecycle import work
 
-    steps = work(folder, given["workers"], given["executor"], given["address"], plan)
+    steps = work(folder, given["workers"], given["executor"], given["address"], chat, draw)
     watch(folder, steps, given["as_json"], given["quiet"])
     if given["junit"] is not None:
         write_folder(given["junit"], folder)

@@ -61,11 +61,11 @@ def command(
     points at the same place, or no room for a car. With --rules sbft (see --help-all), every broken rule
     makes a road INVALID, as in the SBFT competition. The exit status is 0 if every road could be read.
 
-    With --again, give a campaign and test numbers from its results.csv, such as CAMPAIGN 17. If the
-    campaign has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road,
-    world, driver and seed are taken from the test, so the drive should be identical byte for byte; the
-    command says so if it is not. Each test is written into a run folder of its own. To look at a test
-    without driving it again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
+    With --again, give a folder of runs or a campaign, and numbers of tests, such as DIR 17. If a campaign
+    has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road, world, driver
+    and seed are taken from the test, so the drive should be identical byte for byte; the command says so if
+    it is not. Each test is written into a run folder of its own. To look at a test without driving it
+    again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
 
     \b
     roadgpt drive my_road.json --friction 0.6
@@ -131,7 +131,7 @@ def _driven(
     return row_of(run, file)
 
 
-AGAIN = "again"  # folder of a campaign
+AGAIN = "again"  # folder in that of the tests
 
 
 def drive_again(
@@ -142,14 +142,13 @@ def drive_again(
     axes: "Scale",
     formats: "tuple[Format, ...]",
 ) -> None:
-    """Repeats tests of a campaign, writes a run folder for each, and warns if a result differs from the
-    recorded one.
+    """Repeats tests, writes a run folder for each, and warns if a result differs from the recorded one.
 
     Args:
-        names: A campaign's folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17.
+        names: A folder and numbers of its tests, or single tests, such as CAMPAIGN/c02/17.
         choice: Which tests to drive if a name means a whole campaign.
-        out: Folder in which the run folders are written; None: ``again`` in the campaign's folder.
-        driver: The campaign's driver as given with ``--driver``; None if it was not given.
+        out: Folder in which the run folders are written; None: ``again`` in the folder of the tests.
+        driver: The driver of the tests as given with ``--driver``; None if it was not given.
         axes: "equal" for axes to scale, "thesis" for the fixed ranges of RoadGPT's thesis.
         formats: Formats of the pictures; none are drawn if empty.
 
@@ -157,6 +156,7 @@ def drive_again(
         UsageError: A name is wrong, or the driver is not that of the campaign.
     """
     from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.campaign.numbered_test import NumberedTest
     from roadgpt.campaign.rerun import is_same, run_again
     from roadgpt.drive.permission import check_named_driver
     from roadgpt.report import drawing
@@ -171,12 +171,12 @@ def drive_again(
         run, result = run_again(place.folder, cell, number)
         home = (out or place.folder / AGAIN) / cell
         written = write_run(run, _made(home), draw)
-        click.echo(f"{run.outcome:<8} {cell}/{number}  {written}  {one_line(run.description)}")
+        name = NumberedTest(cell, number)
+        click.echo(f"{run.outcome:<8} {name}  {written}  {one_line(run.description)}")
         if not is_same(run, result):
-            said = f"{result.outcome} in the campaign ({one_line(result.description)})"
+            said = f"{result.outcome} before ({one_line(result.description)})"
             warn(
-                f"test {number} of {cell} was {said}; it was driven with another version of roadgpt "
-                "or on another machine"
+                f"test {name} was {said}; it was driven with another version of roadgpt or on another machine"
             )
 
 
@@ -188,13 +188,13 @@ def _made(path: Path) -> Path:
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
-    """Returns the tests that the names mean; numbers belong to the campaign that comes first."""
-    from roadgpt.campaign.record import no_campaign
+    """Returns the tests that the names mean; numbers belong to the folder that comes first."""
+    from roadgpt.campaign.record import no_tests
     from roadgpt.campaign.selection import chosen, selection_of
 
     first = selection_of(names[0])
-    if first is None or not first.is_campaign:
-        raise no_campaign(Path(names[0]))
+    if first is None:
+        raise no_tests(Path(names[0]))
     if first.number is None and choice is None and len(names) == 1:
         raise UsageError(
             f"say which tests of {first.said}: their numbers, such as 17 or c02/17, or --worst, --faults or "
@@ -206,7 +206,7 @@ def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
         place = (
             (selection_of(f"{first.folder}/{name}") or selection_of(name)) if is_number or choice else None
         )
-        if place is None or not place.is_campaign or (place.number is None and choice is None):
+        if place is None or (place.number is None and choice is None):
             raise UsageError(f"'{one_line(name, 40)}' is not a test; give its number, such as 17 or c02/17")
         out += chosen(place, choice)
     if not out:

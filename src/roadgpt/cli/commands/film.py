@@ -124,10 +124,11 @@ def _films(
     files: tuple[str, ...], choice: "Choice | None", view: str, out: Path | None
 ) -> Iterator[tuple[NamedRoad, Path]]:
     """Yields the roads to film, each with its film; in a folder of runs, those that have no film yet."""
+    from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.selection import selection_of
 
     first = selection_of(files[0])
-    is_of_runs = choice is None and (first is None or not first.is_campaign)
+    is_of_runs = choice is None and (first is None or not is_store(first.folder))
     if is_of_runs and (len(files) != 1 or out is not None):
         raise UsageError("--all takes one folder of runs, and puts each film into its run")
     if is_of_runs and first is None:

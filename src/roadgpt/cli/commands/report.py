@@ -2,21 +2,16 @@
 
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import click
 
 from roadgpt.cli import options
 from roadgpt.cli.junit import write_folder
-from roadgpt.cli.next_steps import next_steps, of_runs, of_status
+from roadgpt.cli.next_steps import next_steps, of_status
 from roadgpt.cli.option import Argument
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.cli.roads import open_page
-from roadgpt.errors import UsageError
-
-if TYPE_CHECKING:
-    from roadgpt.run.card import Card
 
 
 @click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", kind=PATH), options.OPEN, options.JUNIT])
@@ -39,36 +34,32 @@ def command(folder: Path, opens: bool, junit: Path | None) -> None:
 
 
 def _written(folder: Path) -> Path:
-    from roadgpt.campaign.record import STORE
-    from roadgpt.run.card import CARD, read_card
+    from roadgpt.campaign.folder_record import is_store
+    from roadgpt.campaign.status import status_of
     from roadgpt.study import plan, study_report
+    from roadgpt.study.campaign_report import write_store_report
 
     if (folder / plan.CARD).is_file():
         return study_report.write_study(folder)
-    if (folder / STORE).is_file():
-        from roadgpt.campaign.status import status_of
-        from roadgpt.study.campaign_report import write_store_report
-
-        return write_store_report(folder, command_of_many(folder), next_steps(of_status(status_of(folder))))
-    if (folder / CARD).is_file():
-        command_ = _command(read_card(folder), folder)
-        return study_report.write_run_report(folder, command_, next_steps(of_runs(folder)))
-    raise UsageError(
-        f"there are no runs, no campaign and no study in {folder}; give a folder that holds them"
-    )
+    steps = next_steps(of_status(status_of(folder)))
+    write = write_store_report if is_store(folder) else study_report.write_run_report
+    return write(folder, command_of(folder), steps)
 
 
-def command_of_many(folder: Path) -> str:
-    """Returns the command that repeats a campaign. For a campaign that was made from a plan file, it is
-    the command that resumes it.
+def command_of(folder: Path) -> str:
+    """Returns the command that repeats a campaign or a folder of runs; empty for roads without a description.
+
+    For a campaign that was made from a plan file, it is the command that resumes it.
     """
+    from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL
-    from roadgpt.campaign.record import Record
     from roadgpt.cli.repeat_commands import request_words
 
-    with Record.opened(folder) as record:
+    with open_record(folder) as record:
         cells = record.cells()
     only, n = cells[0], cells[0].budget.tests
+    if only.in_sequence and not only.request.words:
+        return ""
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
         return shlex.join(["roadgpt", "resume", str(folder)])
     words = request_words(only.request, n)
@@ -76,14 +67,4 @@ def command_of_many(folder: Path) -> str:
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
         words += ["--generator", only.generator]
     words += ["--seconds", f"{only.budget.seconds:g}"] if only.budget.seconds else []
-    return shlex.join(["roadgpt", "campaign", *words, "--out", str(folder)])
-
-
-def _command(card: "Card", folder: Path) -> str:
-    """Returns the command that makes a folder of runs again."""
-    from roadgpt.cli.repeat_commands import request_words
-
-    if not card.request.words:
-        return ""
-    words = request_words(card.request, card.roads)
-    return shlex.join(["roadgpt", "run", *words, "--out", str(folder)])
+    return shlex.join(["roadgpt", "run" if only.in_sequence else "campaign", *words, "--out", str(folder)])

@@ -1,52 +1,77 @@
-"""``roadgpt resume``: continues a campaign that was interrupted."""
+"""``roadgpt resume``: continues a campaign or a run that was interrupted."""
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from roadgpt.cli import options
 from roadgpt.cli.commands.campaign import work_to_the_end
 from roadgpt.cli.commands.faults import FAULT_OPTIONS
+from roadgpt.cli.commands.run import beside
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import PATH
 from roadgpt.errors import UsageError
 
-ADVICE = "Name the folder of a campaign, as 'roadgpt campaign' printed it."
+if TYPE_CHECKING:
+    from roadgpt.report import Scale
+    from roadgpt.run import Draw
+
+ADVICE = "Name the folder of a campaign or of runs, as 'roadgpt campaign' or 'roadgpt run' printed it."
 OPTIONS = (
     *(*options.WORKERS, *named(options.CHAT, "max_tokens", "max_cost"), options.DRIVER_AGAIN),
     Option("--base-url", "Address of the server. Repeat it here if the campaign used one: for safety, your "
            "API key is not sent to an address just because a folder refers to it.", heading=Heading.MODEL),
     *FAULT_OPTIONS,
+    options.AXES,
     options.JUNIT,
     options.json_option("Print one JSON object at the end.", heading=Heading.OUTPUT),
     options.QUIET,
 )  # fmt: skip
 
 
-@click.command(cls=GroupedCommand, params=[Argument("campaign", "CAMPAIGN", ADVICE, PATH), *OPTIONS])
-def command(campaign: Path, driver: str | None, base_url: str | None, **rest: Any) -> None:
-    """Continue a campaign that was interrupted, with any number of workers.
+@click.command(cls=GroupedCommand, params=[Argument("folder", "DIR", ADVICE, PATH), *OPTIONS])
+def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale", **rest: Any) -> None:
+    """Continue a campaign or a run that was interrupted.
 
-    Tests that had not finished are repeated. The table of results is the same as without the interruption.
+    DIR is the folder that roadgpt campaign or roadgpt run wrote. Tests that had not finished are repeated.
+    The tests and tables are the same as without the interruption, with any number of workers; the roads of
+    roadgpt run are made one after another, with pictures and road files as the finished ones have them.
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2
     """
-    from roadgpt.campaign.lifecycle import plan_of
-    from roadgpt.campaign.record import Record
+    from roadgpt.campaign.folder_record import open_record
     from roadgpt.chat.config import trust_server
     from roadgpt.drive.permission import check_named_driver
 
-    with Record.opened(campaign) as record:
-        plan = plan_of(record)
-    check_named_driver(driver, {*plan.drivers}, campaign)
+    with open_record(folder) as record:
+        chat = next((cell.request.setup.chat for cell in record.cells() if cell.request.setup.chat), None)
+        drivers, is_of_runs = record.drivers(), record.cells()[0].in_sequence
+    check_named_driver(driver, drivers, folder)
     if base_url is not None:
-        trust_server(base_url, plan.chat.base_url if plan.chat else None, campaign)
+        trust_server(base_url, chat.base_url if chat else None, folder)
     limits = {name: rest[name] for name in ("max_tokens", "max_cost") if rest[name] is not None}
-    if limits and plan.chat is None:
-        raise UsageError(f"--max-tokens and --max-cost limit a language model, and {campaign} asks none")
-    if limits and plan.chat is not None:
-        plan = plan.model_copy(update={"chat": plan.chat.model_copy(update=limits)})
-    work_to_the_end(campaign, plan, rest)
+    if limits and chat is None:
+        raise UsageError(f"--max-tokens and --max-cost limit a language model, and {folder} asks none")
+    changed = chat.model_copy(update=limits) if limits and chat else None
+    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if is_of_runs else None)
+
+
+def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
+    """Returns what draws the pictures and writes the road files that the finished runs of a folder have."""
+    from roadgpt import plugins
+    from roadgpt.report import FORMATS
+    from roadgpt.run.exporting import NAME
+    from roadgpt.run.folder import RUNS
+
+    names = {path.name for path in folder.glob(f"{RUNS}/*/*")}
+    if "road.json" not in names:
+        return beside(("png",), axes, ())
+    pictures = tuple(kind for kind in FORMATS if f"birds_eye.{kind}" in names)
+    formats: tuple[str, ...] = ()
+    if any(name.startswith(NAME) and name != "road.json" for name in names):
+        every = plugins.names("exporters")
+        formats = tuple(each for each in every if NAME + plugins.find("exporters", each).suffix in names)
+    return beside(pictures, axes, formats)

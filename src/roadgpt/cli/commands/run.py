@@ -125,12 +125,12 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of
 
-    beside = _beside(job)
+    draw = beside(job.pictures, job.axes, job.formats)
     meter = Meter.of(job.setup.chat)
     brief = brief_of(job.words, job.world, job.setup, meter)
     seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
-        work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, beside, meter)
+        work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, draw, meter)
     screen.junit = junit_writer(job.junit, work.request)
     screen.say(understood(brief, job.world.site.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
@@ -181,8 +181,8 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
     try:
         screen.runs(work.all_runs(), work.folder)
     except KeyboardInterrupt:
-        command = ["roadgpt", "run", work.request.words, "-n", str(work.roads), "--out", str(work.folder)]
-        warn(f"continue with: {shlex.join(command)} and the same options")
+        axes = [] if job.axes == "equal" else ["--axes", job.axes]
+        warn(f"continue with: {shlex.join(['roadgpt', 'resume', str(work.folder), *axes])}")
         raise
     finally:
         screen.close()
@@ -200,14 +200,20 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
                 )
 
 
-def _beside(job: RunJob) -> "Draw | None":
-    """Returns the function that puts pictures and road files into the folder of each run."""
-    draw = options.drawing_of(job.pictures, job.axes)
-    if not job.formats:
+def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ...]) -> "Draw | None":
+    """Returns what puts pictures and road files into the folder of each run; None if neither is wanted.
+
+    Args:
+        pictures: Formats of the pictures.
+        axes: Axes of the pictures.
+        formats: Formats of the road files.
+    """
+    draw = options.drawing_of(pictures, axes)
+    if not formats:
         return draw
     from roadgpt.export import exporter_of
     from roadgpt.run.exporting import Exporting
 
-    for name in job.formats:
+    for name in formats:
         exporter_of(name)
-    return Exporting(job.formats, warn, draw)
+    return Exporting(formats, warn, draw)

@@ -1,0 +1,150 @@
+"""Opens the tests in a folder for reading, whether they are those of a campaign or of a folder of runs."""
+
+import sqlite3
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from roadgpt.campaign.folder_store import FolderStore
+from roadgpt.campaign.model import Cell, Result
+from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.record import STORE, Record, no_tests
+from roadgpt.campaign.run_folder import RunFolder, finished_run
+from roadgpt.errors import UsageError
+from roadgpt.road import Road
+from roadgpt.run import Request, Run, read_run
+from roadgpt.run.atomic import is_locked
+from roadgpt.run.card import CARD, read_card
+from roadgpt.run.folder import RUNS, finished, is_run, run_folder
+from roadgpt.run.sbft_json import test_name
+
+
+def is_store(folder: Path) -> bool:
+    """Returns whether a folder holds a campaign, whose tests are in a store."""
+    return (folder / STORE).is_file()
+
+
+def has_tests(folder: Path) -> bool:
+    """Returns whether a folder holds a campaign or runs; a run's own folder does not."""
+    return is_store(folder) or ((folder / RUNS).is_dir() and not is_run(folder))
+
+
+def open_record(folder: Path) -> Record:
+    """Opens the tests of a campaign, of a folder of runs, or of a single run.
+
+    Raises:
+        UsageError: the folder holds none of these, or it cannot be read.
+    """
+    if is_store(folder):
+        return Record.opened(folder)
+    if not has_tests(folder) and not is_run(folder):
+        raise no_tests(folder)
+    return FolderRecord(folder)
+
+
+class FolderRecord(FolderStore):
+    """The tests in a folder of runs, open for reading.
+
+    The Runs are read when the first query needs the tables; a Run that cannot be read is then an error.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        """Opens a folder of runs, or the folder of one Run.
+
+        Raises:
+            UsageError: the folder's ``campaign.json`` is damaged, or it has none and its first Run cannot be
+                read.
+        """
+        self._is_entered = False
+        self._places = {read_run(folder).index: folder} if is_run(folder) else _places_in(folder)
+        card = read_card(folder) if (folder / CARD).is_file() else None
+        first = next(iter(self._places.values()), None)
+        brief, request = None, card and card.request
+        if first is not None:
+            try:
+                run = read_run(first)
+                brief, request = run.brief, request or run.request
+            except UsageError:
+                if request is None:
+                    raise
+        roads = card.roads if card else max(len(self._places), 1)
+        runs = RunFolder(folder, request or Request(), brief, roads)
+        super().__init__(folder, {}, [runs.cell("")])
+        self._is_finished = card is None or card.is_finished
+
+    def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
+        if not self._is_entered:
+            self._is_entered = True
+            self._enter("", {number: finished_run(self.run("", number)) for number in self._places})
+        return super()._execute(sql, values)
+
+    def meta(self, name: str) -> str:
+        """Returns "yes" for ``finished`` if the folder is finished; all else is empty."""
+        return "yes" if name == "finished" and self._is_finished else ""
+
+    def total(self) -> int | None:
+        """Returns the number of roads that were asked for."""
+        return self.cell("").budget.tests
+
+    def is_running(self) -> bool:
+        """Returns whether a process is making runs in the folder."""
+        return is_locked(self.folder)
+
+    def seconds(self) -> float:
+        """Returns the sum of the times that the tests took, in seconds."""
+        return float(self.query("SELECT coalesce(sum(design_s + drive_s), 0) FROM tests")[0][0])
+
+    def drivers(self) -> set[str]:
+        """Returns the names of the drivers of all tests."""
+        if (self.folder / CARD).is_file():
+            return super().drivers()
+        return {self.run("", number).request.setup.driver for number in self._places}
+
+    def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
+        """Returns the names of tests that have ended; see ``Record.tests``."""
+        return (
+            [NumberedTest("", number) for number in self._places]
+            if which is None
+            else super().tests(cell, which)
+        )
+
+    def check_ended(self, cell: str, number: int) -> None:
+        """Raises UsageError if there is no such run."""
+        del cell
+        if number not in self._places:
+            there = [*self._places]
+            its = f"its runs are {there[0]} to {there[-1]}" if there else "it has no runs yet"
+            raise UsageError(f"there is no run {number} in {self.folder}; {its}")
+
+    def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
+        """Returns the Run of a test, always with its drive.
+
+        Raises:
+            UsageError: there is no such run, or it cannot be read.
+        """
+        self.check_ended(cell, number)
+        return read_run(self._places[number])
+
+    def result(self, cell: str, number: int) -> Result:
+        """Returns the result of one test.
+
+        Raises:
+            UsageError: there is no such run, or it cannot be read.
+        """
+        return finished_run(self.run(cell, number)).result
+
+    def road(self, cell: Cell, result: Result) -> Road | None:
+        """Returns the road of a test that has ended; None if it has none."""
+        return self.run(cell.name, result.number).road
+
+    def seed(self, result: Result) -> int:
+        """Returns the driver's seed in a test."""
+        return result.proposal.seed
+
+    def file(self, number: int) -> str:
+        """Returns the path of the file of a test."""
+        return str(self.folder / test_name(number))
+
+
+def _places_in(folder: Path) -> dict[int, Path]:
+    return {number: run_folder(folder, number) for number in finished(folder)}
