@@ -257,6 +257,21 @@ def test_a_proposal_with_other_turns_than_asked_is_made_valid_and_stays_what_it_
     )
 
 
+def test_an_open_count_is_shared_out_so_that_the_least_changes() -> None:
+    brief = read("at least one turn uphill, then at least one turn downhill")
+    up, down = (30, 50, 5), (30, -50, -5)
+    proposed = road_of((30, 0, 5), up, (30, 0, 5), (40, -50, 2), (30, 0, 5), up, (30, 0, 0), down)
+    after = repair(proposed, brief, WORLD, "full").design
+    assert is_valid(after, brief)
+    assert shown_turns(after) == [("left", "up"), ("right", "up"), ("left", "up"), ("right", "down")]
+
+
+def test_a_straight_that_already_goes_as_asked_answers_for_it() -> None:
+    brief = Brief(clauses=(Clause(kind="straight", slope="down"),), turns=exactly(1))
+    proposed = road_of((40, 0, 0), (30, 50, 0), (40, 0, -6))
+    assert repair(proposed, brief, WORLD, "full") == Repaired(proposed, ())
+
+
 def test_a_list_beyond_all_reason_comes_back_quickly() -> None:
     proposed = road_of(*[(30, 40, 3)] * 400)
     after, changes = repair(proposed, None, WORLD, "full")

@@ -6,10 +6,13 @@ straights are requested between two turns, they are matched with such pieces in 
 once.
 """
 
+from collections.abc import Callable, Sequence
 from functools import cache
+from itertools import chain
 from math import inf
-from typing import NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.quantities import FEATURE
 from roadgpt.brief.words import Range
@@ -27,18 +30,20 @@ class Complaint(NamedTuple):
     """Whether the requirement could be met by changing only the heights of the road."""
 
 
-class _Cost(NamedTuple):
-    """The number of wrong features of the best match of turns, and the complaints about them."""
-
-    wrong: float
-    says: tuple[Complaint, ...]
-
-    def plus(self, other: "_Cost") -> "_Cost":
-        return _Cost(self.wrong + other.wrong, self.says + other.says)
+T = TypeVar("T")
 
 
-RIGHT = _Cost(0.0, ())
-IMPOSSIBLE = _Cost(inf, ())
+class Match(NamedTuple, Generic[T]):
+    """A way to match the turns and straights of a road with an Outline, or with a part of it."""
+
+    wrong: float = 0.0
+    """The number of features that are not as requested; infinite if the match is impossible."""
+    items: tuple[T, ...] = ()
+    """The results for single features: complaints, or the features that elements of a road must become."""
+
+    def plus(self, other: "Match[T]") -> "Match[T]":
+        """Returns the match of two parts of a road, one after the other."""
+        return Match(self.wrong + other.wrong, self.items + other.items)
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
@@ -87,55 +92,79 @@ def turn_complaints(
     return tuple(out)
 
 
+def best_match(
+    asked: Outline,
+    count: int,
+    of_turns: Callable[[Group, int, int], Match[T]],
+    of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
+) -> Match[T]:
+    """Returns the match of a road with an Outline that has the fewest wrong features.
+
+    Args:
+        asked: the requirements.
+        count: number of turns of the road.
+        of_turns: returns the match of a group with turns, given the index of the first and their number.
+        of_gap: returns the match of requested straights with what lies before the turn of an index; after the
+            last turn, the index is ``count``.
+    """
+    groups, turns_are_free = asked.groups, not asked.names_all_turns
+
+    @cache
+    def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> Match[T]:
+        """Returns the best match from this group on, with this turn next and these straights before it."""
+        here = of_gap(turn, wanted)
+        if group == len(groups):
+            return here if turns_are_free or turn == count else Match(inf)
+        ways = [here.plus(best(group, turn + 1, ()))] if turns_are_free and turn < count else []
+        now = groups[group]
+        if now.feature.kind == "straight":
+            ways += [best(group + 1, turn, wanted + (now.feature,) * now.lo)]
+            return min(ways, key=lambda match: match.wrong)
+        if now.lo == 0:
+            ways += [best(group + 1, turn, wanted)]
+        most = count - turn if now.hi is None else min(now.hi, count - turn)
+        for number in range(max(now.lo, 1), most + 1):
+            own = of_turns(now, turn, number)
+            ways.append(here.plus(own).plus(best(group + 1, turn + number, ())))
+        return min(ways, key=lambda match: match.wrong, default=Match(inf))
+
+    return best(0, 0, ()) if groups else Match()
+
+
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
     """Returns the complaints about the turns and straights of a road, compared in driving order.
 
     Of all ways to match measured with requested features, the one with the fewest mismatches is used."""
-    turns, gaps, groups = found.turns, found.gaps, asked.groups
-    turns_are_free = not asked.names_all_turns
+    turns, gaps = found.turns, found.gaps
 
-    @cache
-    def best(group: int, turn: int, wanted: tuple[Feature, ...]) -> _Cost:
-        """Returns the least cost from this group on, with this turn next and these straights before it."""
-        here = _gap_cost(gaps[turn], wanted, turn)
-        if group == len(groups):
-            return here if turns_are_free or turn == len(turns) else IMPOSSIBLE
-        ways = [here.plus(best(group, turn + 1, ()))] if turns_are_free and turn < len(turns) else []
-        now = groups[group]
-        if now.feature.kind == "straight":
-            ways += [best(group + 1, turn, wanted + (now.feature,) * now.lo)]
-            return min(ways, key=lambda cost: cost.wrong)
-        if now.lo == 0:
-            ways += [best(group + 1, turn, wanted)]
-        most = len(turns) - turn if now.hi is None else min(now.hi, len(turns) - turn)
-        for count in range(max(now.lo, 1), most + 1):
-            own = _group_cost(now, turns[turn : turn + count], turn + 1)
-            ways.append(here.plus(own).plus(best(group + 1, turn + count, ())))
-        return min(ways, key=lambda cost: cost.wrong, default=IMPOSSIBLE)
+    def of_turns(group: Group, first: int, number: int) -> Match[Complaint]:
+        own = turns[first : first + number]
+        sides = sides_of(group, [turn.side for turn in own])
+        says = [
+            turn_complaints(index, turn, group.feature, side)
+            for index, (turn, side) in enumerate(zip(own, sides, strict=True), first + 1)
+        ]
+        return Match(sum(map(bool, says)), tuple(chain.from_iterable(says)))
 
-    cost = best(0, 0, ()) if groups else RIGHT
-    if cost.wrong == inf:
+    match = best_match(asked, len(turns), of_turns, lambda turn, wanted: _of_gap(gaps[turn], wanted, turn))
+    if match.wrong == inf:
         return (Complaint(f"the {len(turns)} turns cannot be matched with what was asked for"),)
-    return cost.says
+    return match.items
 
 
-def _group_cost(group: Group, turns: tuple[MeasuredFeature, ...], first: int) -> _Cost:
-    says: list[Complaint] = []
-    wrong = 0
-    side: str | None = None
-    for number, turn in enumerate(turns, first):
-        if group.alternating:
-            side = {"left": "right", "right": "left"}[side] if side else group.feature.side or turn.side
-        own = turn_complaints(number, turn, group.feature, side)
-        wrong += bool(own)
-        says += own
-    return _Cost(wrong, tuple(says))
+def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
+    """Returns the required sides of successive turns of a group; if the turns alternate, the first side that
+    is not required is taken from ``sides``, the sides of the turns.
+    """
+    first = group.feature.side or (sides[0] if sides and group.alternating else None)
+    other = OTHER_SIDE[first] if first and group.alternating else first
+    return [(first, other)[index % 2] for index in range(len(sides))]
 
 
-def _gap_cost(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int) -> _Cost:
-    """Returns the cost of matching the wanted straights with the pieces before a turn (counted from 0)."""
+def _of_gap(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], turn: int) -> Match[Complaint]:
+    """Matches the wanted straights with the pieces before a turn (counted from 0)."""
     if not wanted or (len(wanted) == 1 and any(fits(straight, wanted[0]) for straight in gap)):
-        return RIGHT
+        return Match()
     pieces = [piece for straight in gap for piece in straight.pieces]
     at, missing = 0, list[Feature]()
     for wish in wanted:
@@ -147,17 +176,15 @@ def _gap_cost(gap: tuple[MeasuredFeature, ...], wanted: tuple[Feature, ...], tur
     where = f"after turn {turn}" if turn else "at the start"
     s = gap[0].start if gap else None
     has = _said(gap[0].pieces) if gap else "none"
-    return _Cost(
-        len(missing),
-        tuple(
-            Complaint(f"asked for a straight {where}{wish.limits()}, has {has}", s, wish.grade is not None)
-            for wish in missing
-        ),
+    says = (
+        Complaint(f"asked for a straight {where}{wish.limits()}, has {has}", s, wish.grade is not None)
+        for wish in missing
     )
+    return Match(len(missing), tuple(says))
 
 
 def _said(pieces: tuple[MeasuredFeature, ...]) -> str:
     return ", then ".join(f"{piece.length:.0f} m at {piece.grade:.1f} %" for piece in pieces)
 
 
-__all__ = ["Complaint", "fits", "sequence_complaints", "turn_complaints"]
+__all__ = ["Complaint", "Match", "best_match", "fits", "sequence_complaints", "sides_of", "turn_complaints"]

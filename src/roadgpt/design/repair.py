@@ -11,24 +11,26 @@ wrong with it. Main function: ``repair``.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import combinations, islice, pairwise
+from itertools import combinations, islice
+from math import inf
 from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.model import OTHER_SIDE, Brief
+from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Group, Outline
 from roadgpt.brief.words import Range
+from roadgpt.check.matching import Match, best_match, fits, sides_of
+from roadgpt.check.measures import MeasuredFeature
 from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.fit import Look, Requirements, fit, look
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_as_proposed
+from roadgpt.design.road_elements import RoadElements, elements_as_proposed
 from roadgpt.design.sequence import both
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Segment, World
 
 How = Literal["none", "place", "full"]
 MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
-FREE_TURN = Feature("turn", "turn")
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 
 
@@ -115,66 +117,68 @@ def _metres(value: float | None) -> str:
     return "open" if value is None else f"{value:g} m"
 
 
-def with_wishes(elements: Sequence[RoadElement], outline: Outline) -> RoadElements | None:
+def with_wishes(elements: RoadElements, outline: Outline) -> RoadElements | None:
     """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
-    Returns None if the number of turns, or of turns to one side, is not what the Outline requires.
+    Of all ways to match them with the Outline, the one is taken in which the fewest have to change. Returns
+    None if the number of turns, or their sides, are not what the Outline requires.
     """
     turns = [i for i, element in enumerate(elements) if element.is_turn]
-    left = sum(elements[i].side == "left" for i in turns)
-    if len(turns) not in outline.turns or left not in outline.left or len(turns) - left not in outline.right:
+    sides = [elements[i].side for i in turns]
+    if any(
+        number not in span
+        for number, span in (
+            (len(turns), outline.turns),
+            (sides.count("left"), outline.left),
+            (sides.count("right"), outline.right),
+        )
+    ):
         return None
-    for rows in _shared_out(outline, len(turns)):
-        out = _matched(elements, turns, rows, outline)
-        if out is not None:
-            return tuple(replace(element, asked=wish) for element, wish in zip(elements, out, strict=True))
-    return None
+    marks = [-1, *turns, len(elements)]
+
+    def of_turns(group: Group, first: int, number: int) -> Match[Wish]:
+        own = sides[first : first + number]
+        musts = sides_of(group, own)
+        if any(must not in (None, side) for must, side in zip(musts, own, strict=True)):
+            return Match(inf)
+        features = [replace(group.feature, side=must) for must in musts]
+        return _matched(elements, list(zip(turns[first:], features, strict=False)))
+
+    def of_gap(turn: int, wanted: Sequence[Feature]) -> Match[Wish]:
+        straights = [i for i in range(marks[turn] + 1, marks[turn + 1]) if not elements[i].degrees]
+        if wanted and not straights:
+            return Match(inf)
+        return _matched(elements, list(zip(_answering(elements, straights, wanted), wanted, strict=True)))
+
+    match = best_match(outline, len(turns), of_turns, of_gap)
+    ends = _ends(elements, turns, outline)
+    if match.wrong == inf or ends is None:
+        return None
+    asked: dict[int, Feature] = {}
+    for index, wish in (*match.items, *((i, outline.each_turn) for i in turns), *ends):
+        asked[index] = both(asked[index], wish) if index in asked else wish
+    return tuple(replace(element, asked=asked.get(i)) for i, element in enumerate(elements))
 
 
-Row = tuple[list[Feature], list[list[Feature]]]
-"""Features of the turns, and the straights wanted before each of them and after the last."""
+Wish = tuple[int, Feature]
+"""The index of an element, and a requirement that it has to meet."""
 
 
-def _shared_out(outline: Outline, count: int) -> Iterator[Row]:
-    """The ways in which so many turns can answer the groups."""
-    if outline.names_all_turns:
-        yield from _in_order(outline.groups, count, [], [[]])
-        return
-    straights = [group.feature for group in outline.groups for _ in range(group.lo)]
-    for before in range(count + 1):  # all of them in one place, or one after the other from there on
-        gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
-        for number, straight in enumerate(straights):
-            gaps[min(before + number, count)].append(straight)
-        yield [FREE_TURN] * count, gaps
+def _matched(elements: RoadElements, wishes: Sequence[Wish]) -> Match[Wish]:
+    """Returns these wishes with the number of those that the elements do not meet as they were proposed; the
+    radius, which often is not proposed, is not compared.
+    """
+    wrong = len(wishes) - len({index for index, _ in wishes})
+    for index, wish in wishes:
+        one = elements[index]
+        kind: Literal["turn", "straight"] = "turn" if one.is_turn else "straight"
+        degrees, grade = abs(one.degrees), one.incline
+        seen = MeasuredFeature(kind, 0.0, one.length, one.side, degrees, inf, grade, grade)
+        wrong += not fits(seen, replace(wish, radius=None))
+    return Match(wrong, tuple(wishes))
 
 
-def _in_order(
-    groups: Sequence[Group], count: int, turns: list[Feature], gaps: list[list[Feature]]
-) -> Iterator[Row]:
-    if not groups:
-        if len(turns) == count:
-            yield turns, gaps
-        return
-    group, rest = groups[0], groups[1:]
-    if group.feature.kind == "straight":
-        yield from _in_order(rest, count, turns, [*gaps[:-1], gaps[-1] + [group.feature] * group.lo])
-        return
-    room = count - len(turns)
-    for many in range(group.lo, min(room, room if group.hi is None else group.hi) + 1):
-        own = [group.feature] * many
-        if group.alternating and group.feature.side:
-            sides = [group.feature.side, OTHER_SIDE[group.feature.side]]
-            own = [_sided(group.feature, sides[i % 2]) for i in range(many)]
-        yield from _in_order(rest, count, turns + own, gaps + [[] for _ in range(many)])
-
-
-def _sided(feature: Feature, side: str) -> Feature:
-    return both(Feature("turn", feature.name, side="left" if side == "left" else "right"), feature)
-
-
-def _answering(
-    elements: Sequence[RoadElement], straights: Sequence[int], wanted: Sequence[Feature]
-) -> Sequence[int]:
+def _answering(elements: RoadElements, straights: Sequence[int], wanted: Sequence[Feature]) -> Sequence[int]:
     """Which straights answer the wishes, in order: those whose slopes are nearest to what was asked."""
     if len(wanted) >= len(straights):
         return [straights[min(i, len(straights) - 1)] for i in range(len(wanted))]
@@ -191,38 +195,17 @@ def _beyond(incline: float, asked: Range | None) -> float:
     return max(asked.lo - incline, incline - asked.hi, 0.0) if asked else 0.0
 
 
-def _matched(
-    elements: Sequence[RoadElement], turns: Sequence[int], row: Row, outline: Outline
-) -> tuple[Feature | None, ...] | None:
-    features, gaps = row
-    out: list[Feature | None] = [None] * len(elements)
-    for index, feature in zip(turns, features, strict=True):
-        if feature.side not in (None, elements[index].side):
-            return None
-        out[index] = both(feature, outline.each_turn)
-    marks = [-1, *turns, len(elements)]
-    for (a, b), wanted in zip(pairwise(marks), gaps, strict=True):
-        straights = [i for i in range(a + 1, b) if not elements[i].degrees]
-        if wanted and not straights:
-            return None
-        for index, wish in zip(_answering(elements, straights, wanted), wanted, strict=False):
-            before = out[index]
-            out[index] = both(before, wish) if before else wish
-    return tuple(out) if _with_ends(elements, turns, outline, out) else None
-
-
-def _with_ends(
-    elements: Sequence[RoadElement], turns: Sequence[int], outline: Outline, out: list[Feature | None]
-) -> bool:
-    """Adds what the road must start and end with; False where the proposal does otherwise."""
+def _ends(elements: RoadElements, turns: Sequence[int], outline: Outline) -> list[Wish] | None:
+    """Returns what the road must start and end with; None if the proposal does otherwise."""
+    out: list[Wish] = []
     for wish, end in ((outline.starts, 0), (outline.ends, -1)):
         if wish is None:
             continue
         among = turns if wish.kind == "turn" else range(len(elements))
         if not among:
-            return False
-        element, before = elements[among[end]], out[among[end]]
+            return None
+        element = elements[among[end]]
         if bool(element.degrees) != (wish.kind == "turn") or wish.side not in (None, element.side):
-            return False
-        out[among[end]] = both(before, wish) if before else wish
-    return True
+            return None
+        out.append((among[end], wish))
+    return out
