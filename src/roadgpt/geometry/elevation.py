@@ -94,7 +94,7 @@ class CubicProfile:
 
     @classmethod
     def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
-        """Returns the profile through knots (station, height) that is level at each knot.
+        """Returns a profile that passes through knots (station, height) and has a grade of 0 at each knot.
 
         The height is constant after the last knot. Raises ValueError if the stations do not increase.
         """
@@ -154,7 +154,7 @@ class CubicProfile:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Returns the coefficients of cubics ``(..., 4)`` after their origin is moved forward by ``u``.
+    """Moves the origin of cubics forward by ``u``; returns their new coefficients ``(..., 4)``.
 
     The constant coefficient comes first.
     """

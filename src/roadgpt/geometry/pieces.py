@@ -30,7 +30,8 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceCurve:
-    """A plane curve of pieces, joined end to end from ``(x, y)`` with heading ``heading0`` in radians.
+    """A plane curve of pieces joined end to end. It starts at ``(x, y)`` with heading ``heading0`` in
+    radians.
 
     Raises:
         ValueError: There is no piece, or a piece does not have a positive length.
@@ -107,8 +108,7 @@ def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tup
         heading: Heading at the start in radians.
         k: Curvature at the start in 1/m.
         dk: Change of curvature per metre in 1/m^2.
-        length: Length of the whole piece in metres. It is used, with ``dk``, only to choose a
-            numerically accurate formula.
+        length: Length of the whole piece in metres. It is only used to choose an accurate formula.
     """
     u, heading, k, dk, length = np.broadcast_arrays(u, heading, k, dk, length)
     turn = k * u
@@ -144,7 +144,7 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """Returns the pieces without those of zero length; neighbours of equal constant curvature are merged."""
+    """Drops pieces of zero length, and merges adjacent lines and adjacent arcs of equal curvature."""
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

@@ -12,8 +12,8 @@ ROUNDS = 8  # Newton steps; each squares the error
 def project(curve: PlanCurve, points: ArrayLike) -> tuple[Array, Array]:
     """Returns the stations ``s`` and offsets ``t`` (positive to the left) in metres of points ``(..., 2)``.
 
-    A point beyond an end of the curve is projected onto that end. Its offset is then only the component of
-    its distance perpendicular to the curve.
+    A point beyond an end of the curve is projected onto that end. Its offset is then measured perpendicular
+    to the curve; the distance beyond the end is ignored.
     """
     points = np.asarray(points, float)
     flat = points.reshape(-1, 2)

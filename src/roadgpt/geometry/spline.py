@@ -41,8 +41,8 @@ def _spline(points: Array) -> tuple[Tck, Array]:
 def walked(points: Array) -> float:
     """Returns the length of a polyline through points ``(n, 2)``, summed as in the competition's library.
 
-    A different order of summation, or hypot, could give 29.999... for a length of 30 m, so that interpolation
-    would return one node fewer than the competition's.
+    A different order of summation could give 29.999... for a length of 30 m. Interpolation would then return
+    one node fewer than the competition's code.
     """
     return float(np.cumsum(np.sqrt((np.diff(points, axis=0) ** 2).sum(axis=1)))[-1])
 
@@ -77,7 +77,7 @@ class SplineCurve:
 
     tck: Tck
     knots: Array
-    """Parameter values of the control points."""
+    """The value of the spline parameter at each control point."""
 
     @classmethod
     def through(cls, points: ArrayLike) -> "SplineCurve":
@@ -140,7 +140,7 @@ class SplineCurve:
         return np.asarray(np.stack(splev(self.parameter(s), self.tck)[:2], axis=-1), float)
 
     def heading(self, s: ArrayLike) -> Array:
-        """Returns headings in radians, continuous along the given stations."""
+        """Returns headings in radians, without jumps of 2 pi between successive stations."""
         dx, dy = self._derivative(self.parameter(s), 1)[:2]
         angle = np.arctan2(dy, dx)
         return np.asarray(np.unwrap(angle) if angle.ndim else angle)
