@@ -5,9 +5,9 @@
     reply.data      # a validated Road; if the model gave none, ask() raised a ReplyError
 
 A provider is a plug-in registered under the entry point ``roadgpt.providers``: a class that is created with
-ChatSettings and has a method ``ask``. The answers of a model are data: they are validated against the schema,
-and never executed, used in a path, or trusted beyond the schema. API keys come from the environment, a .env
-file or the user's settings, and are sent to the server only.
+ChatSettings and has a method ``ask``. The answers of a model are validated against the schema. They are never
+executed or used as part of a path. API keys come from the environment, a .env file or the user's settings,
+and are sent to the server only.
 """
 
 import inspect
@@ -98,7 +98,7 @@ def _filled(settings: ChatSettings) -> ChatSettings:
 
 
 def asks_a_model(part: Any) -> bool:
-    """Returns True if a plug-in is a class that takes ChatSettings, as ``__init__(self, settings)``."""
+    """Returns True if a plug-in is a class whose constructor has a parameter ``settings``."""
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 

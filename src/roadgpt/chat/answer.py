@@ -1,4 +1,4 @@
-"""Extracts the answer from the JSON of a server, in which any field may be missing or have another type."""
+"""Extracts the answer from the JSON that a server sends. Any field may be missing or have the wrong type."""
 
 from dataclasses import dataclass
 from typing import Any

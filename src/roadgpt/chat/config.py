@@ -9,8 +9,8 @@ was found.
 The plan file of a campaign (its table [chat]) comes between the options and the environment. An API key is
 not a setting: it has no option, is not part of ChatSettings, and is only shown masked. The user's key is sent
 to OpenAI, and to servers that the user names by an option, in the environment or in the user's own settings
-file. If only another file names a server, the key is not sent there, because somebody else may have written
-that file. ``key_for`` has the exact rules.
+file. If a server is named only in some other file, the key is not sent there, because somebody else may have
+written the file. ``key_for`` has the exact rules.
 """
 
 import os
@@ -56,7 +56,7 @@ class Layer(NamedTuple):
 
     name: str
     found: dict[str, Any]
-    """Values by field. If the source is the environment, values by name of the variable."""
+    """The values, keyed by field name or, for the environment, by name of the variable."""
     tables: Mapping[str, Any] = MappingProxyType({})
     """All tables of a TOML file, by name; ``roadgpt.cli.configuration`` reads those other than ``[chat]``."""
 
@@ -78,8 +78,7 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 def settings_with_origin(
     flags: Mapping[str, Any] | None = None, plan: Layer | None = None
 ) -> dict[str, Setting]:
-    """Returns the value and the origin of every setting; if several sources have a setting, the first one
-    applies.
+    """Returns the value and the origin of every setting, from the source with the highest precedence.
 
     Raises:
         UsageError: a settings file cannot be read, or has a setting that does not exist.
@@ -138,14 +137,14 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    If a server is named only by a file in the working folder, it gets a key only if such a file also contains
-    the key, unless the server runs on this computer. If a server is named only by a plan, a campaign or a
-    run, it gets no key. The reason is that somebody else may have written these files.
+    If a server is named only in a file of the working folder, it gets only a key from such a file; this does
+    not apply to a server on this computer. If a server is named only in a plan, a campaign or a run, it gets
+    no key. The reason is that somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
-        ChatError: the key contains invalid characters, or the key is the user's own but only a file names the
-            server.
+        ChatError: the key contains invalid characters, or it must not be sent to a server that only a file
+            names.
     """
     host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]

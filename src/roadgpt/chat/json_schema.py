@@ -15,8 +15,8 @@ MOST_DEPTH = 5  # OpenAI's limit on nesting
 
 
 def fixed_description(text: str) -> ConfigDict:
-    """Returns a pydantic configuration with which ``text``, instead of the docstring, describes a model in
-    its schema.
+    """Returns a pydantic configuration that makes ``text``, not the docstring, the description in a model's
+    schema.
 
     A recorded answer is found by a hash of the question, and the question includes the schema. So the
     docstring of a model can be edited, but the description in its schema must stay the same.

@@ -172,9 +172,9 @@ class ChatSettings(ChatValue):
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns the settings without the folders of recordings, and notes that their server is named by
-        ``file`` and not by the user. It is used for settings from a file that somebody else may have
-        written; it prevents the user's API key from being sent to that server.
+        """Returns the settings without the folders of recordings, and records that ``file``, not the user,
+        names the server. Use it for settings from a file that somebody else may have written, so that the
+        user's API key is not sent to that server.
         """
         if self.base_url:
             SERVERS.add_from_file(str(origin_of(self.base_url)), file)

@@ -35,7 +35,7 @@ class BrokenOffError(httpx2.ReadError):
 
 
 class LimitedClient(DefaultHttpxClient):
-    """An HTTP client whose responses are complete, of limited size, and arrive within a time limit."""
+    """An HTTP client that returns only complete responses, within limits of size and time."""
 
     def __init__(self, most: int, seconds: float) -> None:
         """Takes the most bytes of a response, decompressed, and the time limit of one attempt in seconds."""

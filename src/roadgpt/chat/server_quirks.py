@@ -40,8 +40,8 @@ class ServerQuirks:
         self.unusable[response_format] = self.unusable.get(response_format, 0) + 1
 
     def worked(self, response_format: ResponseFormat, refused: set[ResponseFormat]) -> None:
-        """Notes that a reply in this response format was usable. From now on, this format is tried first,
-        if all stricter ones were rejected or failed repeatedly.
+        """Notes that a reply in this response format was usable. If all stricter formats were rejected or
+        failed repeatedly, this one is tried first from now on.
         """
         self.unusable[response_format] = 0
         above = range(self.response_format, response_format)

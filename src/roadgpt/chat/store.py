@@ -51,8 +51,8 @@ class ExchangeStore:
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
         """Returns the next recorded answer to a question on an occasion; None if no answer is left.
 
-        If an occasion has no recorded answers, those that were recorded outside a campaign are used. Outside
-        a campaign, if no such answers are recorded, those of all occasions are used.
+        If the occasion has no answers, those that were recorded outside a campaign are used. If there are
+        none either, a question that is asked outside a campaign gets the answers of all occasions.
         """
         name = name_of(question)
         answers = self._answers(name)

@@ -172,7 +172,7 @@ class FormatFallback:
     messages: list[Message]
     response_format: ResponseFormat
     is_last: bool
-    """True if no other attempt follows; plain text is not asked for twice."""
+    """True if no other attempt follows an unusable reply in plain text."""
     refused: set[ResponseFormat] = field(default_factory=set)
     why: str = ""
     """The reason why the last answer was not usable."""
@@ -191,8 +191,8 @@ class FormatFallback:
         return True
 
     def tries_again(self, messages: Sequence[Message], why: str) -> bool:
-        """Prepares another attempt after an unusable answer: with the next looser format, or once more as
-        plain text.
+        """Prepares another attempt after an unusable answer: with the next looser format or, if there is
+        none, once more as plain text.
 
         Args:
             messages: the original question.
