@@ -1,8 +1,8 @@
 """Back-labelling: designs and measures roads, and describes the measurements in several styles.
 
 The module ``generator`` chooses phrases at random and derives plans from them; this module starts from the
-geometry. So the numbers of a description occur together as they do on roads: lengths that add up, radii that
-suit their angles.
+geometry. Therefore the numbers in a description fit together as on a real road: the lengths add up, and the
+radii suit the angles.
 """
 
 from collections.abc import Iterator, Sequence
@@ -89,7 +89,8 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
 
 
 def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
-    """Returns a description of randomly chosen facts in the Brief of a measured road, with its plan.
+    """Describes a measured road by facts chosen at random from its Brief, and returns the description and its
+    plan.
 
     Returns None if the Brief has no clauses or too many.
     """

@@ -25,8 +25,8 @@ PULL = 0.01  # weight decay, so that few pairs do not lead to extreme weights
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The content of ``settings.json``: the probability from which a refusal is accepted, and the weights
-    of the confidence model.
+    """The content of ``settings.json``: the lowest probability at which a refusal is accepted, and the
+    weights of the confidence model.
     """
 
     refuse_from: float
@@ -34,7 +34,7 @@ class Calibration:
 
 
 def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Calibration:
-    """Fits the settings to pairs that the network was not trained on, and returns them."""
+    """Returns settings fitted to ``pairs``, on which the network must not have been trained."""
     honest = [pair for pair in pairs if pair.plan not in REFUSALS]
     threshold = _threshold(network, honest)
     rows, rights = [], []

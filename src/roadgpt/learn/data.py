@@ -35,7 +35,8 @@ class Example:
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
     """Returns a pair as numbers; None if its plan is too long or has a number that is not in the text.
 
-    With ``rng``, the slots are numbered at random, so that the network learns all slot tokens equally well.
+    A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
+    the network learns all of them equally well.
     """
     taken = slotted(pair.text)
     tokens = tokens_of(with_shared_values(pair.plan, taken.slots), taken.slots)

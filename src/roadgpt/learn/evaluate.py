@@ -28,7 +28,7 @@ class Reading:
     """The reason why the reader refused the description."""
     right: bool
     parts: frozenset[str]
-    """The aspects listed in PARTS that are right; if the description was rightly refused, all of them."""
+    """The aspects in PARTS that the reader got right; all of them if it rightly refused the description."""
 
     @property
     def is_honest(self) -> bool:
@@ -43,10 +43,8 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """The number of readings, and shares from 0 to 1.
-
-    The shares are those of readings that are right as a whole or in one aspect, and of descriptions that were
-    refused, rightly or wrongly.
+    """The number of readings, and shares from 0 to 1. Some shares count the readings that are right, as a
+    whole or in one aspect. The others count the descriptions that were refused, rightly or wrongly.
     """
 
     number: int
@@ -79,9 +77,7 @@ HEAD = (
 
 
 def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
-    """Reads each description with ``read`` and returns one Reading for each, also for those that were
-    refused.
-    """
+    """Reads each description with ``read`` and returns one Reading for each, including refused ones."""
     return [_reading(pair, read) for pair in pairs]
 
 

@@ -58,7 +58,7 @@ class DecoderGraph(nn.Module):
     def forward(
         self, token: Tensor, place: Tensor, own: Tensor, across: Tensor, seen: Tensor
     ) -> tuple[Tensor, Tensor]:
-        """Returns the scores of the next token and ``own`` extended by the token that was put in."""
+        """Returns the scores of the next token, and ``own`` extended by the keys and values of ``token``."""
         reader = self.reader
         x = reader.tokens(token) + reader.plan_places(place)
         kept: list[Tensor] = []

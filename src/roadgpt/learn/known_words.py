@@ -1,4 +1,6 @@
-"""Finds the words that a reader has learnt: those that are correlated with plans, and function words."""
+"""Finds the words that a reader has learnt: words that correlate with the tokens of plans, and function
+words.
+"""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -15,7 +17,7 @@ LIFT = 2.5
 
 
 def joints() -> frozenset[str]:
-    """Returns function words in five languages."""
+    """Returns function words, such as 'and' or 'the', in five languages."""
     text = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
     return frozenset(plain(text).split())
 

@@ -1,6 +1,7 @@
 """Finds descriptions that are nearly the same: those that have more than 60 % of their 5-grams in common.
 
-Numbers, sides and synonyms are masked first, so that the same template with other words is also found.
+Numbers, sides and synonyms are masked first, so texts that fill the same template with different words are
+found too.
 """
 
 import json

@@ -171,7 +171,7 @@ class ReaderNetwork(nn.Module):
         return [layer.across_keys(memory) for layer in self.decoder]
 
     def write(self, tokens: Tensor, memory: Tensor, seen: Tensor) -> Tensor:
-        """Returns, for training, the scores of the next token after every token of whole plans.
+        """Returns, for each token of complete plans, the scores of the token that follows; used in training.
 
         Args:
             tokens: the plans, (batch, length).

@@ -77,8 +77,8 @@ def _counts_contradict(brief: Brief) -> bool:
 
 
 def impossibility(brief: Brief) -> bool:
-    """Returns True if the Brief asks for more than a map of 250 m holds, or for a length, grade or radius
-    that no road may have.
+    """Returns True if the road is too large for a map of 250 m, or needs a length, grade or radius that no
+    road may have.
     """
     turns = sum(clause.count.lo or 0 for clause in brief.clauses if clause.kind not in STRAIGHT_KINDS)
     if max(turns, brief.turns.lo or 0 if brief.turns else 0) > MOST_TURNS:

@@ -1,4 +1,4 @@
-"""Prepares a new training run: verifies, by their hash, the public weights from which the encoder starts."""
+"""Prepares a new training run, and verifies the hash of the public weights from which the encoder starts."""
 
 from collections.abc import Sequence
 from hashlib import file_digest

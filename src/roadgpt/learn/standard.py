@@ -6,5 +6,5 @@ from roadgpt.brief.plan import plan
 
 
 def standard(brief: Brief) -> str:
-    """Returns the plan of the normal form of a Brief."""
+    """Brings a Brief into normal form and returns its plan."""
     return plan(normal(brief))

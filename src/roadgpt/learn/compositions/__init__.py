@@ -1,9 +1,10 @@
 """Composes English descriptions of turns that are numbered, repeated, separated by straights, or counted by
 side.
 
-The grammars write one feature after another. In these compositions, one sentence refers to many features at
-once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"), and the plan
-follows by counting. These pairs teach a network to count beyond the numbers in hand-written examples.
+The grammars of ``learn.generator`` describe a road feature by feature. Here, one sentence refers to many
+features at once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"),
+so the reader of the sentence has to count. A network trained on such descriptions learns to count further
+than in the hand-written examples.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,5 @@
-"""Descriptions in which a number is corrected, and descriptions that state that their list is complete."""
+"""Descriptions that correct one of their numbers, and descriptions that end with words like 'nothing else'.
+"""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, Voice
 

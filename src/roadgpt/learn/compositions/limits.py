@@ -1,4 +1,4 @@
-"""Descriptions with requirements for the whole road in any order: negated bounds, lengths, radii, heights."""
+"""Descriptions with limits for the whole road, such as 'no steeper than 6 %', in any order."""
 
 from typing import NamedTuple
 

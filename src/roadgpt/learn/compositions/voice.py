@@ -1,5 +1,5 @@
-"""Tools for compositions: draws phrases at random, writes numbers as digits or words, and joins turns to a
-plan.
+"""Tools for compositions: draws phrases at random, writes numbers as digits or words, and combines turns into
+a plan.
 """
 
 import json
@@ -38,11 +38,11 @@ class Composition(NamedTuple):
 
 @dataclass
 class DescribedTurn:
-    """One turn of a road, with the words for it in a plan."""
+    """One turn of a road, and the words by which a plan states it."""
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """The modifiers of the turn in a plan, by what they specify: side, sharpness, slope or deg."""
+    """The plan's words for the turn, by 'side', 'sharpness', 'slope' or 'deg', such as {'deg': 'deg=90'}."""
 
     @property
     def clause(self) -> str:
@@ -52,8 +52,8 @@ class DescribedTurn:
 
 
 def clauses(turns: Sequence[DescribedTurn]) -> str:
-    """Returns the clauses of consecutive turns as part of a plan; equal neighbours become one clause with a
-    count.
+    """Returns the clauses of consecutive turns as part of a plan; equal turns in a row become one clause with
+    a count.
     """
     out = []
     for clause, same in groupby(turn.clause for turn in turns):
