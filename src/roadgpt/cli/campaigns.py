@@ -99,7 +99,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
 
 
 def outside_lines(status: "Status") -> Iterator[str]:
-    """Yields a line on passed tests in which the car was partly outside its lane, if there are any."""
+    """Yields a line about passed tests in which the car was partly outside its lane, if there were any."""
     passed = status.outcomes.get("PASS", 0)
     partly = sum(cell.partly_outside for cell in status.cells)
     mostly = sum(cell.mostly_outside for cell in status.cells)

@@ -19,8 +19,8 @@ UNKNOWN = "roads that were given"
 
 
 def junit_writer(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], object] | None":
-    """Returns a function that writes result rows as a JUnit file, a test case for each; None if no path is
-    given.
+    """Returns a function that writes result rows to a JUnit file, one test case each; None if ``path`` is
+    None.
 
     Args:
         path: The JUnit file to write.

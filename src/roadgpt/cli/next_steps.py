@@ -49,9 +49,8 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
-    """Returns suggestions, each with the command that carries it out.
-
-    The list is empty if ``quiet`` is None, which means that a test failed, or if too few tests were driven.
+    """Returns suggestions, each with the command that carries it out. There are none if ``quiet`` is None or
+    ``quiet.is_worth_it`` is False.
     """
     return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 
@@ -102,9 +101,8 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Summarises a campaign or a folder of runs in which no test failed.
-
-    Returns None if it is still running or a test failed.
+    """Summarises a campaign or a folder of runs. Returns None if it is still running, if any test failed, or
+    if none passed.
     """
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None
@@ -120,7 +118,7 @@ def of_status(status: "Status") -> WithoutFailure | None:
 
 
 def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
-    """Summarises result rows among which no road failed; returns None if a road failed."""
+    """Summarises result rows; returns None if any road failed."""
     from roadgpt.verdict.severity import MOSTLY
 
     if any(row.test_outcome == "FAIL" for row in rows):

@@ -49,8 +49,8 @@ class Option(click.Option):
         heading: The heading in the help.
         is_rare: Whether --help omits the option and only --help-all lists it; has no effect on commands with
             few options.
-        table: The table of configuration files in which the option can be set; empty if it cannot be set.
-            A switch that can be set also gets a name with --no-.
+        table: The table of configuration files in which the option can be set; empty if files cannot set it.
+            A switch that files can set also gets its opposite, such as --no-lane-departure.
         key: The option's key in that table; empty if it is the option's first name.
         guard: A function that refuses values which a configuration file must not set.
         unit: The field's value times this factor is the option's value, such as 3.6 for a field in m/s and an
@@ -86,7 +86,9 @@ class Option(click.Option):
 
     @property
     def field(self) -> str:
-        """The field that the option sets, which is also the name of the command's argument."""
+        """Name of the field that the option sets, such as a field of the Setup; also the name of the
+        function's argument.
+        """
         return str(self.name)
 
     def read(self, given: Any) -> Any:

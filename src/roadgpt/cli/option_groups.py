@@ -14,7 +14,7 @@ from roadgpt.cli.streams import warn
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
-    """Replaces click's error by advice if an argument looks like a description that begins with a dash."""
+    """Replaces click's error message if an argument looks like a description that begins with a dash."""
     given = list(args)  # click takes them out of its list
     try:
         yield
@@ -93,9 +93,7 @@ class GroupedCommand(click.Command):
                     formatter.write_dl(records)
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Prints on standard error which options configuration files and the environment set, then runs the
-        command.
-        """
+        """Prints on standard error which options come from files or the environment, and runs the command."""
         told: dict[str, list[str]] = {}
         for option, setting in ctx.meta.get(FROM_FILES, {}).values():
             shown = ",".join(setting.value) if isinstance(setting.value, tuple) else setting.value
@@ -122,7 +120,7 @@ class GroupedCommand(click.Command):
 
 
 class CommandGroup(click.Group):
-    """A command with sub-commands whose help lists their options in groups."""
+    """A command with sub-commands; the help of each sub-command lists its options in groups."""
 
     command_class = GroupedCommand
 

@@ -48,7 +48,7 @@ def roads_named(
     Args:
         files: The names, as the user typed them.
         choice: Which roads of a folder to yield, such as the failures; None if the user chose none.
-        takes_all: Whether a folder without a choice means all its roads; otherwise it must hold one road.
+        takes_all: What a folder means if ``choice`` is None: all its roads if True, else its only road.
         complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
 
     Raises:

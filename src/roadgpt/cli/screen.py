@@ -87,7 +87,7 @@ class Screen:
     def runs(self, runs: "Iterable[Run]", folder: Path) -> None:
         """Prints each run of a folder as soon as it is finished.
 
-        What is printed while a run is made, such as by a user's driver, goes to standard error.
+        Text that is printed while a run is made, for example by a user's driver, goes to standard error.
         """
         from roadgpt.run.sbft_json import test_name
 

@@ -42,9 +42,9 @@ class _Output(io.TextIOWrapper):
 
 
 def make_ready() -> None:
-    """Makes standard output and standard error accept every character, and standard output raise OutputError.
+    """Makes both output streams accept every character; failed writes to standard output raise OutputError.
 
-    An output that was closed before the program began is replaced by the null device.
+    A stream that was closed before the program began is replaced by the null device.
     """
     if sys.stdin is None:
         sys.stdin = os.fdopen(_nothing(0, os.O_RDONLY))
@@ -78,7 +78,7 @@ def drop_output() -> None:
 
 
 def warn(sentence: object) -> None:
-    """Prints a sentence on standard error, after the name of the program."""
+    """Prints a sentence on standard error, preceded by the name of the program."""
     click.echo(f"roadgpt: {sentence}", err=True)
 
 

@@ -73,13 +73,12 @@ def edit_road(
         screen: Prints the result.
         road: The folder of a run, a test of a campaign, or a file with a design.
         words: The change request.
-        world: The World for a road that is read from a design file, which names no World.
+        world: The World for a road from a design file; such a file states no World.
         out: The folder for the changed road; None: a new one.
         designer: The plug-in that changes the road.
         chat: The settings of the designer's language model; None if the designer uses none.
         driver: The run's driver as given with ``--driver``; None if it was not given.
-        drives: If True, the changed road is driven, provided that the original run was; if False, it is not
-            driven.
+        drives: Whether to drive the changed road; it is never driven if the original road was not.
         pictures: The formats of the pictures; none are drawn if empty.
 
     Raises:

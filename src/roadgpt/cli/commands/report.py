@@ -47,9 +47,8 @@ def _written(folder: Path) -> Path:
 
 
 def command_of(folder: Path) -> str:
-    """Returns the command that repeats a campaign or a folder of runs; empty for roads without a description.
-
-    For a campaign that was made from a plan file, it is the command that resumes it.
+    """Returns the command that repeats a campaign or a folder of runs; empty for runs without a description.
+    If options cannot express a campaign, such as one with several cells, returns the command that resumes it.
     """
     from roadgpt.campaign.folder_record import open_record
     from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL

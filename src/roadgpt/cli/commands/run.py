@@ -101,8 +101,8 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
 
 
 def usual_job(words: str, roads: int) -> RunJob:
-    """Returns the job of ``roadgpt run`` if the user gives no options; values come from configuration files,
-    or are the defaults.
+    """Returns the job of ``roadgpt run`` without options: values are those of configuration files, or
+    defaults.
 
     Raises:
         UsageError: A setting cannot be used.
@@ -154,8 +154,8 @@ def _seed(job: RunJob) -> int:
 
 
 def understood(brief: "Brief", map_size: float = inf) -> str:
-    """Returns the interpretation of a description as text, with a warning if it is uncertain, and remarks
-    on what does not fit on the map.
+    """Returns lines of text: how a description was read, a warning if that is uncertain, and what does not
+    fit on the map.
     """
     from roadgpt.brief import remarks
 
@@ -166,7 +166,7 @@ def understood(brief: "Brief", map_size: float = inf) -> str:
 
 
 def reading(brief: "Brief") -> str:
-    """Returns the interpretation of a description as text, and which of its words were not understood."""
+    """Returns a text that says how a description was read, and which words were not understood."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")

@@ -1,5 +1,4 @@
-"""Descriptions that correct one of their numbers, and descriptions that end with words like 'nothing else'.
-"""
+"""Descriptions that correct one of their numbers, or end with words such as 'no more turns'."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, Voice
 
