@@ -1,7 +1,8 @@
 """Reads a description of a road and returns what it asks for, as a Brief.
 
-A reader is a plug-in registered under the entry point ``roadgpt.readers``: an object, or a class that is
-created without arguments or with ChatSettings as ``settings``, with one method
+A reader is a plug-in registered under the entry point ``roadgpt.readers``. It is an object or a class. A
+class is called without arguments, or with ChatSettings if it has a parameter ``settings``. The reader has one
+method
 
     read(words: str) -> Brief
 

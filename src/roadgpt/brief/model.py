@@ -72,7 +72,7 @@ class Amount(Frozen):
 
 
 def figure(number: float) -> str:
-    """Returns a number with at most four decimals."""
+    """Formats a number with at most four decimals and no trailing zeros."""
     return f"{number:.4f}".rstrip("0").rstrip(".")
 
 

@@ -4,8 +4,8 @@
   cleared.
 - A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
   without a slope means uphill.
-- Straights, crests and dips become one clause each, and so do alternating turns whose first direction is
-  known. Other equal neighbours are merged into one clause with a count.
+- A clause with several straights, crests or dips is split into one clause each, as are alternating turns
+  whose first direction is known. Other equal clauses in a row are merged into one with a count.
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.

@@ -1,4 +1,4 @@
-"""Converts a Brief to ranges that can be measured on the finished geometry.
+"""Converts a Brief to an Outline: ranges for values that can be measured on the finished geometry.
 
 Designers aim for values inside the ranges of an Outline, and the rule ``promises`` compares a finished road
 with them. All numbers are in the units of ``words.py`` (degrees, metres, percent with uphill positive), and
@@ -62,7 +62,7 @@ class Feature:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A row of ``lo`` to ``hi`` equal features; ``hi`` is None if there is no upper limit."""
+    """``lo`` to ``hi`` equal features in a row; ``hi`` is None if there is no upper limit."""
 
     feature: Feature
     lo: int = 1
@@ -73,7 +73,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """All requirements of a Brief as measurable ranges."""
+    """All requirements of a Brief, as ranges for measurable values."""
 
     groups: tuple[Group, ...]
     """The features in driving order; if any feature is a turn, the groups name all turns of the road."""
@@ -96,7 +96,7 @@ class Outline:
     hills: Range | None = None
     length: Range | None = None
     radius: Range | None = None
-    """The range of the radius at the tightest place of the road, in metres; no Brief requires it."""
+    """The range of the radius at the tightest place of the road, in metres; ``outline`` never sets it."""
     starts: Feature | None = None
     ends: Feature | None = None
     hard: bool = False

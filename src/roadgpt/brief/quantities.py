@@ -1,8 +1,8 @@
 """The table of the numbers that can be required of a whole road, and of one turn or straight.
 
-A quantity has one name in the Brief, in the Outline and among the measurements of ``check.measures``. The
-Outline takes its tolerance from here; the sentence of a Brief, the prompts for language models, the
-complaints of the rule ``promises`` and the advice of the planner take its words from here.
+A quantity has the same name in the Brief, in the Outline and in ``check.measures``. The Outline uses the
+tolerances of this table. The sentence of a Brief, the prompts for language models, the complaints of the rule
+``promises`` and the advice of the planner use its wording.
 """
 
 from collections.abc import Callable
@@ -18,7 +18,7 @@ from roadgpt.brief.words import (
 
 
 class Quantity(NamedTuple):
-    """One measurable number, its tolerance and its words."""
+    """One measurable number, its tolerance, and the wording for it."""
 
     name: str
     """The name of the field in the Outline or Feature, and in Measures or MeasuredFeature."""
@@ -27,7 +27,7 @@ class Quantity(NamedTuple):
     measured: str
     """The measured number in words."""
     said: str
-    """The words of the sentence of a Brief; empty if no Brief requires this quantity."""
+    """The required range as the sentence of a Brief states it; empty if no Brief requires this quantity."""
     slack: Callable[[float], float]
     """Returns the tolerance around an exact number, in the unit of the number."""
     on_heights: bool = False

@@ -31,7 +31,9 @@ def forced_side(whole: Brief) -> Side | None:
 
 
 def as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Converts the requirement '4 turns or more, none to the right' to a clause of turns to the left."""
+    """Converts a requirement such as '4 turns or more, none to the right' to a clause of 4 or more left
+    turns.
+    """
     side, turns = forced_side(whole), whole.turns
     if clauses or not side or not turns or not turns.lo or whole.starts or whole.ends:
         return whole, clauses

@@ -54,7 +54,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     Args:
         road: The road to check.
         brief: The requirements that the road should meet; None if there are none.
-        world: The map and the limits, such as the least radius and the steepest grade.
+        world: The map and the limits, such as the minimum radius and the maximum grade.
         rules: Name of the rule set, "strict" or "sbft".
 
     Raises:

@@ -19,7 +19,7 @@ def describe(road: Road) -> Brief:
 
 
 def described(found: Measures) -> Brief:
-    """Returns the Brief that ``describe`` returns, from measurements of the road."""
+    """Does the same as ``describe``, but takes the measurements of a road instead of the road."""
     return Brief(
         clauses=tuple(_clause(feature) for feature in found.features),
         turns=None if found.turns else exactly(0),

@@ -1,9 +1,8 @@
 """Matches the turns and straights of a measured road with those that an Outline requests.
 
 Turns are matched one to one and in order. A requested straight matches either the whole straight between two
-turns of the road, or a piece of that straight with a uniform class of grade (up, flat or down). If several
-straights are requested between two turns, they are matched with such pieces in order, each piece at most
-once.
+turns of the road, or a piece of it that goes up, is flat or goes down throughout. If several straights are
+requested between two turns, they are matched with such pieces in order, each piece at most once.
 """
 
 from collections.abc import Callable, Sequence

@@ -120,7 +120,8 @@ def _touch(low: Array, high: Array, other_low: Array, other_high: Array) -> Any:
 
 
 def gaps(quads: Array, i: Indices, j: Indices) -> Array:
-    """Returns the signed distances in metres ``(m,)`` between convex quads i and j, by separating axes.
+    """Returns the signed distances in metres ``(m,)`` between convex quads i and j, by the separating axis
+    theorem.
 
     A positive value means that the two quads are at least this far apart. A negative value means that they
     overlap; its absolute value is the distance by which one must move to separate them. Zero means that they

@@ -193,10 +193,9 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of a node.
-
-    The node is the middle one of the three nodes that define the smallest circle. The radius is infinite
-    where no three nodes form a circle: on a straight road, or with fewer than six nodes.
+    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of the middle one of
+    the three nodes on that circle. The radius is infinite where no three nodes form a circle: on a straight
+    road, or with fewer than six nodes.
     """
     found = radii(nodes)
     if not found.size:

@@ -72,7 +72,7 @@ class ModelReader:
         """Returns the Brief of a description.
 
         Raises:
-            TooMuchError: the description asks for more than the usual map holds; the error carries the Brief.
+            TooMuchError: the road is too large for the usual map of 250 m; the error carries the Brief.
             BriefError: the description is empty, too long, not about a road, contradicts itself, or asks for
                 something impossible.
         """

@@ -1,4 +1,5 @@
-"""Corrects the bounds of measures in a plan by the words next to the number, such as "at least".
+"""Corrects the bounds of lengths and other measured values in a plan by the words next to each number, such
+as "at least".
 
 A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases that have the
 same meaning throughout the training pairs are used for corrections; "over 60 m" often means a distance, and
@@ -54,7 +55,7 @@ REACH = 4
 
 
 def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
-    """Returns the tokens of a plan, with the bounds of measures corrected to those in the text."""
+    """Returns the tokens of a plan, with the bounds of measured values corrected to those in the text."""
     words = [word.text for word in text.words]
     out: list[str] = []
     at = 0

@@ -1,10 +1,10 @@
 """Corrects the counts in a plan: each must be a number in the text, or a sum or difference of such numbers.
 
 A small network copies numbers well and calculates badly: for "seven turns, the first two uphill", it wrote
-counts of 2 and 4. If exactly one count of a plan is not in the text, and exactly one number in the text is
-not a count of the plan, the missing count is computed as a sum or difference. If every count is in the text,
-but the text also gives a number of turns that is not a sum of the counts, that number is kept in the Brief as
-the total number of turns, so that the contradiction is reported.
+counts of 2 and 4. Here 4 is the only count that is not in the text, and 7 the only number in the text that is
+not a count. In such a case, that number is taken as the total, and the count is corrected to 7 - 2 = 5. If
+every count is in the text, but the text also gives a number of turns that is not a sum of the counts, that
+number is kept in the Brief as the total number of turns, so that the contradiction is reported.
 """
 
 from collections.abc import Iterator

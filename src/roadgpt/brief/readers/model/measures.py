@@ -28,8 +28,8 @@ class Number:
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
     """Returns the unit that begins at token ``at``; None if no unit begins there.
 
-    Returns three values: the unit of plans (such as metres), the factor that converts to it, and the number
-    of words of the unit in the text.
+    Returns three values: the corresponding unit in plans (such as metres), the factor that converts to it,
+    and how many words the unit takes up in the text.
     """
     for size in (2, 1):
         found = UNITS.get(tuple(tokens[at : at + size]))

@@ -1,7 +1,8 @@
 """Number words in five languages: writes them and reads them back.
 
-``spell`` writes a number as words. ``words`` is the table for reading: it maps the spellings of 0 to 1500
-(above 200 only multiples of 5), as tuples of words in lower case without accents and hyphens, to the number.
+``spell`` writes a number as words. ``words`` is the table for reading, from 0 to 1500 (above 200 only
+multiples of 5). It maps each spelling, a tuple of words in lower case without accents and hyphens, to its
+number.
 """
 
 import unicodedata
@@ -185,7 +186,7 @@ ITALIAN_TENS = [
 
 
 def plain(text: str) -> str:
-    """Returns the text in lower case without accents; all positions in it remain valid."""
+    """Returns the text in lower case without accents; every character keeps its position."""
     return "".join(_plain_letter(letter) for letter in text)
 
 

@@ -1,4 +1,4 @@
-"""Replaces unusually large or small numbers in a description, so that the network does not refuse them.
+"""Replaces unusually large or small numbers, because of which the network would refuse a description.
 
 The network was trained for one map of 250 m and refuses roads that do not fit on it. But other maps may hold
 such a road. So if the network calls a road impossible, it reads the same description again with ordinary
@@ -37,7 +37,7 @@ class OrdinaryNumbers(NamedTuple):
 
 
 def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
-    """Returns the description with ordinary numbers; the text is returned unchanged if it has no others."""
+    """Returns the description with ordinary numbers; unchanged if all its numbers are ordinary."""
     free = [number for number in STAND_INS if all(word.text != number for word in text.words)]
     counts: dict[str, str] = {}
     out: list[Word] = []

@@ -46,7 +46,7 @@ class TotalTurning(NamedTuple):
 
     @property
     def is_more_said(self) -> bool:
-        """True if the rest of the description contains any other words."""
+        """True if ``rest`` has more than one word."""
         return len(self.rest.split()) > 1
 
 
