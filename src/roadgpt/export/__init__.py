@@ -8,7 +8,7 @@ Each format is a plug-in, for example:
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
-arguments must always give the same bytes, so files contain no dates, random numbers or absolute paths.
+arguments must always give identical files, so files contain no dates, random numbers or absolute paths.
 """
 
 import shutil

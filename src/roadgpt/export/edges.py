@@ -25,8 +25,8 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
 
     Args:
         road: The road.
-        reach: Largest distance in metres between the centre line and any polyline that uses the stations.
-            Larger distances need more points.
+        reach: Greatest offset of a polyline from the centre line, in metres. A greater offset needs more
+            points.
         chord: Greatest allowed distance in metres between the polyline and the curve.
 
     Raises:
@@ -83,7 +83,8 @@ def line(road: Road, s: Array, t: ArrayLike) -> Array:
 
     There is one point for each station in ``s``.
 
-    In a bend with a radius smaller than ``t``, the offset is reduced so that the line does not fold.
+    In a bend with a radius smaller than ``t``, the offset is reduced so that the line does not fold back on
+    itself.
     """
     k = road.curvature(s)
     inside = k * np.asarray(t) > PINCH

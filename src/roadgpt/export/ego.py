@@ -46,7 +46,7 @@ CAR = EgoVehicle()
 
 
 def start_of(road: Road) -> float:
-    """Returns the station in metres of the car's centre of gravity when a drive begins."""
+    """Returns the station of the car's centre of gravity at the start of a drive, in metres."""
     return min(START, road.length / 2)
 
 
@@ -104,9 +104,8 @@ def calm_profile(road: Road, world: World, start: float) -> SpeedProfile:
 
 
 def on_the_ground(poses: Poses, ahead: float) -> Array:
-    """Returns points ``(n, 3)`` on the ground under the car, ``ahead`` metres in front of its centre of
-    gravity.
-    """
+    """Returns, for each pose, the point on the ground ``ahead`` metres in front of the car's centre of
+    gravity, as an array ``(n, 3)``."""
     h, p, r = poses.heading, poses.pitch, poses.roll
     forward = np.stack([np.cos(h) * np.cos(p), np.sin(h) * np.cos(p), np.sin(p)], axis=-1)
     left = np.stack([-np.sin(h), np.cos(h), np.zeros_like(h)], axis=-1)

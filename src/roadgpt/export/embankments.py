@@ -22,7 +22,7 @@ class Embankment(NamedTuple):
     edge: Array
     foot: Array
     is_left: bool
-    """Whether the slope falls to the left of its upper edge, seen in the direction of the edge's points."""
+    """True if the slope is on your left when you follow the points of its upper edge."""
 
 
 def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[Embankment]:

@@ -21,8 +21,8 @@ def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) ->
     Args:
         value: The function to approximate.
         slope: The derivative of ``value`` with respect to s.
-        breaks: Increasing stations at which a cubic must end, including both ends. The function must be
-            smooth between them.
+        breaks: Increasing stations at which a cubic must begin or end, including both ends of the range. The
+            function must be smooth between them.
         tolerance: Greatest distance between cubic and function, in the unit of the values.
     """
     stations = np.asarray(breaks, float)
@@ -41,7 +41,7 @@ def cubics(value: Function, slope: Function, breaks: Array, tolerance: float) ->
 
 
 def at(coefficients: Array, u: Array) -> Array:
-    """Returns values ``(n, d)`` of cubics ``(n, 4, d)``, each at a distance ``u[i]`` from its start."""
+    """Evaluates cubics ``(n, 4, d)`` to values ``(n, d)``: cubic i at distance ``u[i]`` from its start."""
     a, b, c, d = (coefficients[:, i] for i in range(4))
     u = u[:, None]
     return np.asarray(a + u * (b + u * (c + u * d)))

@@ -16,7 +16,7 @@ DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
 
 
 class Csv:
-    """Tables of the centre line every metre, with heading, curvature, grade and widths, and of the drive.
+    """Two tables: the centre line at every metre, with heading, curvature, grade and widths; and the drive.
 
     If the road does not have the default cross-section (one lane of constant width in each direction, level),
     the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.

@@ -29,14 +29,13 @@ DECIMALS = 4
 
 
 def ground_model(friction: float) -> str:
-    """Returns the name of the BeamNG ground model whose friction is closest to a friction coefficient."""
+    """Returns the name of the BeamNG ground model with the friction closest to the given coefficient."""
     return next(name for least, name in GROUNDS if friction >= least)
 
 
 def items(name: str, scene: LevelRoad, world: World) -> Mapping[str, Sequence[Item]]:
-    """Returns the objects of every ``items.level.json`` file of a level, by the folder of the file below
-    ``main``.
-    """
+    """Returns the objects in each ``items.level.json`` file of a level. The keys are the folders of these
+    files, relative to ``main``."""
     groups = ("sky_and_ground", "roads", "player")
     return {
         "": [_object(name, "MissionGroup", "SimGroup", "", enabled="1")],

@@ -1,4 +1,5 @@
-r"""Builds a road as BeamNG represents roads, for the files of a level and for a running simulator.
+r"""Converts a road to BeamNG's mesh roads and decal roads, for the files of a level or for a running
+simulator.
 
     mesh road    solid strip that carries the wheels: nodes x, y, z, width, depth
     decal road   strip that is drawn on the mesh road and that BeamNG's AI follows: nodes x, y, z, width
@@ -7,7 +8,7 @@ As in the RoadGPT thesis, both strips follow the same line, and the nodes of the
 that the two surfaces do not flicker. In addition, the decal is placed a little above the mesh. The shifts
 depend only on the seed. The shoulder is a second, wider mesh just below the first one. It reaches down to the
 ground, which is at the height of the lowest point of the road. A road without shoulder floats above a ground
-at height ``world.z_floor``.
+at height ``world.site.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -103,7 +104,7 @@ def level_road(
         world: The World, which defines lane width and shoulder width.
         seed: Seed of the random shifts of mesh nodes that prevent flicker.
         materials: Names of materials that exist in the level.
-        lift: Metres by which everything is raised, for a level whose ground is not at ``world.z_floor``.
+        lift: Metres by which everything is raised, for a level whose ground is not at ``world.site.z_floor``.
         prefix: Prefix of the strips' names, which must be unique in a level.
 
     Raises:
