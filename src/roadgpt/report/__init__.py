@@ -5,7 +5,7 @@ height.png             distance against height
 curvature_grade.png    curvature, grade and speed along the road, with the limits of the rules
 overview.png           all roads of a campaign
 
-``view`` makes a page with the road in 3-D (``view.write``), ``film`` films of drives, and ``page`` reports on
+The packages ``view``, ``film`` and ``page`` make the page with a road in 3-D, films of drives, and reports on
 many roads.
 """
 
@@ -38,7 +38,8 @@ __all__ = [
 
 @in_our_style
 def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draws all pictures of a Run into an existing folder; returns their paths, none if there is no road.
+    """Draws all pictures of a Run into an existing folder, and returns their paths; empty if there is no
+    road.
 
     Args:
         run: the Run; it may be invalid, and it need not have a drive.
@@ -60,9 +61,7 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws the pictures of a campaign while it runs; given to ``roadgpt.campaign`` as its argument
-    ``draw``.
-    """
+    """Draws the pictures of a campaign during the campaign. Pass it to ``roadgpt.campaign`` as ``draw``."""
 
     axes: Scale = "equal"
     formats: tuple[Format, ...] = PNG

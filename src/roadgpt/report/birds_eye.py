@@ -45,7 +45,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
 
     Args:
         run: a Run that has a road.
-        scale: which axes to use.
+        scale: "equal" for axes that fit the road; "thesis" for x and y from 0 to 220 m.
         frame: the part of the map to show, in metres; None shows the whole road.
     """
     road, world = run.road, run.world
@@ -124,8 +124,8 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
 
 
 def driven_path(axes: Axes, drive: Drive) -> LineCollection:
-    """Draws the path of the car's centre of gravity, coloured by speed in km/h; a rim marks where the car was
-    outside its lane."""
+    """Draws the path of the car's centre of gravity, coloured by speed in km/h. The path has a coloured
+    outline where the car was outside its lane."""
     track = np.stack([drive["x"], drive["y"]], axis=-1)
     speed = drive["speed"] * 3.6
     every = max(1, len(track) // 600)
@@ -152,9 +152,8 @@ def mark(axes: Axes, run: Run, place: MarkedPlace) -> None:
 
 
 def severities(drive: Drive | None) -> list[Severity]:
-    """Returns for each judged step whether the car was inside, partly outside or mostly outside its lane.
-    The list is empty if there is no drive.
-    """
+    """Returns "inside", "partly outside" or "mostly outside" for each step at which the verdict checks
+    whether the car is in its lane. The list is empty if there is no drive."""
     return [] if drive is None else [severity(share) for share in drive["outside"][: drive.lane_steps]]
 
 

@@ -140,9 +140,7 @@ class Header:
 
 
 def outcome_of(run: Run) -> str:
-    """Returns the outcome of a Run as a key of OUTCOMES; a PASS also says whether the car was partly or
-    mostly outside its lane.
-    """
+    """Returns the outcome of a Run as a key of OUTCOMES, such as "FAIL" or "PASS (partly outside)"."""
     return graded(run.outcome, run.verdict.max_oob if run.verdict else None)
 
 
@@ -162,7 +160,7 @@ def origin(run: Run) -> str:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Writes a picture in the format of the path's suffix; the same figure gives the same bytes.
+    """Writes a picture in the format that the path's suffix names; the same figure gives an identical file.
 
     Raises:
         UsageError: the suffix is none of .png, .svg and .pdf.
@@ -177,7 +175,7 @@ def save_all(figure: Figure, path: Path, formats: Sequence[Format] = PNG) -> lis
 
 
 def format_of(path: Path) -> Format:
-    """Returns the format that the suffix of a picture's path stands for.
+    """Returns the picture format that a path's suffix names.
 
     Raises:
         UsageError: the suffix is none of .png, .svg and .pdf.

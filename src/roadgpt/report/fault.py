@@ -22,7 +22,8 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
     Args:
         run: a Run that failed.
         reason: why it failed.
-        more: a sentence to add after the reason, such as how often the car failed again; may be empty.
+        more: text to add after the reason, such as "fails every time (5 of 5 disturbed drives)"; may be
+            empty.
     """
     assert run.road is not None
     s = run.road.sample(1.0)

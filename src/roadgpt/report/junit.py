@@ -49,7 +49,7 @@ class Suite:
     name: str
     properties: Properties
     cases: Callable[[], Iterable[Case]]
-    """Returns all cases each time it is called; it is called twice, to count the cases and to write them."""
+    """A function that returns all cases. It is called twice: to count the cases, and to write them."""
 
 
 class _Counts(NamedTuple):

@@ -23,7 +23,8 @@ def png_of(value: Any) -> bytes | None:
     """Returns the bytes of a PNG file with a picture of the value, or None if there is nothing to show.
 
     Args:
-        value: a Road, a Design, a Run, or a Campaign; of a Campaign, the first page of ``overview`` is shown.
+        value: a Road, a Design, a Run, or a Campaign. For a Campaign, the first page of ``overview`` is
+            shown.
     """
     figure = _figure(value)
     return None if figure is None else encoded(figure, "png")

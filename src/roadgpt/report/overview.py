@@ -58,7 +58,7 @@ class Entry:
 
     @property
     def graded(self) -> str:
-        """The outcome; for a PASS it includes how far the car was outside its lane."""
+        """The outcome, such as "FAIL" or "PASS (partly outside)"."""
         return graded(self.outcome, self.share)
 
 

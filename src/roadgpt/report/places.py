@@ -95,11 +95,12 @@ def _said(finding: Finding) -> str:
 
 
 def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top: bool = False) -> None:
-    """Writes labels next to the stations of places, on axes whose x is the distance along the road.
+    """Labels places on axes whose x is the distance along the road, each label next to the station of its
+    place.
 
     Args:
         axes: the axes.
-        places: the places of a road; each label is written below the one before.
+        places: the places of a road; each label is farther from the border of the axes than the one before.
         length: the length of the road in metres.
         at_top: whether to write the labels at the top of the axes instead of the bottom.
     """

@@ -18,13 +18,14 @@ MARGIN = 0.05  # of the road's extent, left free around it
 def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None = None) -> Axes:
     """Draws a road from above, to scale, on matplotlib's axes, and returns the axes.
 
-    A Run shows its drive, coloured by speed, and the places where the car failed or a rule objects. Several
-    roads may be drawn on the same axes. Style, title and size of the figure are left to the caller.
+    For a Run, also draws the drive, coloured by speed, and the places where the car failed or a rule objects.
+    Several roads may be drawn on the same axes. Style, title and size of the figure are left to the caller.
 
     Args:
         what: a Road, a Design, or a Run that has a road.
         ax: the axes to draw on; None uses matplotlib's current axes.
-        world: width of lanes and shoulders; None uses the Run's World, or the default World.
+        world: the World with the widths of lanes and shoulders; None uses the Run's World, or the default
+            World.
 
     Raises:
         UsageError: ``what`` is none of these, or is a Run without a road.

@@ -70,7 +70,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Renders the view of one camera at any time of a Run; several threads may call it at once."""
+    """Renders the view of one camera at any time; several threads may call it at once."""
 
     scene: Scene
     trip: Trip
@@ -80,16 +80,14 @@ class Pane:
 
     @classmethod
     def of(cls, run: Run, scene: Scene, trip: Trip, mount: Mount, width: int, height: int) -> "Pane":
-        """Returns the Pane of a Run for one position of the camera, which also determines the field of
-        view.
-        """
+        """Returns the Pane of a Run for a camera at ``mount``; the mount also determines the field of
+        view."""
         camera = Camera(width, height, FIELDS[mount], mount)
         return cls(scene, trip, camera, Overlay(run, width, height), run.drive is not None)
 
     def draw(self, time: float) -> Frame:
-        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; after the end of the drive, it
-        is the last picture.
-        """
+        """Returns the picture at ``time`` seconds, ``(height, width, 3)``; times after the end of the drive
+        give the last picture."""
         now = min(time, self.trip.duration)
         car = self.trip.car(now)
         pose = self.trip.follower(now) if self.camera.mount == "chase" else car

@@ -19,7 +19,7 @@ def encoder() -> Any:
     """Returns the module ``av`` (PyAV).
 
     Raises:
-        UsageError: PyAV is not installed, or was built without the video encoder.
+        UsageError: PyAV is not installed, or was built without its H.264 encoder.
     """
     try:
         import av

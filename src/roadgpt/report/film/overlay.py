@@ -1,4 +1,4 @@
-"""Writes text over the pictures of a film: description, speed, position, margin and outcome."""
+"""Writes text over the pictures of a film, such as speed, distance to out of bounds, and outcome."""
 
 from dataclasses import dataclass
 

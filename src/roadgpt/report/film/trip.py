@@ -52,10 +52,12 @@ class Trip:
 
     @classmethod
     def of(cls, run: Run) -> "Trip":
-        """Returns the motion of a Run's drive; without a drive, a ride along the road at a calm speed.
+        """Returns the motion of a Run's drive. If there is no drive, the camera moves along the road at a
+        calm speed.
 
         Raises:
-            UsageError: the Run has no road, or its drive has no finite motion.
+            UsageError: the Run has no road, or its drive has fewer than two steps or numbers that are not
+                finite.
         """
         if run.road is None:
             raise UsageError(f"there is no road to film: {run.description}")
@@ -91,9 +93,8 @@ class Trip:
         return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
 
     def follower(self, time: float) -> Pose:
-        """Returns the pose that the camera behind the car follows; its heading and pitch lag behind those
-        of the car.
-        """
+        """Returns the pose by which the camera behind the car is placed: the car's pose without roll, with a
+        heading and a pitch that lag behind the car's."""
         late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
         return self.car(time)._replace(**late, roll=0.0)
 

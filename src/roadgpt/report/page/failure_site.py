@@ -25,7 +25,7 @@ class FailureSite:
     left: Array
     """Points of the left edge of the road."""
     lines: tuple[tuple[Array, bool], ...]
-    """Markings between the lanes: the points of each, and whether it is broken."""
+    """Markings between the lanes: the points of each, and whether it is a broken line."""
     right: Array
     path: Array
     """Path of the car's centre up to the failure; empty if there is no drive."""
@@ -34,7 +34,8 @@ class FailureSite:
     at: Array
     """Position ``(2,)`` of the middle of the driven lane at the station of the failure."""
     heading: float
-    """Heading of the road before the failure in radians; this direction points up in the picture."""
+    """Heading, in radians, of the road shortly before the place of the failure; this direction points up in
+    the picture."""
 
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:

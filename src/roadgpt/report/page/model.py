@@ -19,7 +19,7 @@ class TableCell(NamedTuple):
 
 
 def cell(value: Raw, text: str | None = None, href: str = "") -> TableCell:
-    """Returns a cell; without ``text``, the value itself is shown, and None as a dash."""
+    """Returns a cell. Without ``text``, the cell shows the value itself, or a dash for None."""
     if text is None:
         text = "–" if value is None else f"{value:,}" if isinstance(value, int) else str(value)
     return TableCell(value, text, href)
