@@ -12,8 +12,7 @@ from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
 from roadgpt.learn.negative_examples import contradicted, overdone
-from roadgpt.learn.plausibility import makes_sense
-from roadgpt.learn.standard import standard
+from roadgpt.learn.standard import makes_sense, standard
 
 
 def test_the_same_seed_gives_the_same_pairs_and_another_others() -> None:
@@ -67,7 +66,8 @@ def test_there_are_no_phrases_in_klingon() -> None:
     "line",
     [
         "turn up | down", "crest | flat", "turn left | lefts=0", "turn x5 | turns=..3", "hairpin deg=20",
-        "turn x13", "straight pct=20", "turn r=5", "turn | len=1600", "straight | gentle turns=0",
+        "turn x13", "straight pct=20", "turn r=5", "turn | len=1800", "straight | gentle turns=0",
+        "dip | down", "turn x2 | up hills=3..", "hairpin x9 | len=160", "s_bend | lefts=3", "",
     ],
 )  # fmt: skip
 def test_nonsense_is_not_generated(line: str) -> None:

@@ -15,7 +15,7 @@ from functools import cache
 from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
-from roadgpt.brief.feasible import check
+from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.map_fit import ROAD_WIDTH
 from roadgpt.brief.model import (
     Amount,
@@ -38,7 +38,7 @@ from roadgpt.brief.refusal import NoRoomError, TooMuchError
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
-from roadgpt.errors import BriefError, PartError
+from roadgpt.errors import PartError
 
 __all__ = [
     "Amount",
@@ -182,15 +182,7 @@ def alternatives(
         return (first,)
     if first.motorway:
         others = tuple(brief.model_copy(update={"motorway": True}) for brief in others)
-    return (first, *(brief for brief in others if _is_possible(brief, map_size, min_radius, max_grade)))
-
-
-def _is_possible(brief: Brief, map_size: float | None, min_radius: float, max_grade: float) -> bool:
-    try:
-        check(brief, map_size, min_radius, max_grade)
-    except BriefError:
-        return False
-    return True
+    return (first, *(brief for brief in others if is_possible(brief, map_size, min_radius, max_grade)))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

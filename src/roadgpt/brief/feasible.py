@@ -80,6 +80,20 @@ def check(
         check_room(brief, map_size, min_radius, road_width)
 
 
+def is_possible(
+    brief: Brief,
+    map_size: float | None = USUAL_MAP,
+    min_radius: float = LEAST_RADIUS,
+    max_grade: float = STEEPEST / 100,
+) -> bool:
+    """Returns whether ``check`` finds nothing wrong with a Brief."""
+    try:
+        check(brief, map_size, min_radius, max_grade)
+    except BriefError:
+        return False
+    return True
+
+
 def _counts(clause: Clause) -> None:
     for number in (clause.count.lo, clause.count.hi):
         if number is not None and (number < 0 or number != int(number)):

@@ -15,8 +15,7 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair, assembled, sometimes_spoiled
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
 from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.plausibility import makes_sense
-from roadgpt.learn.standard import standard
+from roadgpt.learn.standard import makes_sense, standard
 
 LANGUAGES = frozenset({"en", "de", "fr", "es", "it"})
 LONGEST = 420  # letters of a joined text

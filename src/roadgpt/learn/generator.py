@@ -1,4 +1,4 @@
-"""Generates any number of descriptions from grammars, checks their plausibility, and adds typing errors."""
+"""Generates any number of descriptions from grammars, drops those without sense, and adds typing errors."""
 
 import re
 from collections.abc import Iterator
@@ -13,8 +13,7 @@ from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.negative_examples import contradicted, overdone
 from roadgpt.learn.noise import noisy, tidy
-from roadgpt.learn.plausibility import makes_sense
-from roadgpt.learn.standard import standard
+from roadgpt.learn.standard import makes_sense, standard
 
 SPOILED = 0.045
 """Share of valid descriptions that are made contradictory or impossible on purpose."""
