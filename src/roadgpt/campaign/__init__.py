@@ -5,9 +5,9 @@
                                                         Store (one file)
 
 Campaigns have two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers
-that run them. ``begin`` makes a campaign's folder. ``work`` runs the tests that have not ended; after an
-interruption it resumes the campaign. ``status_of`` returns the progress. For one test, ``read_trace`` returns
-the stored drive, ``kept_run`` returns the stored Run, and ``run_again`` drives the road again.
+that run them. ``begin`` makes a campaign's folder. ``work`` runs the remaining tests; after an interruption
+it resumes the campaign. ``status_of`` returns the progress. For one test, ``read_trace`` returns the stored
+drive, ``kept_run`` returns the stored Run, and ``run_again`` drives the road again.
 """
 
 import sys

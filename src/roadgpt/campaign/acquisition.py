@@ -5,7 +5,7 @@ The search's goal decides how valuable a candidate is:
 failures   the higher its predicted probability of failing, the more valuable; cells with few failures so
            far have a higher weight
 coverage   the fewer tests its predicted cell has, the more valuable
-hardest    the smaller its predicted margin, minus the spread of the predictions, the more valuable
+hardest    the smaller the mean of the predicted margins minus their spread, the more valuable
 """
 
 from collections import Counter

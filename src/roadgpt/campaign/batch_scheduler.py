@@ -134,7 +134,9 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of the earlier batches that a road drafted in this batch must differ from."""
+        """Returns the numbers of those earlier batches from whose roads every draft in this batch must
+        differ.
+        """
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)
@@ -144,7 +146,7 @@ class BatchScheduler:
         return range(begin, last + 1)
 
     def designs(self, batch: int) -> tuple[Design, ...]:
-        """Returns the designs of the tests in a batch whose tests have all ended."""
+        """Returns the designs of the tests in a batch; all these tests must have ended."""
         return tuple(designs_of(self._results(self.batches[batch])))
 
 

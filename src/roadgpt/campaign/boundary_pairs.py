@@ -108,7 +108,7 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns the same pairs as ``pairs_of``, from the test numbers of passed and failed tests.
+    """Returns boundary pairs, as ``pairs_of`` does, but from the elements of the roads instead of results.
 
     Args:
         roads: the elements of each road, by test number.

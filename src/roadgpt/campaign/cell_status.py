@@ -38,7 +38,7 @@ class CellStatus:
     """
     goal: Goal | None
     closed: str | None
-    """Why the cell ended before its number of tests was reached; None if it did not."""
+    """Why the cell was closed before all its tests had been requested; None if it was not."""
 
     @property
     def done(self) -> int:

@@ -32,7 +32,7 @@ def work_in(
     workers: int = 0,
     with_earlier: bool = False,
 ) -> Generator[tuple[str, FinishedRun], None, None]:
-    """Runs the missing tests of folders of runs; the work happens while the caller iterates.
+    """Runs the missing tests of folders of runs, lazily: each test runs while the caller iterates.
 
     If no road can be designed for a folder, its ``failure`` gives the reason, and the folder stays without
     tests.

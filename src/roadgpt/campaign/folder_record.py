@@ -25,7 +25,7 @@ def is_store(folder: Path) -> bool:
 
 
 def has_tests(folder: Path) -> bool:
-    """Returns whether a folder holds a campaign or runs; a run's own folder does not."""
+    """Returns whether a folder holds a campaign or runs; False for the folder of a single run."""
     return is_store(folder) or ((folder / RUNS).is_dir() and not is_run(folder))
 
 
@@ -79,7 +79,7 @@ class FolderRecord(FolderStore):
         return super()._execute(sql, values)
 
     def meta(self, name: str) -> str:
-        """Returns "yes" for ``finished`` if the folder is finished; all else is empty."""
+        """Returns "yes" if ``name`` is "finished" and the folder is finished; else an empty text."""
         return "yes" if name == "finished" and self._is_finished else ""
 
     def total(self) -> int | None:

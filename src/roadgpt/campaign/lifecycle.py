@@ -1,7 +1,7 @@
 """Begins and runs campaigns: one process schedules tests and writes the store, and workers run the tests.
 
 begin     makes a folder with a store, which holds the plan and its cells with their Briefs
-work      runs the tests that have not ended; interruptions do not change the resulting tables
+work      runs the remaining tests; interruptions do not change the resulting tables
 """
 
 import sqlite3
@@ -148,8 +148,8 @@ def work(
     chat: ChatSettings | None = None,
     draw: Draw | None = None,
 ) -> Iterator[Progress]:
-    """Runs the tests that have not ended, of a campaign or of a folder that ``roadgpt run`` made; the work
-    happens while the caller iterates.
+    """Runs the remaining tests of a campaign, or of a folder that ``roadgpt run`` made, lazily: they run
+    while the caller iterates.
 
     Args:
         folder: the campaign's folder, made by ``begin``, or the folder of runs.

@@ -47,7 +47,7 @@ UNLIMITED = Budget()
 
 @dataclass(frozen=True)
 class Proposal:
-    """A test that a generator asks for."""
+    """A test that a generator proposes."""
 
     design: Design | None
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the

@@ -60,7 +60,7 @@ class Plan(Frozen):
     def came_with(self, file: object) -> "Plan":
         """Returns the Plan, marked as read from a file that another person may have written.
 
-        RoadGPT then asks the user before it uses a driver's file or a server that only this file names.
+        If a driver's file or a server is named only in that file, RoadGPT asks the user before using it.
         """
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)

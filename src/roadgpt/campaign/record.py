@@ -174,7 +174,7 @@ class Record:
             return Plan.model_validate_json(self.meta("plan")).came_with(self.path)
 
     def total(self) -> int | None:
-        """Returns the number of tests that were asked for; None if only time limits them."""
+        """Returns the number of tests requested; None if the campaign has only a time limit."""
         tests = self.plan().budget.tests
         return tests and tests * len(self.names())
 
@@ -310,7 +310,7 @@ class Record:
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns the number, the batch and the proposal of each test of a cell that has not ended."""
+        """Returns the number, batch and proposal of each remaining test of a cell."""
         rows = self.query(
             "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",

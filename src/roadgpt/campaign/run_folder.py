@@ -2,7 +2,8 @@
 tests.
 
 ``roadgpt run`` and each part of a study write such a folder, with the files of the SBFT competition. A test
-has ended when its ``test.NNNN.json`` exists; the process that holds the folder's lock writes it last.
+has ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the
+folder's lock.
 """
 
 from collections.abc import Mapping
@@ -69,14 +70,14 @@ class RunWriter:
 
 
 def finished_run(run: Run) -> FinishedRun:
-    """Returns the Run of an earlier session as a test that has ended."""
+    """Converts the Run of an earlier session to a FinishedRun."""
     proposal = Proposal(run.design, run.seed, "draft" if run.words else "given")
     task = Task(run.index, run.index - 1, proposal)
     return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
-    """Returns a context manager that turns an error while writing into a folder into one clear sentence."""
+    """Returns a context manager that reports an error in writing to a folder as one clear sentence."""
     advice = "make room there and continue with the same command and --out"
     return explained(RoadGPTError, f"cannot write into {folder}", advice)
 

@@ -37,7 +37,7 @@ class SearchSettings(Frozen):
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
     """Number of cells along each axis of a grid, or number of centroids."""
     candidates: Annotated[int, Field(ge=1, le=100)] = 8
-    """Number of candidate roads for each road that is driven; the surrogate model predicts all of them."""
+    """Number of candidate roads for each road that is driven; the surrogate predicts the outcome on each."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
     """Smallest allowed distance between the shape of a candidate and that of every tested road, metres RMS
     after the best shift, rotation and reflection.
@@ -61,7 +61,7 @@ def settings_of(cell: Cell) -> SearchSettings:
     """Returns the settings of a generator.
 
     Raises:
-        UsageError: a setting is unknown or out of range, or the cell builds splines.
+        UsageError: a setting is unknown or out of range, or the cell's roads are splines.
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")

@@ -75,7 +75,7 @@ class Candidate(NamedTuple):
     features: dict[str, float]
     """Features of the road that are known without a drive, by name."""
     surrogate_features: Array
-    """Features that the surrogate model predicts from, ``(n,)``."""
+    """Input features of the surrogate model, ``(n,)``."""
     shape: PlanShape
     """Shape of the road seen from above; the distance between two candidates is computed from their
     shapes.
@@ -164,7 +164,7 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
 
 
 def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """Computes the features of a road that satisfies all rules, and returns it as a Candidate."""
+    """Returns the Candidate of a road that satisfies all rules, with the road's features."""
     samples = road.sample()
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
@@ -172,7 +172,7 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
 
 
 def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Computes the features of a design that has already been driven, and returns it as a Candidate.
+    """Returns the Candidate of a design that has already been driven, with the features of its road.
 
     Args:
         known: the design, and the requirements, world and rules of its cell.

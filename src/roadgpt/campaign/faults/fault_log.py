@@ -57,7 +57,7 @@ class AnalysisTask(NamedTuple):
     names: tuple[NumberedTest, ...]
     """Names of the tests with the fault's typical failures, the most typical first."""
     times: int
-    """How often the road of each failure is driven with a disturbance."""
+    """Number of disturbed drives on the road of each failure."""
     minimise: bool = False
     draw: FailureDrawing | None = None
     formats: tuple[str, ...] = ("png",)

@@ -1,5 +1,5 @@
-"""Simplifies a road on which the car fails, as far as the car still fails to the same side for the same
-cause.
+"""Simplifies a road on which the car fails, as long as the car still fails for the same cause and to the same
+side.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
 IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: any single further simplification

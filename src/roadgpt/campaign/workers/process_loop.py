@@ -1,4 +1,4 @@
-"""The main loop of a worker process: runs one job after another, and ends with its parent.
+"""The main loop of a worker process: runs one job after another, and ends when its parent ends.
 
 The parent sends the module search paths, the function that prepares the worker, and then jobs. The message of
 a job holds the call (function, item, names of shared values), the shared values that the worker does not have

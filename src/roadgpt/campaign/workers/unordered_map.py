@@ -31,7 +31,7 @@ def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, 
         log: the file that receives what worker processes print.
 
     Raises:
-        UsageError: the log is a link to somewhere else.
+        UsageError: the log is a symbolic link.
         RoadGPTError: workers cannot be started, or three of them died over the same item.
         Exception: any error that ``function`` raises.
     """
