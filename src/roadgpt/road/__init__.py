@@ -1,8 +1,8 @@
 """Defines the World, the Design and the Road that is built from a Design. Main function: ``build``.
 
 A Design is a human-readable list of segments, written by a designer plug-in. A Road is 3-D geometry. Its
-method ``road.at(s, t)`` returns the point at station ``s``, the distance along the centre line, and offset
-``t``, the distance to the left of the centre line.
+method ``road.at(s, t)`` returns a point: the station ``s`` is the distance along the centre line, and the
+offset ``t`` is the distance to its left.
 """
 
 from importlib import import_module

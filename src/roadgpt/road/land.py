@@ -33,8 +33,8 @@ class Land:
     heights: Array
     """Heights in metres, of shape (rows, columns)."""
     away: Array
-    """Distance in metres of each grid point from the strip along the road in which the land follows the
-    height of the road, of shape (rows, columns).
+    """Distance in metres from each grid point to the strip along the road, of shape (rows, columns). In this
+    strip, the land follows the height of the road.
     """
     cell: float
 

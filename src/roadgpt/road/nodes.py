@@ -1,6 +1,6 @@
 """Converts a Design to the nodes of a spline, as in the RoadGPT thesis.
 
-Each segment is taken as a straight line between two nodes; the spline through the nodes makes the road
+Each segment is treated as a straight line between two nodes; the spline through the nodes makes the road
 smooth. Source: the thesis, section 5.3.2. Unlike the program of the thesis, this module does not shift roads
 by (5, 5) m.
 """
@@ -18,7 +18,8 @@ STUB = 5.0  # m, level, before the first segment, so that the car starts on leve
 def nodes_of(design: Design) -> Array:
     """Returns nodes ``(n, 3)`` in metres.
 
-    They are the start, the end of a level stub of 5 m, and the end of every segment.
+    They are the start, the end of a level stretch of 5 m before the first segment, and the end of every
+    segment.
     """
     nodes = [design.starting_point]
     heading = math.radians(design.theta)

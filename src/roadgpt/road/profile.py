@@ -65,16 +65,16 @@ class Profile:
     centre line. On a road with superelevation, widths and offsets are measured along the inclined surface.
 
     Args:
-        left: Lanes from the centre line outwards, driving lanes first, on the left.
-        right: Lanes from the centre line outwards on the right; at least one is a driving lane.
+        left: Lanes on the left, from the centre line outwards, driving lanes first.
+        right: Lanes on the right in the same order; at least one is a driving lane.
         driven: Index in ``right`` of the lane that the tested car keeps to.
         centre_marking: The marking on the centre line.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
 
     Raises:
-        ValueError: ``driven`` is no driving lane, a shoulder is followed by a driving lane, a width is
-            negative, or the last cubic of a width or of the superelevation is not constant.
+        ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
+            width is negative, or the last cubic of a width or of the superelevation is not constant.
     """
 
     left: tuple[Lane, ...]
@@ -199,7 +199,7 @@ class Profile:
         """Returns the painted lines from left to right; boundaries without a marking are left out.
 
         A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
-        painted inside the lane, up to its outer edge.
+        painted on the lane's side of this edge.
         """
         painted = self._painted_boundaries(s)
         return [PaintedLine(marking, edges) for marking, edges in painted if marking != "none"]

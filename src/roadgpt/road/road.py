@@ -139,7 +139,7 @@ class Road:
         """Returns the stations and the offsets to the left, in metres, of points given in plan.
 
         Each point is projected onto the nearest point of the centre line. On a road with superelevation, the
-        offset belongs to the surface point vertically above or below the given point.
+        offset is that of the surface point vertically above or below the given point.
         """
         points = np.stack(np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float)), -1)
         s, t = project(self.plan, points)
@@ -288,8 +288,7 @@ def check_length(length: float) -> None:
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:
-    """Checks that the grade of a road is nowhere steeper than 10, that is ten metres of height per metre in
-    plan.
+    """Checks that a road nowhere climbs or falls more than ten metres per metre in plan.
 
     Raises:
         UsageError: The road is steeper than this at some station.

@@ -6,8 +6,8 @@ r"""Plans a driver's speed along its path, limited by the friction circle, in tw
 
 Source: the usual quasi-steady method, for example Kapania, Subosits, Gerdes (2016),
 https://doi.org/10.1115/1.4033311. On a road that is inclined by the angle e towards the inside of a bend of
-curvature k, the tyres carry a lateral force of ``v^2 k cos e - g sin e`` per mass, and the wheel load per
-mass is ``g cos e + v^2 k sin e``.
+curvature k, the tyres carry, per unit of mass, a lateral force of ``v^2 k cos e - g sin e`` and a wheel load
+of ``g cos e + v^2 k sin e``.
 """
 
 import math
@@ -91,8 +91,8 @@ def expected_speed(
     """Returns the speeds in m/s at which a car is expected to drive along a road from a standing start.
 
     The car drives on dry asphalt in the middle of its lane, within the speed limit and the default driver's
-    limits of acceleration. The arguments have the meaning that they have in ``lane_speed``. ``profile`` is
-    the cross-section of the road; with None, the road has the lanes and the superelevation of the World.
+    limits of acceleration. ``curvature``, ``grade`` and ``step`` are as in ``lane_speed``. ``profile`` is the
+    cross-section of the road; with None, the road has the lanes and the superelevation of the World.
     """
     limits = DrivingLimits(LATERAL, BRAKING, TRACTION, world.limits.speed_limit)
     s = step * np.arange(np.size(curvature))
@@ -142,8 +142,8 @@ def lane_speed(
 def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
     """Returns the speed in m/s at every station of the path.
 
-    The wheel load per mass includes the slope, the crest or dip, and the superelevation in a bend:
-    ``g cos(slope angle) + v^2 * vertical curvature`` on a road that is level across.
+    The wheel load takes slopes, crests, dips and superelevation into account. Without superelevation it is
+    ``g cos(slope angle) + v^2 * vertical curvature`` per unit of mass.
     """
     top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
     _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)

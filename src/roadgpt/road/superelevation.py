@@ -2,9 +2,10 @@
 
 Source: National Highways, CD 109 Highway link design (earlier TD 9/93), section 3: at a design speed of V
 km/h, a bend of radius R metres has a superelevation of V^2 / (2.828 R) percent, and at most 7 % outside
-towns. The superelevation is built up along the transition curve (the run-in). If the transition curve is so
-short that the edge of the carriageway would climb or fall by more than 1 % relative to the centre line, the
-run-in begins earlier and ends later, at most at the middle of the adjoining straight or arc.
+towns. The superelevation is built up over a run-in, which is usually the transition curve. If this curve is
+so short that the edge of the carriageway would climb or fall by more than 1 % relative to the centre line,
+the run-in begins earlier and ends later. It may reach to the middle of the adjoining straight or arc, but no
+farther.
 """
 
 import math

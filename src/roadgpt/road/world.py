@@ -1,6 +1,6 @@
-"""Defines the World, which all roads of a campaign share: a Site, the lanes of its roads, and Limits.
+"""Defines the World, which all roads of a campaign share: a Site, a CrossSection and Limits.
 
-Files keep the values of all three in one flat table, in the order of ``PLACES``.
+Files keep the values of all three in one flat table, in the order of ``FIELDS``.
 """
 
 import re
@@ -25,7 +25,7 @@ OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
 
 
 def lanes_in(text: str) -> str:
-    """Returns the numbers of lanes along the road and against it without blanks, such as "2+1".
+    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) without blanks.
 
     Raises:
         ValueError: The text has another form; the message says which one is needed.
@@ -37,10 +37,10 @@ def lanes_in(text: str) -> str:
 
 
 def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -> str | float:
-    """Returns the superelevation of bends, which is "none", "auto" or a number from 0 to ``most``.
+    """Returns the superelevation of bends unchanged if it is "none", "auto" or a number from 0 to ``most``.
 
     Raises:
-        ValueError: The value is something else; the message says what to give, in this unit.
+        ValueError: The value is something else; the message states the valid values, with ``unit``.
     """
     if value in ("none", "auto") or (isinstance(value, float) and 0 <= value <= most):
         return value
@@ -66,7 +66,7 @@ class Site(BaseModel):
 class CrossSection(BaseModel):
     """The lanes, shoulders and banked bends of roads that have no Profile of their own.
 
-    It holds for roads of every length; ``profile`` makes the Profile of one road from it.
+    It does not depend on a road's length; ``profile`` makes the Profile of one road from it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -83,7 +83,9 @@ class CrossSection(BaseModel):
     start; None for a constant width.
     """
     bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
-    """Superelevation of bends: "none", "auto" for the values of CD 109, or one ratio for all bends."""
+    """Superelevation of bends: "none", "auto" for the values of the design guide CD 109, or one ratio for all
+    bends.
+    """
     shoulder: NotNegative = 3.0
     """Width in metres of the firm shoulder beside the carriageway.
 
@@ -115,7 +117,7 @@ class CrossSection(BaseModel):
 
 
 class Limits(BaseModel):
-    """What the rules allow of a road, and how a test fails. Most defaults are those of the RoadGPT thesis."""
+    """What the validity rules allow, and when a test fails. Most defaults are those of the RoadGPT thesis."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -176,11 +178,11 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 class World(BaseModel):
-    """Everything that the roads of one folder share: a Site, a CrossSection and Limits.
+    """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits.
 
-    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table.
-    Earlier versions of RoadGPT had no parts: ``World(friction=0.6)`` and ``world.friction`` still work, with
-    a DeprecationWarning.
+    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table. The
+    form of earlier versions, ``World(friction=0.6)`` and ``world.friction``, still works, with a
+    DeprecationWarning.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -237,7 +239,7 @@ class World(BaseModel):
         return World.model_validate(self.values() | own)
 
     def profile_of(self, road: Road) -> Profile:
-        """Returns the Profile of a road: ``road.profile``, or one of ``section`` if that is None.
+        """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.
 
         Raises:
             UsageError: This World has banked bends, but the road has no superelevation because it was not

@@ -1,4 +1,4 @@
-"""Reads roads from ASAM OpenDRIVE files, 1.1 to 1.8, of any tool. Main function: ``read_opendrive``.
+"""Reads roads from ASAM OpenDRIVE files, versions 1.1 to 1.8. Main function: ``read_opendrive``.
 
 tree        reads the XML with limits on its size and without entities; selects one road of the file
 geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
@@ -8,7 +8,7 @@ marks       reads the road marks
 line        computes the plan: unchanged where possible, otherwise clothoids through poses one metre apart
 joins       finds places where elements do not meet exactly, and bridges them
 heights     reads the elevation without changing it
-cubic_rows  joins and limits piecewise cubics of the station
+cubic_rows  sums and clips piecewise cubic functions of the station, such as lane widths
 reversal    reverses a road whose driving lanes are on the left
 left_out    lists the contents of the file that a Road cannot represent
 """

@@ -1,4 +1,6 @@
-"""Sums and clips piecewise cubics of the station, such as lane widths, and fills gaps between them."""
+"""Sums and clips piecewise cubic functions of the station, such as lane widths. They are lists of rows; a row
+is a station and the cubic that begins there.
+"""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -30,7 +32,7 @@ def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: flo
 
 
 def value_at(row: Row, s: float) -> float:
-    """Returns the value that the cubic of a row has at station ``s``."""
+    """Returns the value of a row at station ``s``."""
     (a, b, c, d), u = row[1], s - row[0]
     return float(a + u * (b + u * (c + u * d)))
 
@@ -80,7 +82,7 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the rows as a profile of a road of this length in metres; its value is constant after the end.
+    """Returns the rows as a profile that is constant after ``length``, the end of the road in metres.
 
     A constant row that repeats the value of the previous constant row is left out.
     """

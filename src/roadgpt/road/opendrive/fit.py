@@ -1,4 +1,4 @@
-"""Fits a clothoid between each two consecutive poses, with the position and heading of the pose at both ends.
+"""Joins consecutive poses by clothoids that match the position and heading of both poses.
 
 The only unknown, the change of curvature, is found with Newton's method. Source: Bertolazzi and Frego, G1
 fitting with clothoids, Mathematical Methods in the Applied Sciences 38 (2015).
@@ -18,10 +18,9 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 
 
 def clothoids(poses: Array) -> list[Piece] | None:
-    """Returns one clothoid between each two consecutive poses; None if two poses cannot be joined by a
-    clothoid.
+    """Returns the clothoids that join consecutive poses; None if two poses cannot be joined by a clothoid.
 
-    Every clothoid ends at its pose up to rounding, so that errors do not add up along the road.
+    Every clothoid ends at the next pose, except for rounding, so errors do not add up along the road.
 
     Args:
         poses: One row (x, y, heading) per pose, ``(n + 1, 3)``, in metres and radians.

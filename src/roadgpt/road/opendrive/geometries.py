@@ -31,7 +31,7 @@ class Shape(Protocol):
     """The shape of a geometry element in local coordinates: it starts at the origin along +x."""
 
     def poses(self, share: Array) -> Array:
-        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
+        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
         ...
 
 
@@ -48,7 +48,7 @@ class GeometryElement:
     shape: Shape
 
     def poses(self, share: Array) -> Array:
-        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
+        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
         u, v, turned = self.shape.poses(share).T
         cos, sin = math.cos(self.heading), math.sin(self.heading)
         return np.stack([self.x + u * cos - v * sin, self.y + u * sin + v * cos, self.heading + turned], -1)
@@ -61,7 +61,7 @@ class PieceShape:
     piece: Piece
 
     def poses(self, share: Array) -> Array:
-        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
+        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
         curve = PieceCurve(0.0, 0.0, 0.0, (self.piece,))
         s = share * self.piece.length
         return np.column_stack([curve.at(s), curve.heading(s)])
@@ -104,7 +104,7 @@ class Polynomial:
         return np.stack([b + p * (2 * c + 3 * p * d) for _, b, c, d in (self.u, self.v)])
 
     def poses(self, share: Array) -> Array:
-        """Returns one row (x, y, heading) per fraction of the length, 0 to 1, of shape ``(n, 3)``."""
+        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
         p_table, walked = self._walked
         p = np.interp(share * walked[-1], walked, p_table)
         x, y = self._at(p)

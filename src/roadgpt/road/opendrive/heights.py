@@ -1,4 +1,4 @@
-"""Reads the elevation of an OpenDRIVE file, and expresses its cubics over the stations of the Road."""
+"""Reads the elevation of an OpenDRIVE file, and converts it to the Road's stations."""
 
 from itertools import pairwise
 
@@ -17,8 +17,8 @@ APART = 1.0  # m between the stations of the heights of a centre line beside the
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Returns the elevation profile over the stations of the file. If the file has no elevation, the
-    height is 0.
+    """Returns the height as a function of the station in the file. If the file has no elevation, the height
+    is 0.
     """
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
@@ -55,7 +55,7 @@ def jumps(profile: CubicProfile, length: float) -> str | None:
 
 
 def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
-    """Returns the heights of the inner edge of the driving lanes over the stations of the file.
+    """Returns the heights of the inner edge of the driving lanes as a function of the station in the file.
 
     They differ from the heights of the reference line only where the road has superelevation and the edge
     does not coincide with this line.
@@ -100,13 +100,13 @@ def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, 
 
 
 def carried_over(profile: CubicProfile, s: Array, stations: Array) -> CubicProfile:
-    """Returns cubics of the file as cubics over the stations of the Road.
+    """Converts cubic functions of the station in the file to functions of the station on the Road.
 
-    Stations of file and Road differ where the centre line is longer or shorter than the reference line.
-    Between the given pairs of corresponding stations, the conversion is linear.
+    The two stations differ where the centre line is longer or shorter than the reference line. Between the
+    given pairs of corresponding stations, the conversion is linear.
 
     Args:
-        profile: The cubics over the stations of the file.
+        profile: The functions of the station in the file.
         s: Increasing stations of the file in metres, ``(n,)``.
         stations: Stations of the Road in metres that correspond to ``s``, ``(n,)``.
     """

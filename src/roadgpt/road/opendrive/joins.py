@@ -30,7 +30,7 @@ class SampledLine:
     """Poses along the inner edge of the driven lane."""
 
     s: Array
-    """Station of each pose in the file, ``(n,)``."""
+    """Station at each pose, as measured in the file, ``(n,)``."""
     poses: Array
     """One row (x, y, heading) per pose, ``(n, 3)``, in metres and radians."""
     gaps: Array
@@ -42,7 +42,7 @@ class SampledLine:
     ends: Array
     """Points ``(m, 2)`` in metres where the elements of the file begin and end.
 
-    The pose at which two elements meet is halfway between their ends.
+    Where two elements meet, the pose is halfway between the end of one and the start of the next.
     """
 
     def only(self, kept: Array) -> "SampledLine":

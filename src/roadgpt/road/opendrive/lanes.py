@@ -1,4 +1,5 @@
-"""Reads the lane sections of an OpenDRIVE road, the edge that becomes the centre line, speeds and friction.
+"""Reads the lane sections, speed limits and friction of an OpenDRIVE road, and the edge that becomes the
+centre line.
 
 The driven side is the right one, or the left one if there are hardly any driving lanes on the right. The
 inner edge of its innermost driving lane becomes the centre line of the Road.
@@ -125,7 +126,7 @@ class Lanes:
         return found
 
     def spans(self) -> list[Span]:
-        """Returns the sections that have a driving lane and are not empty, in order."""
+        """Returns the sections that have a driving lane and a length above 0, in order."""
         ends = [section.s for section in self.sections[1:]] + [self.length]
         starts = [max(section.s, 0.0) for section in self.sections]
         return [

@@ -1,4 +1,4 @@
-"""Lists the contents of an OpenDRIVE road that a Road cannot represent, as one sentence."""
+"""Lists, in one sentence, the contents of an OpenDRIVE road that a Road cannot represent."""
 
 from collections import Counter
 from collections.abc import Container, Iterator

@@ -1,8 +1,8 @@
 """Computes the plan curve of a Road from the reference line and the driven lane of an OpenDRIVE file.
 
-exact      used if the edge is the reference line, made of lines, arcs and spirals that meet: kept unchanged
-fitted     used otherwise: clothoids through poses one metre apart, except near gaps between elements
-rounded    used if too many elements do not meet for clothoids to be fitted: a spline
+exact      keeps the reference line, if the lane's edge lies on it and its lines, arcs and spirals meet
+fitted     joins poses one metre apart by clothoids; leaves out poses near gaps between elements
+rounded    fits a spline, if too many elements do not meet for clothoids to be fitted
 """
 
 from collections.abc import Iterator

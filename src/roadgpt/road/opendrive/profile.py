@@ -1,8 +1,8 @@
 """Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
 
 The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
-in their order from the inside out; lanes that begin or end with a width of 0 are not joined. In sections
-where a joined lane does not exist, its width is 0.
+in order, beginning with the innermost lanes. A lane that has a width of 0 where two sections meet is not
+joined there. In sections where a joined lane does not exist, its width is 0.
 """
 
 import math
@@ -49,8 +49,8 @@ class LaneMarkings:
 
 @dataclass(frozen=True)
 class FileProfile:
-    """The cross-section that a file describes, over the stations of the file. Left and right are as seen
-    in the driving direction of the driven side.
+    """The cross-section that a file describes, as a function of the station in the file. Left and right are
+    as seen in the driving direction of the driven side.
     """
 
     right: tuple[JoinedLane, ...]
@@ -71,7 +71,7 @@ class FileProfile:
         return [part.node for part in self.right[self.driven].parts]
 
     def carried(self, carry: Carry, turned: Carry) -> Profile:
-        """Returns the cross-section over the stations of the Road.
+        """Returns the cross-section as a function of the station on the Road.
 
         Args:
             carry: Function that converts lane widths from stations of the file to stations of the Road.
@@ -94,7 +94,7 @@ def _plain(width: CubicProfile) -> Width:
 
 
 class WideLane(NamedTuple):
-    """A lane of one section, with its width over the stations of the file."""
+    """A lane of one section, with its width as a function of the station in the file."""
 
     element: LaneElement
     width: list[Row]

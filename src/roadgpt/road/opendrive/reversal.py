@@ -35,7 +35,7 @@ def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
 
 
 def reversed_cubics(profile: CubicProfile, length: float) -> CubicProfile:
-    """Converts cubics of the station to cubics of the distance from the end of a road of this length."""
+    """Converts cubic functions of the station to functions of the distance from the end of the road."""
     stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
     at_ends = shifted(profile.cubics(stations[:-1]), np.diff(stations)) * np.array([1.0, -1.0, 1.0, -1.0])
     rows = [(a, b, c, d) for a, b, c, d in at_ends[::-1].tolist()]
