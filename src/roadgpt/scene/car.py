@@ -1,5 +1,5 @@
-"""The model of the drawn car: a saloon of the simulator's size, with rolling and steering wheels and brake
-lights.
+"""The model of the drawn car: a saloon of the size of the simulated car, with rolling and steering wheels and
+brake lights.
 
 The origin of its coordinates is on the ground below the middle of its length; x points forward, y left, z up;
 metres.
@@ -29,8 +29,9 @@ class Saloon:
     wheel."""
 
     mesh: Mesh
-    """The triangles of the car; the attributes in the mesh are zero; ``placed`` computes them, because
-    they depend on the pose."""
+    """The triangles of the car. Their attributes are zero here, because they depend on the pose; ``placed``
+    computes them.
+    """
     normals: Array
     gloss: Array
     shade: Array

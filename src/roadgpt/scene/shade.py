@@ -84,8 +84,9 @@ def hazy(r: float, g: float, b: float, thin: float, warm: float) -> Colour:
 
 @inlined
 def air(distance: float, toward: float) -> tuple[float, float]:
-    """Returns the arguments ``thin`` and ``warm`` of `hazy` for a distance in metres and for the cosine
-    ``toward`` of the angle between the line of sight and the sun."""
+    """Returns ``thin`` and ``warm`` for `hazy` at a distance in metres; ``toward`` is the cosine of the angle
+    between the line of sight and the sun.
+    """
     d = distance * (1.0 / HAZE)
     toward = max(toward, 0.0)
     return 1.0 / (1.0 + d * (0.9 + 2.2 * d)), 0.10 * toward * toward
@@ -159,7 +160,8 @@ def shade(
 ) -> None:  # fmt: skip
     """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each pixel.
 
-    Haze and resolution change slowly, so they are computed once for BLOCK pixels side by side.
+    Haze and level of detail change slowly within a surface, so they are computed once for BLOCK neighbouring
+    pixels.
 
     Args:
         ids: triangle of each sample, from `raster.draw`.

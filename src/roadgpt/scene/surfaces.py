@@ -1,5 +1,4 @@
-"""Computes the colours of the sky, and of terrain and road before sunlight is applied, in linear light and
-compiled code."""
+"""Computes, in compiled code, the linear colours of the sky, and of terrain and road before they are lit."""
 
 import math
 from typing import NamedTuple
@@ -186,8 +185,9 @@ def road(
     level: float,
     lanes: LaneBoundaries,
 ) -> Colour:
-    """Returns the colour of the carriageway or the shoulder at station s and offset t, which is the point (x,
-    y) in world coordinates."""
+    """Returns the colour of the carriageway or the shoulder at station s and offset t; (x, y) is the same
+    point in world coordinates.
+    """
     beside = max(t - _bound(lanes, s, 0), _bound(lanes, s, lanes.offsets.shape[1] - 1) - t)
     if beside < -0.3 - wide_t:
         return paved(tiles, s, t, wide_s, wide_t, level, lanes)

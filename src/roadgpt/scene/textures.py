@@ -1,4 +1,4 @@
-"""Seeded noise at several resolutions, and the table from linear light to the bytes of a screen."""
+"""Seeded noise at several resolutions, and the table that converts linear light to screen bytes."""
 
 from collections.abc import Callable
 from functools import cache
