@@ -1,8 +1,12 @@
-"""Corrects straights whose measured lengths or grades differ from the required ones.
+"""Writes drafts with parabolas, and corrects straights that are not measured as required. Main function:
+``corrected_draft``.
 
 The parabola that joins the grades of two straights takes up a part of both. A level straight is measured only
 where the road is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls.
-The planner therefore measures a draft, corrects joints and grades by the errors, and measures again.
+So the draft is measured, joints and grades of straights are changed by the errors, and it is measured again.
+
+``design.fit.grades`` does this for the inclines of a road whose plan stands. Here the lengths of straights
+change, which moves the joints between them and leaves the curve of the road as it is.
 """
 
 from collections.abc import Sequence
@@ -12,28 +16,65 @@ from math import ceil, copysign
 import numpy as np
 
 from roadgpt.brief.element import Element
+from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import Range
-from roadgpt.check.measures import MeasuredFeature, Measures, way
-from roadgpt.design.vertical import Pace
+from roadgpt.check.matching import Complaint
+from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.rules.promises import complaints
+from roadgpt.design.advice import TOO_ABRUPT
+from roadgpt.design.elements import cut
+from roadgpt.design.layout import PlanLine
+from roadgpt.design.vertical import Pace, joined, too_abrupt
 from roadgpt.geometry.curve import Array
+from roadgpt.road import Segment
+from roadgpt.road.elevation import elevation_of
 
+CORRECTIONS = 8
 SHORTEST = 4.0  # m that a correction leaves of a straight
 TENTH = 10.0  # per percent
 
 
-def with_vertical_radii(
-    elements: Sequence[Element], pace: Pace, ease: float, bumps: bool = False
-) -> list[Element]:
-    """Returns the elements with vertical radii for consecutive straights.
-
-    Radii are set only if at least one of the consecutive straights has a fixed length.
+def corrected_draft(
+    elements: Sequence[Element],
+    line: PlanLine,
+    outline: Outline,
+    limit: Range,
+    pace: Pace,
+    ease: float,
+    share: float,
+    bumps: bool,
+) -> tuple[tuple[Segment, ...], list[Complaint]]:
+    """Returns the segments of a draft, corrected until nothing is left to correct, and what is wrong.
 
     Args:
-        elements: the elements of a draft, in driving order.
+        elements: the elements of the draft, with inclines.
+        line: their centre line.
+        outline: the requirements for the road.
+        limit: range of inclines that are allowed, in percent.
         pace: the vertical radii that the expected speeds require.
-        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
+        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1, beside
+            straights of fixed length.
+        share: the same elsewhere.
         bumps: True if a crest or a dip was requested, so that the vertical acceleration may reach gravity.
     """
+    ends = np.cumsum([element.length for element in elements])
+    for _ in range(CORRECTIONS):
+        parts = [part for one in _with_radii(elements, pace, ease, bumps) for part in cut(one)]
+        segments = joined(parts, pace, share)
+        heights = elevation_of(segments, 0.0).height(line.s)
+        found = measure(np.stack([line.z.real, line.z.imag, heights], axis=1), outline.widest)
+        if too_abrupt(segments, pace, bumps):
+            broken = [Complaint(TOO_ABRUPT, on_heights=True)]
+        else:
+            broken = complaints(found, outline)
+        before, elements = elements, _corrected(elements, ends, found, limit)
+        if not any(complaint.on_heights for complaint in broken) or elements == before:
+            break
+    return segments, broken
+
+
+def _with_radii(elements: Sequence[Element], pace: Pace, ease: float, bumps: bool) -> list[Element]:
+    """Returns the elements with vertical radii for consecutive straights, if one has a fixed length."""
     out, ends = list(elements), np.cumsum([element.length for element in elements])
     for row in _rows(elements):
         if any(elements[i].has_fixed_length for i in row):
@@ -42,16 +83,11 @@ def with_vertical_radii(
     return out
 
 
-def corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
+def _corrected(elements: Sequence[Element], ends: Array, found: Measures, limit: Range) -> list[Element]:
     """Returns the elements with joints and grades of straights corrected by the measured errors.
 
-    Between two turns, nothing is corrected if the measured straights do not correspond to those of the draft.
-
-    Args:
-        elements: the elements of the draft that was measured, in driving order.
-        ends: station in metres at which each element should end.
-        found: the measured road.
-        limit: range of inclines that are allowed, in percent.
+    Each element should end at its station in ``ends``. Between two turns, nothing is corrected if the
+    measured straights do not correspond to those of the draft.
     """
     out = list(elements)
     if len(found.turns) != sum(bool(element.turn) for element in elements):

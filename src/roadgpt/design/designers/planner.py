@@ -12,27 +12,22 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt import check
-from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.check.matching import Complaint
-from roadgpt.check.measures import measure
-from roadgpt.check.rules.promises import complaints, promises_of
-from roadgpt.design.advice import TOO_ABRUPT, advice, too_fast
+from roadgpt.check.rules.promises import promises_of
+from roadgpt.design.advice import advice, too_fast
 from roadgpt.design.compose import composed
-from roadgpt.design.elements import cut
-from roadgpt.design.grade_correction import corrected, with_vertical_radii
+from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.layout import PlacedPlan, PlanLine, keeps_clear, place, smallest_box, walk
+from roadgpt.design.layout import PlacedPlan, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
-from roadgpt.design.vertical import EASES, Pace, joined, too_abrupt
+from roadgpt.design.vertical import EASES, Pace
 from roadgpt.design.writing import design_at
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, Segment, World, build
-from roadgpt.road.elevation import elevation_of
 
 DRAFTS = 320  # for one road, at most
 ALIKE = 120  # drafts like earlier roads, after which the least similar one is taken
@@ -49,7 +44,6 @@ NO_HASTE = 16  # drafts without haste
 SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its own shoulders
 FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
 SLOWER = (50.0, 30.0)  # km/h, speed limits that may be advised
-CORRECTIONS = 8  # of straights whose measured lengths or grades are wrong
 EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried where a crest or a dip is required
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 
@@ -214,7 +208,9 @@ class _Search:
         for ease, bumps in tries:
             sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
             for share in dict.fromkeys((1.0, ease)):  # what is not required may be comfortable after all
-                segments, broken = self._corrected(drafted.line, sloped, pace, (ease, bumps), share)
+                segments, broken = corrected_draft(
+                    sloped, drafted.line, self.outline, self.windows.limit, pace, ease, share, bumps
+                )
                 if not broken:
                     return segments
                 self.failed[broken[0].sentence] += 1
@@ -222,23 +218,3 @@ class _Search:
                     return None
                 self.failed_on_heights += 1
         return None
-
-    def _corrected(
-        self, line: PlanLine, sloped: list[Element], pace: Pace, narrow: tuple[float, bool], share: float
-    ) -> tuple[tuple[Segment, ...], list[Complaint]]:
-        """Returns the segments of elements, corrected until nothing is left to correct, and what is wrong."""
-        ends = np.cumsum([element.length for element in sloped])
-        for _ in range(CORRECTIONS):
-            parts = [part for one in with_vertical_radii(sloped, pace, *narrow) for part in cut(one)]
-            segments = joined(parts, pace, share)
-            heights = elevation_of(segments, 0.0).height(line.s)
-            points = np.stack([line.z.real, line.z.imag, heights], axis=1)
-            found = measure(points, self.outline.widest)
-            if too_abrupt(segments, pace, self.bumps):
-                broken = [Complaint(TOO_ABRUPT, on_heights=True)]
-            else:
-                broken = complaints(found, self.outline)
-            before, sloped = sloped, corrected(sloped, ends, found, self.windows.limit)
-            if not any(complaint.on_heights for complaint in broken) or sloped == before:
-                break
-        return segments, broken

@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 from math import ceil, floor, radians
 from typing import NamedTuple, Protocol
 
+import numpy as np
+
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import Range
 from roadgpt.design.elements import cut, turn_element
-from roadgpt.design.fit.grades import with_grade
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines
 from roadgpt.design.sequence import both
 from roadgpt.errors import UsageError
 from roadgpt.road import Segment, World
@@ -138,6 +139,23 @@ def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
     return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
+def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
+    """Returns the element with another mean grade, in percent.
+
+    Its inclines are scaled if all of them already climb or fall as the new grade does; otherwise they become
+    equal.
+    """
+    limit = 100 * world.limits.max_grade - 0.2
+    aim = float(np.clip(grade, -limit, limit))
+    inclines = np.array([s.incline for s in element.segments])
+    mean = element.incline
+    if abs(mean) >= 1 and (inclines * np.sign(mean) > 0.5).all() and aim * mean > 0:
+        inclines = np.clip(inclines * aim / mean, -limit, limit)
+    else:
+        inclines = np.full(len(inclines), aim)
+    return element.with_segments(with_inclines(element.segments, inclines))
+
+
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
     """Returns a segment with ``more`` times the angle and ``wider`` times the radius."""
     if not segment.turn_degrees:
@@ -236,13 +254,13 @@ class SlopeOfAll:
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
         limit = 100 * world.limits.max_grade - 0.2
-
-        def sloped(segment: Segment) -> Segment:
-            incline = round(min(max(self.slope(segment.incline), -limit), limit) * TENTH) / TENTH
-            return segment if incline == segment.incline else segment.model_copy(update={"incline": incline})
-
         return tuple(
-            e.with_segments(map(sloped, e.segments)) if e.name in self.names else e for e in elements
+            e.with_segments(
+                with_inclines(e.segments, np.clip([self.slope(s.incline) for s in e.segments], -limit, limit))
+            )
+            if e.name in self.names
+            else e
+            for e in elements
         )
 
 

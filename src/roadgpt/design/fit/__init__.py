@@ -7,7 +7,7 @@ its lengths, turns and radii stay exactly as they are. The road as a whole may b
 it stays inside the map.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, floor, inf, radians
@@ -21,18 +21,16 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.check.matching import fits, turn_complaints
-from roadgpt.check.measures import MeasuredFeature, Measures, measure, way
+from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.check.rules import below_floor, inside_map
 from roadgpt.check.rules.promises import complaints
 from roadgpt.design.fit.grades import graded
 from roadgpt.design.fit.limits import MARGINS, TIGHT, Margins, limits_of
-from roadgpt.design.fit.slopes import CLASSES, sloped
 from roadgpt.design.fit.solver import Aim, PlanPolyline, least_change, polyline_of
 from roadgpt.design.layout import moved_onto_map
 from roadgpt.design.road_elements import (
     RoadElement,
     RoadElements,
-    elements_as_proposed,
     numbered,
     seen_as,
     shows_slopes,
@@ -174,7 +172,7 @@ def fit(
     if requirements.before is None:
         first = look(design, elements, requirements)
     else:
-        first = _on_grades(design, elements, requirements, requirements.before)
+        first = _on_grades(design, elements, requirements)
     free = np.array([element.name not in frozen for element in elements for _ in element.segments])
     if not first.objection or not 1 <= free.sum() <= MOST_SEGMENTS:
         return first
@@ -185,7 +183,8 @@ def fit(
             break
         if requirements.before and segments == last.design.segments:
             continue
-        last = _on_slopes(first, segments)
+        planned = first.design.model_copy(update={"segments": segments})
+        last = _on_grades(planned, first.elements, requirements)
         if not last.objection:
             return last if requirements.before else _restored(last, first)
         if best is None and requirements.before is None and last.keeps_all_but_slopes:
@@ -193,45 +192,10 @@ def fit(
     return best or first
 
 
-def _on_slopes(first: Look, segments: tuple[Segment, ...]) -> Look:
-    """The road of a changed plan, on slopes that are kept where they were not asked to change."""
-    elements, needs = with_segments(first.elements, segments), first.requirements
-    design = first.design.model_copy(update={"segments": segments})
-    if needs.before is not None:
-        return _on_grades(design, elements, needs, needs.before)
-    pieces = list(_of_one_slope(first.elements, needs.brief is None))
-    design = sloped(design, first.design.segments, pieces, needs.outline, needs.world)
+def _on_grades(design: Design, elements: RoadElements, needs: Requirements) -> Look:
+    """Returns the road with grades that are measured as required."""
+    design = graded(design, elements, needs.outline, needs.world, needs.before)
     return look(design, with_segments(elements, design.segments), needs)
-
-
-def _of_one_slope(elements: RoadElements, is_asked_only: bool) -> Iterator[RoadElement]:
-    """Yields the elements; those between turns are cut where they begin to go up, down or level.
-
-    Args:
-        elements: The elements of the road.
-        is_asked_only: Whether a grade that is asked for is written already, and may only not change its way.
-    """
-    for element in elements:
-        grade = element.asked.grade if element.asked else None
-        if element.asked and grade and is_asked_only:
-            now = replace(element.asked, grade=CLASSES[way((grade.lo + grade.hi) / 2)])
-            yield replace(element, asked=now)
-        elif element.is_turn or grade:
-            yield element
-        else:
-            for part in elements_as_proposed(element.segments):
-                yield replace(part, kind="gap", first=element.first + part.first)
-
-
-def _on_grades(design: Design, elements: RoadElements, needs: Requirements, before: Design) -> Look:
-    """The changed road on the first slopes that the rules allow; else on the last that were tried."""
-    now: Look | None = None
-    for sloped_ in graded(design, elements, before, needs.world):
-        now = look(sloped_, with_segments(elements, sloped_.segments), needs)
-        if all(finding.rule != "too_abrupt" for finding in now.findings):
-            break
-    assert now is not None
-    return now
 
 
 def _planned(
