@@ -40,7 +40,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     Action: two numbers from -1 to 1. The first is the angle of the front wheels as a share of full lock (0.62
     rad), left positive; the second is throttle above 0 and brake below.
 
-    Observation ``state``: 24 numbers, see ``roadgpt.gym.observation.LABELS``, each divided by a typical size.
+    Observation ``state``: 24 numbers, see ``roadgpt.gym.observation.LABELS``, each divided by a typical
+    value.
     Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
     Reward of a step: metres gained along the lane, minus 0.1 per metre of distance from the middle of the
@@ -54,11 +55,11 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     itself is ``env.unwrapped.road``.
 
     Args:
-        prompt: one description, or several, from which the seed selects.
+        prompt: one description, or several; the seed then selects one for each episode.
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
-        world: values for fields of ``roadgpt.road.World`` that differ from the defaults, such as
-            ``{"friction": 0.6}``.
+        world: values for fields of ``roadgpt.road.World``, such as ``{"friction": 0.6}``; all other fields
+            keep their defaults.
         camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
         reader: name of the plug-in that reads the descriptions.
 
