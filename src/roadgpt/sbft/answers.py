@@ -1,5 +1,5 @@
-"""Computes results and designs roads for test generators that run in other Python interpreters. Each request
-and each answer is one line of JSON.
+"""Serves test generators that run in other Python interpreters: computes results, and designs roads. Each
+request and each answer is one line of JSON.
 
 The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If RoadGPT
 is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
@@ -90,8 +90,8 @@ _ROADS: list[Iterator[Any]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description. ``asked`` has the description and other settings;
-    environment variables take precedence over it.
+    """Starts a sequence of roads for a description. ``asked`` holds the description and other settings;
+    environment variables override them.
 
     Raises:
         UsageError: a setting is unknown or invalid.

@@ -77,7 +77,7 @@ class Results:
         return test
 
     def describe(self, experiment: Experiment) -> None:
-        """Writes the settings, and the tables of results without any rows."""
+        """Writes the settings, and tables of results in which all counts are 0."""
         self._tally.write(self.folder)
         self._write_card(is_finished=False)
         setup, told = self._request.setup, experiment.model_dump()
@@ -109,7 +109,7 @@ def test_of(run: Run) -> dict[str, Any]:
     """Returns the fields of the competition's file for a test. An invalid test has only the fields up to
     ``id``.
 
-    Heights are shifted to those of the competition's level, whose ground is at -28 m.
+    The heights of the drive are lowered by 28 m: the ground of the competition's level is at -28 m.
     """
     control = np.empty((0, 2)) if run.road is None else run.road.control_points()
     nodes = control if run.road is None else interpolate(control)

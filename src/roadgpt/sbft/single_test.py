@@ -20,7 +20,7 @@ def run_test(points: Any, index: int, request: Request, generating: float, is_te
     Args:
         points: control points ``(n, 2)`` in metres; ignored if ``is_test`` is False.
         index: number of the test.
-        request: the world, setup and seed of the test; its rules must be the competition's.
+        request: the world, setup and seed of the test; the rules in the setup must be the competition's.
         generating: seconds that the generator took to make the test.
         is_test: False if the generator submitted something that is not a test; the Run is then invalid and
             has no road.

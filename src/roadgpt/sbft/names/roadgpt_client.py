@@ -1,4 +1,4 @@
-"""RoadGPT as a test generator for the SBFT tool competition's own Python environment, or for any other.
+"""RoadGPT as a test generator that runs in the SBFT tool competition's Python environment, or in any other.
 
 The competition requires Python below 3.11 and libraries that do not work with RoadGPT, so RoadGPT is
 installed in an environment of its own. The competition's environment needs only this file: it uses the

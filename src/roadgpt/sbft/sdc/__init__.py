@@ -1,5 +1,5 @@
 """Implements a tool for the SDC testing competition, as a service that selects or prioritises roads by their
 predicted risk.
 
-It needs the extra ``roadgpt[sdc]``: import ``roadgpt.sbft.sdc.service``.
+To use it, install the extra ``roadgpt[sdc]`` and import ``roadgpt.sbft.sdc.service``.
 """

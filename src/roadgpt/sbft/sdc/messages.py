@@ -1,8 +1,9 @@
 """Defines the messages of the SDC testing competition's gRPC service; they are those of ``competition.proto``
 in this folder.
 
-The messages are built from a table in a separate descriptor pool. Nothing needs to be compiled, and the
-messages do not conflict with compiled messages of the same names in the same process.
+The message classes are built from a table of their fields, and registered in a descriptor pool of their own.
+Nothing needs to be compiled, and the classes do not conflict with compiled messages of the same names in the
+same process.
 """
 
 from typing import Any

@@ -1,10 +1,10 @@
 """Predicts how likely a road is to make the car leave its lane, from the line that the driver plans.
 
-In the competition, BeamNG's AI drives at risk 1.5 and up to 120 km/h; a test fails if more than half of the
-car is outside its lane. RoadGPT's driver ``beamng_like`` imitates BeamNG's AI. No drive is simulated; only
-the line that this driver plans is computed. The distance between this line and the middle of the lane
-predicts recorded failures at least as well as a simulated drive does (docs/reference/benchmarks.md), and
-computing it takes a fortieth of the time. If outcomes of tests are known, all features are weighted by
+In the competition, BeamNG's AI drives with a risk factor of 1.5 at up to 120 km/h; a test fails if more than
+half of the car is outside its lane. RoadGPT's driver ``beamng_like`` imitates BeamNG's AI. No drive is
+simulated; only the line that this driver plans is computed. The distance between this line and the middle of
+the lane predicts recorded failures at least as well as a simulated drive does (docs/reference/benchmarks.md),
+and computing it takes a fortieth of the time. If outcomes of tests are known, all features are weighted by
 logistic regression; else only this distance is used.
 """
 

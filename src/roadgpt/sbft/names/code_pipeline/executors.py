@@ -50,7 +50,7 @@ for _name in ("__lt__", "__le__", "__gt__", "__ge__", "__sub__", "__rsub__"):
 
 
 class SharedCounter:
-    """A number of tests that all copies of a budget share."""
+    """A counter of tests that all copies of a budget share."""
 
     tests = 0
 

@@ -41,7 +41,7 @@ class RoadTestEvaluator:
         Returns:
             Six values: the point where the car left its lane; the road before that point; the road after it;
             the side on which the car left ("LEFT" or "RIGHT"); the index of the first record outside the
-            lane; and the records before that one, from where the car entered the returned piece of road. All
+            lane; and the records before it, beginning where the car entered the returned piece of road. All
             six are None if the car did not leave its lane.
 
         Raises:

@@ -73,9 +73,8 @@ class RoadTestFactory:
 
         def get_road_length(self, interpolate_road_points: bool = False) -> float:
             """Returns the road's length in metres along its interpolated points. If
-            ``interpolate_road_points`` is true, these points are interpolated a second time before, as the
-            competition's validator does.
-            """
+            ``interpolate_road_points`` is true, these points are first interpolated again, as in the
+            competition's validator."""
             nodes = [node[:2] for node in self.interpolated_points]
             if interpolate_road_points:
                 nodes = nodes_of(nodes)

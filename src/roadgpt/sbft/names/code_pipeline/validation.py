@@ -48,13 +48,14 @@ def smallest_circle(nodes: Sequence[Sequence[float]], w: int) -> float:
 
 
 def min_radius(x: Sequence[Sequence[float]], w: int = 5) -> float:
-    """Returns the smallest radius of curvature of the nodes, in feet; 0 if no circle is found."""
+    """Returns the smallest radius of curvature of the nodes, in feet; 0 if the nodes are collinear or too
+    few."""
     radius = smallest_circle(x, w)
     return 0.0 if radius == math.inf else radius * FEET_PER_METRE
 
 
 class TestValidator:
-    """Validates tests as the competition's validator does, and reproduces its errors."""
+    """Validates tests as the competition's validator does, including its bugs."""
 
     __test__ = False  # pytest is not to collect it, for all its name
 

@@ -2,6 +2,6 @@
 Python 3.8.
 
 The generator's interpreter may lack the libraries that RoadGPT needs. So whatever needs more than the
-standard library is requested from RoadGPT, which runs in the generator's interpreter if it is installed
-there, else in an interpreter of its own.
+standard library is requested from RoadGPT. RoadGPT runs in the generator's interpreter if it is installed
+there, else in its own interpreter.
 """

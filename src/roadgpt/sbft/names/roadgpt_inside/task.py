@@ -2,7 +2,7 @@
 reports how the generator ended.
 
 ``roadgpt.sbft.generator_process`` starts it. Messages to and from RoadGPT go through standard input and
-output. What the generator prints goes to standard error, which is written to its log.
+output. What the generator prints goes to standard error, which is written to the generator's log.
 """
 
 from __future__ import annotations

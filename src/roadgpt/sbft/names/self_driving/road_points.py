@@ -13,9 +13,8 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """The nodes of a road's centre line and its edge points. The edge points of a node lie perpendicular
-    to the direction towards the next node.
-    """
+    """The nodes of a road's centre line and its edge points. The edge points of a node lie to its left and
+    right, at right angles to the direction of the next node."""
 
     def __init__(self) -> None:
         """Makes a road without nodes."""

@@ -1,6 +1,5 @@
-"""Imports the class that reads a car's state from a checkout of the competition's code. RoadGPT has no
-such class, because it needs BeamNG.
-"""
+"""Defines VehicleState, the state of a car. The class that reads it needs BeamNG, so it is imported from a
+checkout of the competition's code."""
 
 from __future__ import annotations
 
