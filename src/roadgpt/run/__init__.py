@@ -146,8 +146,9 @@ def prove(
         setup: the Setup, which names the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         brief: the requirements that the road has to meet; None if there are no requirements.
-        despite_findings: whether to drive a road that breaks rules, as roads of real maps often do, unless it
-            is physically impossible to drive. The Run then has both the findings and the verdict.
+        despite_findings: whether to drive a road that breaks rules, as roads of real maps often do. The Run
+            then has both the findings and the verdict. A road that is physically impossible to drive is never
+            driven.
 
     Raises:
         UsageError: a plug-in is not installed, or the driver's file does not define a driver.

@@ -109,13 +109,12 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def missing(folder: Path) -> tuple[Path, ...]:
-    """Returns the folders that do not exist yet among the folder and its parent folders, the innermost
-    first."""
+    """Returns the folders that must be created so that ``folder`` exists, the innermost first."""
     return tuple(path for path in (folder, *folder.parents) if not path.exists())
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes the files, and then each of the folders that is empty after that."""
+    """Removes the files, and then those of the folders that are empty."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()

@@ -111,7 +111,7 @@ def write_edit(
 
     Args:
         run: the Run of the changed road.
-        before: the Run of the original road, which has no drive.
+        before: the Run of the original road; this Run has no drive.
         words: the change request in words.
         changes: sentences that describe the changes made.
         source: the path of the original road.

@@ -36,7 +36,8 @@ class Exporting:
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
-    """Is called with a message if a format cannot hold a road; only this one file is then missing."""
+    """A function that is called with a message if a format cannot hold a road. Only that file is then
+    missing."""
     draw: Draw | None = None
 
     def of_run(self, run: Run, folder: Path) -> None:

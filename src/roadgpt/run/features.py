@@ -1,7 +1,7 @@
 """Computes the features that span the SBFT competition's feature map of tests: two features of the road, and
 three of the drive.
 
-    MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last window is left out
+    MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last triple is left out
     DIR_COV    share of directions that occur: angles to north, in 25 bins from 0 to 360 degrees
     STD_SA     degrees: standard deviation of the steering wheel's angle
     MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
@@ -41,13 +41,14 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
 
 
 def max_curvature(plan: NDArray[np.float64]) -> float:
-    """Returns the largest curvature, 1/m, of points ``(n, 2)``; 0 on a line and for fewer than six points."""
+    """Returns the largest curvature of points ``(n, 2)``, in 1/m; 0 for collinear or fewer than six
+    points."""
     return float((1 / radii(plan)).max(initial=0.0))
 
 
 def direction_coverage(plan: NDArray[np.float64], bins: int = BINS) -> float:
-    """Returns the number of direction bins that points ``(n, 2)`` use, divided by the number of bin edges,
-    ``bins`` + 1."""
+    """Returns the number of bins that contain the direction of a step between points ``(n, 2)``, divided by
+    the number of bin edges, ``bins`` + 1."""
     step = np.diff(plan, axis=0)
     length = np.sqrt((step**2).sum(axis=1))
     moves = length > 0

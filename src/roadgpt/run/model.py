@@ -38,10 +38,10 @@ class Setup(Frozen):
     """
 
     def came_with(self, file: object) -> Self:
-        """Returns the Setup, marked as read from a file of unknown origin: its driver, and the server of its
-        language model, need the user's permission.
+        """Returns the Setup, marked as read from a file of unknown origin. The driver and the language
+        model's server then need the user's permission.
 
-        See ``roadgpt.provenance``. A driver needs no permission if the user has named its file as well.
+        See ``roadgpt.provenance``. A driver needs no permission if the user has also named its file.
         """
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)
@@ -93,7 +93,7 @@ class Run:
     index: int
     """Number of the road in its campaign, from 1."""
     seed: int
-    """The road's own seed, derived from the campaign's seed; an existing road that is only driven has the
+    """The road's own seed, derived from the campaign's seed; for an existing road that is only driven, the
     campaign's seed."""
     outcome: Outcome = "VALID"
     description: str = "valid, not driven"
@@ -135,7 +135,7 @@ class Run:
 
     @property
     def world(self) -> World:
-        """The map, the limits of the rules, and the surface."""
+        """The map, the friction, the default lanes, and the limits of the rules."""
         return self.request.world
 
     @property

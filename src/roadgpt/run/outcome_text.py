@@ -1,5 +1,4 @@
-"""Describes the outcome of a drive in one sentence, and adds how the drive ended if the car drove on after
-it had left its lane."""
+"""Describes the outcome of a drive in one sentence."""
 
 from roadgpt.drive import Drive
 from roadgpt.verdict import Verdict
@@ -13,8 +12,8 @@ WENT_ON = {
 
 
 def outcome_sentence(verdict: Verdict, drive: Drive) -> str:
-    """Returns the verdict's sentence; if the car drove on after a lane departure, adds how its drive
-    ended."""
+    """Returns the verdict's sentence. If the car drove on after it left its lane, the sentence also says how
+    the drive ended."""
     if verdict.cause != "out of lane" or drive.ended not in WENT_ON:
         return verdict.description
     return f"{verdict.description}, {WENT_ON[drive.ended]} after {drive['s'][-1]:.0f} m"

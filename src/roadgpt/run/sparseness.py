@@ -3,8 +3,8 @@
 Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane,
 as a sequence of steps (change of direction, length). The difference between two failures is the weighted
 Levenshtein distance between their sequences: deleting or inserting a step costs 1, and substituting a step
-costs (da / (1 + da) + dl / (1 + dl)) / 2 with da in degrees and dl in metres, or nothing if da < 0.3 and dl <
-0.2.
+costs (da / (1 + da) + dl / (1 + dl)) / 2, where da (degrees) and dl (metres) are the differences between the
+two steps. It costs nothing if da < 0.3 and dl < 0.2.
 
 Source: the competition's tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so
 that the competition's tools give the same figures for RoadGPT's files:
@@ -13,7 +13,7 @@ that the competition's tools give the same figures for RoadGPT's files:
   failure has no such distance and is left out;
 * a failure whose segment cannot be cut out (its road has fewer than four control points, or the car left its
   lane at the very start) counts as a failure to the right, and is left out of sparseness;
-* the interpolated road is interpolated once more, so the segment's ends are at 30 m to within 1 m.
+* the interpolated road is interpolated once more, so the 30 m are accurate only to 1 m.
 """
 
 import math

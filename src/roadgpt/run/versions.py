@@ -1,4 +1,4 @@
-"""Lists the software versions that a Run was made with, to explain later differences."""
+"""Lists the software versions that a Run was made with, so that differences between Runs can be explained."""
 
 import platform
 from functools import cache
