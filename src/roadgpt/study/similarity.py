@@ -5,9 +5,9 @@
                 and straights, and n is the length of the longer sequence
     direction   the same as sequence, with left and right turns only
     length      the shorter length in plan divided by the longer one
-    incline     1 for equal grades; each 2 percentage points of mean difference in grade halve the value;
+    incline     1 for equal grades; each 2 percentage points of mean difference in grade halves the value;
                 compared at equal fractions of each road's length
-    shape       1 for equal plans; each 5.5 m of distance (root mean square) between the plans halve the
+    shape       1 for equal plans; each 5.5 m of distance (root mean square) between the plans halves the
                 value; compared at equal fractions of each road's length after the best shift and rotation
     general     the mean of these six
 

@@ -239,8 +239,8 @@ def trend(successes: Sequence[int], totals: Sequence[int]) -> Trend:
     """Returns Cochran and Armitage's test for a trend in the success rate from group to group.
 
     z is r * sqrt(n - 1), where n is the number of all trials, and r is the correlation between the success of
-    a trial (0 or 1) and the number of its group. The variance is computed for fixed totals: the numbers of
-    all successes and of trials in each group.
+    a trial (0 or 1) and the number of its group. The variance is computed with the total number of successes
+    and the number of trials in each group held fixed.
 
     Args:
         successes: number of successes in each group.

@@ -1,8 +1,8 @@
 """Reads a truth: the requirements of a description, which people wrote down before they saw a road.
 
 The keys and their meaning are those of the project's referee, an independent judge of roads; tests compare
-``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys. A truth is
-checked as an Outline, as the requirements are that a reader finds.
+``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys. For the
+check, a truth is converted to an Outline, the form of the requirements that a reader finds.
 """
 
 from dataclasses import replace
@@ -86,7 +86,7 @@ class Truth(Frozen):
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
-    """Number of changes between uphill and downhill; a single number is a lower bound."""
+    """Number of changes between uphill and downhill; one number instead of a range is a lower bound."""
     min_radius: Bounds | None = None
     """Smallest radius of the road, metres."""
     turning: Bounds | None = None
@@ -99,8 +99,9 @@ class Truth(Frozen):
     def outline(self, *keys: str) -> Outline:
         """Returns the requirements of these keys, or of all keys if none is named, as an Outline.
 
-        A sequence names all turns of the road. The slack makes "no turn" a little more than 0, which says
-        nothing of how much a straight road may bend: 'turning' does.
+        The key ``sequence`` names all turns of the road, so it also sets their number. An Outline with
+        exactly 0 turns requires a straight road. A truth with 0 turns does not, because SLACK widens the
+        range; its key ``turning`` limits how much the road bends.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:

@@ -39,8 +39,8 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns the road pairs of every campaign cell that have the smallest distances. A pair is a road
-    that passed and a road that failed; ``campaign.boundary_pairs`` defines their distance."""
+    """Returns, for every campaign cell, the pairs of roads with the smallest distances. A pair is a road that
+    passed and a road that failed; ``campaign.boundary_pairs`` defines their distance."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))
@@ -51,8 +51,8 @@ def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
 
 
 def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """Returns a sentence for the summary on the two roads with the smallest distance; empty if there is no
-    pair."""
+    """Returns a sentence about the two roads with the smallest distance, for the summary; empty if there is
+    no pair."""
     if not pairs:
         return []
     best = min(pairs, key=lambda side: side.pair.distance)

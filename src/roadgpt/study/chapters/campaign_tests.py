@@ -25,7 +25,8 @@ MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is i
 def failures(
     folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
 ) -> list[Block]:
-    """Returns a chart of the failures found over time, a table of causes, and a table of single failures.
+    """Returns a chart of failures over the number of tests, a table of causes, and a table of single
+    failures.
 
     The last table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
     worse than another, and the table lists the first failures.
@@ -128,7 +129,8 @@ def _causes(record: Record, drives_on: bool) -> Table:
 
 
 def margins(record: Record, drives_on: bool = False) -> Figure:
-    """Returns a histogram of the margins of all tests, in metres; a margin is negative if the car failed."""
+    """Returns a histogram of the margins (smallest distances to out of bounds) of all tests, in metres. A
+    margin is negative if the car failed."""
     low, high, width = MARGINS
     n = round((high - low) / width)
     found: Mapping[int, int] = dict(

@@ -15,8 +15,8 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """The passed tests of one severity: their number, and the largest extent to which the car was outside
-    its lane."""
+    """The passed tests of one severity, such as "partly outside": their number, and the largest extent to
+    which the car was outside its lane."""
 
     severity: Severity
     tests: int

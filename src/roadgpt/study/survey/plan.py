@@ -55,7 +55,7 @@ class PairPlan(Frozen):
 
 
 class AboutPlan(Frozen):
-    """A question about the rater, which replaces the standard questions."""
+    """A question about the rater. The questions of a plan replace the standard ones."""
 
     text: Words
     answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]
@@ -79,7 +79,7 @@ class SurveyPlan(Frozen):
 
     @property
     def said_purpose(self) -> str:
-        """The text on the purpose of the survey that raters read."""
+        """The text that raters read about the purpose of the survey."""
         if self.purpose:
             return self.purpose
         minutes = round(PER_PAGE * (len(self.alignment) + len(self.similarity)) + 2)

@@ -1,4 +1,5 @@
-"""Draws stacked bars of ratings and bars of the answers about the raters, for the report and for papers.
+"""Draws bar charts of ratings, and of the answers to questions about the raters, for the report and for
+papers.
 
 A bar of ratings shows all answers about one road in one criterion. The middle of the third answer is at 0, so
 the part of the bar to the right of 0 is in favour of the road.

@@ -1,4 +1,4 @@
-"""Serves a survey with uvicorn, and adds limits on connections that uvicorn lacks."""
+"""Serves a survey with uvicorn, with more limits on connections than uvicorn has."""
 
 import logging
 import socket
@@ -48,7 +48,7 @@ class LimitedConnection(H11Protocol):
         self._watch()
 
     def on_response_complete(self) -> None:
-        """Starts the time limit for the next request after a response is complete."""
+        """After a response is complete, starts the time limit for the next request."""
         self._stop("request")
         super().on_response_complete()
         self._watch()
