@@ -5,9 +5,9 @@
     INVALID        <skipped>: the road breaks a rule, so it was not driven
     ERROR          <error>: a driver or simulator failed, or no road could be designed
 
-There is no standard; the file has the elements that Jenkins, GitLab, GitHub, Azure and CircleCI read: suites
-with counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and cases.
-Source: the documentation of the common format, https://github.com/testmoapp/junitxml.
+JUnit XML has no standard; the file has the elements that Jenkins, GitLab, GitHub, Azure and CircleCI read:
+suites with counts, cases with ``name``, ``classname``, ``time`` and ``file``, and properties of suites and
+cases. Source: the documentation of the common format, https://github.com/testmoapp/junitxml.
 """
 
 import os

@@ -44,8 +44,8 @@ class CommonRoad:
 def document(road: Road, world: World) -> XmlElement:
     """Returns the XML document: lanelets, traffic sign and planning problem.
 
-    Lanelets are numbered lane by lane: first the lanes along the road from the centre line outwards, then
-    those against it.
+    Lanelets are numbered lane by lane: first the lanes in the direction of the road, from the centre line
+    outwards, then the oncoming lanes.
 
     Raises:
         ExportError: The road has a number that is not finite.

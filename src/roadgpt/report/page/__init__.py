@@ -1,6 +1,6 @@
 """Writes reports on many roads as one self-contained HTML file, and as Markdown, CSV and LaTeX.
 
-A Page holds a summary of a few lines, sections of text, tables and figures, and how the report was made.
+A Page holds a short summary, sections with text, tables and figures, and information on how it was made.
 ``write`` writes it into a folder:
 
     report.html            the page, without scripts and network access; printable, light and dark

@@ -66,7 +66,7 @@ class Strip:
     is_dashed: bool = False
     """Whether a painted line is dashed. Dashes and gaps are as long as in exported OpenDRIVE files."""
     normals: Array | None = None
-    """Unit vectors ``(n, 3)`` at right angles to a banked mesh, upwards; None for a level cross-section."""
+    """Upward unit normals ``(n, 3)`` of a banked mesh; None for a level cross-section."""
     is_one_way: bool = False
     """Whether the road has no oncoming lanes; only set for the decal road that BeamNG's AI follows."""
 

@@ -1,4 +1,4 @@
-"""Writes the cross-section of a road: all lanes with widths by station and markings, and the superelevation.
+"""Writes the cross-section of a road: all lanes with their widths and markings, and the superelevation.
 
 id     2     |    1    |    -1    |    -2          a road with one lane in each direction
     shoulder | against |  along   | shoulder
