@@ -79,8 +79,8 @@ class Simulator(Protocol):
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
-            SimulatorError: the simulator itself failed. After three such failures in a row, commands stop
-                using the simulator.
+            SimulatorError: the simulator itself failed. After three such failures in a row, it is not used
+                any more.
             SimulationError: the physics became unstable.
         """
         ...

@@ -2,7 +2,7 @@
 
 Between two samples, the distance must not exceed what a car can do, plus some slack:
 
-    way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger of both samples, at most FASTEST
+    way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger speed of the two samples, at most FASTEST
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ FAILED = ", so the simulation failed, which says nothing about the driver; drive
 
 
 def check_motion(drive: Drive) -> None:
-    """Checks that a car can move in the way that the recorded positions and speeds of a drive describe.
+    """Checks that the recorded positions and speeds of a drive are possible for a car.
 
     Raises:
         SimulationError: a position or a speed is not a finite number, the car jumped, or its motion does not

@@ -1,4 +1,4 @@
-"""Decides when a drive is over, from the state of the car at every control step, for every simulator."""
+"""Decides for all simulators when a drive is over, from the state of the car at every control step."""
 
 import math
 from typing import TYPE_CHECKING
@@ -55,7 +55,7 @@ class DriveMonitor:
         from the first on.
 
         Args:
-            row: the state of the car, in the order of COLUMNS; its time is not read.
+            row: the state of the car, in the order of COLUMNS; the column ``time`` is not used.
             time: seconds since the start.
             has_fallen: whether the car has fallen off the road.
 

@@ -1,4 +1,4 @@
-"""Calls a driver with time limits and checks its answers, for every simulator.
+"""Calls drivers for all simulators: limits their time and checks their answers.
 
 All errors of a driver are raised as DriverError. A driver that hangs is stopped in one of two ways:
 

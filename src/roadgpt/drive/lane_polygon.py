@@ -38,17 +38,18 @@ class LanePolygon(NamedTuple):
         return cls(edges, road.length / count)
 
     def outside(self, corners: FloatArray, s: float) -> float:
-        """Returns which share, 0..1, of the area of a box is outside the lane. The box is given by its
-        four corners, shape (4, 2), counter-clockwise. Only the section of the lane near station s is
-        considered."""
+        """Returns the share of a box's area that is outside the lane, 0..1. The box is given by its four
+        corners, shape (4, 2), counter-clockwise. Only the section of the lane near station s is considered.
+        """
         box = np.ascontiguousarray(corners, dtype=np.float64)
         return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
 
 
 @compiled
 def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
-    """Returns which share of the area of the convex box is outside the strip; ``scratch`` is working
-    memory of shape (2, 16, 2)."""
+    """Returns the share of the convex box's area that is outside the strip; ``scratch`` is working memory of
+    shape (2, 16, 2).
+    """
     whole = 0.0
     mid_x = 0.25 * (box[0, 0] + box[1, 0] + box[2, 0] + box[3, 0])
     mid_y = 0.25 * (box[0, 1] + box[1, 1] + box[2, 1] + box[3, 1])

@@ -18,9 +18,9 @@ from roadgpt.errors import UsageError
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
-    A driver's file is run only if the user has named it or agrees; that a run, a campaign or a plan names it
-    is not enough (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a process
-    of its own.
+    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
+    a plan names it (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a
+    process of its own.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

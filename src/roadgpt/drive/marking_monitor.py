@@ -3,7 +3,7 @@ r"""Computes how far a car reaches beyond the outer edges of the markings on bot
     left                    right          Positive beyond, negative inside, in metres across the
 |    ¦ ¦      lane           |¦            lane. Measured at the outer edges of the front tyres where
 |    ¦ ¦  <- the car ->      |¦            they stand on the road, or along both sides of the body's
-     ¦ ¦                     |¦            underside, which pitch and roll turn with the car.
+     ¦ ¦                     |¦            underside, with the car's pitch and roll applied.
        ^ outer edge            ^ outer edge
 """
 

@@ -60,10 +60,10 @@ def require_permission(spec: str) -> None:
 
 
 def check_named_driver(spec: str | None, drivers: set[str], place: object) -> None:
-    """Checks that the driver of the option ``--driver`` is one of the drivers used in this folder.
+    """Checks that the driver given with ``--driver`` is one of the drivers used in the run or campaign.
 
     Raises:
-        UsageError: the driver is not used in this folder.
+        UsageError: the driver is not used there.
     """
     if spec is not None and spec not in drivers:
         told = ", ".join(sorted(drivers)) or "nobody"

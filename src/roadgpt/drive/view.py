@@ -32,7 +32,8 @@ class View(NamedTuple):
     t: float
     """Offset of the car in metres to the left of the centre line; the middle of its lane is
     ``world.profile_of(road).middle(s)``. On a road with superelevation it is measured along the surface, to
-    the point at a right angle below the centre of gravity."""
+    the foot of the perpendicular from the centre of gravity.
+    """
     road: "Road"
     world: "World"
     steer: float

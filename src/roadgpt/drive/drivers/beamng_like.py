@@ -44,8 +44,8 @@ class BeamngLike:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
         sharpness: curvature in 1/m at which the shift is 76 % of ``cut``.
         aside: constant shift of the line to the right of the lane's middle, in metres.
-        joining: distance from the road's start, in metres, over which it moves from the lane's middle to its
-            line.
+        joining: distance from the road's start, in metres, over which the driver moves from the lane's middle
+            to its planned line.
         eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
         risk: lateral acceleration in bends, in g (BeamNG's AI at aggression 0.7 reaches 0.64); at most 0.95
             of the friction is used.
@@ -55,9 +55,9 @@ class BeamngLike:
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
         edge_room: distance in metres that the right wheels keep from the right edge of the carriageway where
-            it has no shoulder (a floating mesh road), and on a one-way road the left wheels from the left
-            edge; with None the driver ignores the edges and may fall off.
-        assumed_friction: friction that it plans for; None for the friction of the world.
+            there is no shoulder (a floating mesh road). On a one-way road, the left wheels also keep it from
+            the left edge. With None the driver ignores the edges and may fall off.
+        assumed_friction: friction that the driver plans for; None for the friction of the world.
         wheelbase: wheelbase in metres.
     """
 

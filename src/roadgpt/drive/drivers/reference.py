@@ -34,7 +34,7 @@ class Reference:
         gain: steering angle per lateral error at the point ahead, in rad per metre.
         ahead: distance in metres to the point ahead when the car stands; at speed it is ``ahead + headway *
             speed``.
-        headway: increase of this distance with speed, in metres per m/s; see ``ahead``.
+        headway: increase of the distance ``ahead`` with speed, in metres per m/s.
         lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
             delay.
     """

@@ -65,8 +65,7 @@ class DriverProcess:
             and ``trace``.
 
         Raises:
-            GoneError: the process ended, or did not answer within ``seconds``; in the second case it is
-                ended.
+            GoneError: the process ended, or was ended because it did not answer within ``seconds``.
         """
         self._due = time.monotonic() + seconds
         try:
@@ -83,7 +82,7 @@ class DriverProcess:
         return answer
 
     def forget(self) -> None:
-        """Makes the process discard its driver; does not wait for that."""
+        """Makes the process discard its driver, without waiting until it has done so."""
         with suppress(OSError):
             protocol.send(self._down, pickle.dumps(("forget",)))
 

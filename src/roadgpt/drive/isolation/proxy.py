@@ -28,8 +28,8 @@ def driver_of(spec: str, limit: float = BEFORE_START) -> Any:
     """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
     separate process.
 
-    A driver's file is run only if the user has named it or agrees; that a run, a campaign or a plan names it
-    is not enough (see ``drive.permission``).
+    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
+    a plan names it (see ``drive.permission``).
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

@@ -1,8 +1,8 @@
 """Lists which versions of BeamNG.tech and beamngpy work together, and gives advice for versions that do not.
 
 BeamNG and beamngpy each send a protocol version in their first message, and beamngpy continues only if both
-are the same. RoadGPT therefore drives with every two versions that pass this check, and logs a warning if it
-has not been tested with the installed beamngpy.
+are the same. RoadGPT therefore drives with every pair of versions that passes this check, and logs a warning
+if it has not been tested with the installed beamngpy.
 
 Sources: BeamNGpy 1.36's compatibility page for the versions, and the source code of BeamNGpy's releases for
 the protocols.

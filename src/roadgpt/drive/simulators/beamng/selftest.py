@@ -1,5 +1,5 @@
-"""Runs checks against a real BeamNG and reports the results. They are needed because RoadGPT was developed
-without a licence for BeamNG.
+"""Runs checks against a real BeamNG and reports the results. The checks are needed because RoadGPT was
+developed without a licence for BeamNG.
 
 The result of each check is a sentence with figures. The checks answer the questions that BeamNG's
 documentation leaves open: whether the AI finds roads of prefabs, whether decals lie correctly on slopes, how

@@ -1,7 +1,7 @@
-"""Reads the settings of BeamNG from environment variables; the command line stores its options there as well.
+"""Reads the settings of BeamNG from environment variables. RoadGPT also stores its command-line options
+there, so that worker processes get the same settings.
 
-Each field is read from ``ROADGPT_BEAMNG_`` plus its name in capitals, so that worker processes get the same
-settings.
+The variable of a field is ``ROADGPT_BEAMNG_`` plus its name in capitals, such as ROADGPT_BEAMNG_PORT.
 """
 
 import os

@@ -169,8 +169,7 @@ def car_sample(
     since: CarSample | None,
     time: float,
 ) -> CarSample:
-    """Converts a state as BeamNG reports it to a sample at the centre of gravity; ``since`` is the previous
-    sample."""
+    """Converts the car's state as BeamNG reports it to a CarSample; ``since`` is the previous sample."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame

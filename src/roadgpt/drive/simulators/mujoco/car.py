@@ -106,7 +106,7 @@ class Axle:
 
 @dataclass(frozen=True)
 class Car:
-    """All parameters of a car that its motion depends on."""
+    """All parameters that determine how a car moves."""
 
     front: Axle
     rear: Axle

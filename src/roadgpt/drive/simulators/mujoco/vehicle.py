@@ -1,4 +1,4 @@
-"""A car on a road or on a plane that can be moved step by step."""
+"""A car that can be moved step by step, on a road or on a plane."""
 
 import math
 from typing import TYPE_CHECKING, Any
@@ -59,17 +59,17 @@ class Vehicle:
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
-        """Returns a car on a road with its lanes and shoulders, and the friction of the world."""
+        """Returns a car on a road, with the road's lanes and shoulders and the world's friction."""
         sampled, profile = sample_road(road), world.profile_of(road)
         rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
         return cls(car, Ground(sampled, rims, profile.reach, world.site.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
-        """Places the car on its springs at station s and offset t, facing along the road, and starts the
-        clock.
+        """Places the car at station s and offset t, facing along the road, and sets its clock to 0.
 
-        A standing car has its brakes applied, and settles first; a moving one rolls freely.
+        If ``speed`` is 0, the brakes are applied and the car settles on its springs first. Otherwise it rolls
+        freely.
         """
         car, data = self.car, self._data
         mujoco.mj_resetData(self._model, data)
@@ -145,7 +145,7 @@ class Vehicle:
 
 def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: Car = ETK_LIKE) -> Vehicle:
     """Returns a car in the middle of a plane that climbs along x, for manoeuvres that need more space than a
-    road.
+    road has.
 
     The plane is one endless lane, so the car is never outside.
     """
