@@ -42,13 +42,11 @@ class LateralExtent(NamedTuple):
     It is corrected for the curvature of the lane under the box.
     """
     long: FloatArray
-    """Projections of the box's length and width across the lane: half of the larger one in metres;
+    """Half of the larger of two projections across the lane, of the box's length and of its width, in metres;
     ``(n,)``.
     """
     short: FloatArray
-    """Projections of the box's length and width across the lane: half of the smaller one in metres;
-    ``(n,)``.
-    """
+    """Half of the smaller of these two projections in metres; ``(n,)``."""
 
 
 def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
@@ -66,10 +64,10 @@ def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
 
 
 def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
-    """Returns the offset of the box's middle from the lane's edge at which the car is about to fail.
+    """Returns how far beyond the lane's edge the middle of the box may be before the car fails.
 
-    The offset is in metres, positive outwards. At this offset, the share of the box outside the lane equals
-    ``tolerance`` (0 to 1).
+    The distance is in metres, positive outwards. At this distance, the share of the box outside the lane
+    equals ``tolerance`` (0 to 1).
     """
     tail = min(tolerance, 1 - tolerance)
     a, b = box.long, box.short
@@ -82,7 +80,9 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
 def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     """Returns the margin in metres at every step of a drive, shape ``(n,)``.
 
-    It is negative exactly where the car is out of its lane or off the ground."""
+    It is negative exactly where the car is out of its lane, and 0 where it is in its lane but extends beyond
+    carriageway and shoulder.
+    """
     box = lateral_extent(road, drive)
     s, profile = drive["s"], world.profile_of(road)
     half, middle, rims = profile.width(s) / 2, profile.middle(s), profile.rims(s)

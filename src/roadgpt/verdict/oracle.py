@@ -17,7 +17,7 @@ ROUNDING = 1e-3  # m, error of the poses in a stored drive, which are rounded
 
 
 class Oracle(NamedTuple):
-    """The out-of-bounds values of a drive, as arrays of shape ``(n,)`` with one value per step."""
+    """How far the car was out of its lane during a drive: arrays of shape ``(n,)``, one value per step."""
 
     is_oob: NDArray[np.bool_]
     """Whether the car is out of its lane, as ``is_outside`` defines it.
