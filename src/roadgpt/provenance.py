@@ -1,10 +1,9 @@
-"""Records whether drivers and servers were named by the user or only by a file. A driver or server is
-trusted only if the user named it, because somebody else may have made a run, a campaign, a plan or a
-folder. Code that reads such a file records the drivers and servers that the file names
-(``add_from_file``). Code that reads the user's options records those that the user names
-(``add_from_user``). Before the code of a driver is run, or a key is sent to a server, ``untrusted_file``
-tells whether it was named only by a file. If the user's own Python program names a driver or server, no
-file is recorded for it, so it is trusted.
+"""Records whether drivers and servers were named by the user or only by a file. A driver or server is trusted
+only if the user named it, because a run, a campaign, a plan or a folder may come from somebody else. Code
+that reads such a file records the drivers and servers that the file names (``add_from_file``). Code that
+reads the user's options records those that the user names (``add_from_user``). Before the code of a driver is
+run, or a key is sent to a server, ``untrusted_file`` tells whether it was named only by a file. If the user's
+own Python program names a driver or server, no file is recorded for it, so it is trusted.
 """
 
 from collections.abc import Callable

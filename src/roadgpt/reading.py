@@ -87,8 +87,8 @@ def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
     Raises:
         OSError: The file does not exist or may not be read.
         UsageError: The path is not a regular file, or the file is too large.
-        ValueError: The file is not JSON, is nested too deeply, or holds a number too large for a machine
-            number.
+        ValueError: The file is not JSON, has too many elements, is nested too deeply, or holds a number with
+            too many digits.
     """
     return json_of(read_text(path, most, what))
 
