@@ -1,6 +1,7 @@
 """Makes Designs from Briefs. Main function: ``draft``.
 
-A designer is a class that takes no arguments, or ChatSettings as ``settings``. Its objects have one method:
+A designer is a class. It is called without arguments, or with ChatSettings if it has a parameter
+``settings``. Its objects have one method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 

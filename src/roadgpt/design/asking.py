@@ -43,7 +43,7 @@ def rules(name: str, world: World) -> str:
 
 
 def words_of(brief: Brief) -> str:
-    """Returns the first 2000 characters of the description or, if there is none, a sentence for the
+    """Returns the first 2000 characters of the description or, if there is none, a sentence that states the
     Brief.
     """
     return brief.words.strip()[:MOST_WORDS] or sentence(brief)

@@ -241,8 +241,8 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the design length in metres of a straight that must be measured as at least ``least``
-    metres.
+    """Returns the length in metres at which a straight is designed so that at least ``least`` metres are
+    measured.
     """
     return 1.05 * least + 3.0
 

@@ -27,8 +27,7 @@ SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn 
 def turn_element(
     angle: float, hand: int, radius: float, transition: float, required_grade: Range | None = None
 ) -> Element:
-    """Returns a turn with its numbers rounded as they will be written, and its transitions short enough for
-    its arc.
+    """Returns a turn with its numbers rounded as in files, and its transitions short enough for its arc.
 
     Args:
         angle: change of heading in degrees, positive.
@@ -56,7 +55,7 @@ def least_radius(world: World) -> float:
 
 
 def as_written(element: Element) -> Element:
-    """Returns the element with its length, angle, radius and transition rounded as they will be written."""
+    """Returns the element with its length, angle, radius and transition rounded as in files."""
     if not element.turn:
         return element._replace(straight=max(element.straight, SHORTEST))
     hand = 1 if element.turn > 0 else -1

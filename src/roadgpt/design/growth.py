@@ -236,7 +236,7 @@ def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
 
 
 def is_long(outline: Outline) -> bool:
-    """Returns whether the road is 700 m or longer and may have any number of turns."""
+    """Returns whether a length of 700 m or more is required and the number of turns is left open."""
     return outline.length is not None and outline.length.lo >= LONG and _repeated(outline)
 
 

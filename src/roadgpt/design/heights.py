@@ -97,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns a range of grades per straight; where none is required, it differs from the neighbour's."""
+        """Returns a range of grades per straight; without a requirement, it differs from its neighbour's."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -121,7 +121,7 @@ class Windows:
         return self.between(one, other) > 0
 
     def alike(self, one: Range | None, other: Range | None) -> bool:
-        """Returns whether straights with these ranges of grade, one after the other, are measured as one."""
+        """Returns whether two consecutive straights with these ranges of grade are measured as one."""
         if not one or not other or not self.part(one, other):
             return True
         return min(one.lo, other.lo) >= LEVEL or max(one.hi, other.hi) <= -LEVEL

@@ -120,8 +120,8 @@ def _metres(value: float | None) -> str:
 def with_wishes(elements: RoadElements, outline: Outline) -> RoadElements | None:
     """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
-    Of all ways to match them with the Outline, the one is taken in which the fewest have to change. Returns
-    None if the number of turns, or their sides, are not what the Outline requires.
+    The elements are matched with the Outline so that as few of them as possible have to change. Returns None
+    if the number of turns, or their sides, are not what the Outline requires.
     """
     turns = [i for i, element in enumerate(elements) if element.is_turn]
     sides = [elements[i].side for i in turns]

@@ -1,7 +1,7 @@
 """Measures how much two roads differ, so that no two roads of a campaign are alike.
 
 The distance of two roads is the root mean square distance of their points after one road is shifted, rotated
-and, if that helps, mirrored so that it is as small as possible. Points are compared in two ways: at equal
+and, if that helps, mirrored to bring them as close as possible. Points are compared in two ways: at equal
 fractions of both lengths, and at equal distances from the start as far as the shorter road goes. With points
 as complex numbers, the best rotation is the phase of an inner product, so one matrix product compares a road
 with a thousand others.

@@ -239,7 +239,7 @@ def joined(
 
 
 def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
-    """Returns the indices of segments at whose start two slopes meet that met nowhere before the change.
+    """Returns the indices of segments that begin at a new joint: one between slopes that met nowhere before.
 
     Args:
         before: the segments of a design before a change.

@@ -1,9 +1,10 @@
 """The default designer: draws drafts until one meets the Brief, is valid and differs from earlier roads.
 
-Tests run in the order of their cost: whether the draft fits on the map, keeps clear of itself, is new, meets
-the requirements as measured on its line, and whether the rules accept the road that is built from it. After
-the first drafts, straights and turns become a little shorter with every draft. Requirements that leave little
-room are therefore met by a later draft, and only those that cannot be met are refused.
+Each draft is checked, the cheapest check first: it must fit on the map, keep clear of itself, differ from
+earlier roads and meet the requirements as measured on its line; then the rules must accept the road that is
+built from it. After the first drafts, straights and turns become a little shorter with every draft.
+Requirements that leave little room are therefore met by a later draft, and only those that cannot be met are
+refused.
 """
 
 from collections import Counter
@@ -76,7 +77,7 @@ class Planner:
 
 
 def fits(brief: Brief, world: World) -> bool:
-    """Returns whether a road can be found within 110 drafts for each of four seeds."""
+    """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
     try:
         searches = [_Search(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
         return all(search.found(TRIED) is not None for search in searches)

@@ -11,7 +11,7 @@ IDLE = {"too", "make", "keep", "with", "of", "at", "as", "to", "by", "a", "the",
 
 @dataclass
 class RequestClause:
-    """What one clause of a request contains."""
+    """One clause of a change request: the places and the new elements that it names, and its other words."""
 
     targets: list[Target] = field(default_factory=list)
     new: list[Target] = field(default_factory=list)

@@ -43,9 +43,7 @@ class NamedTarget(NamedTuple):
 
 
 def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
-    """Returns the target, such as 'the second left turn', that the lexemes from index ``at`` on name; None
-    if they name none.
-    """
+    """Returns the target that the lexemes name from index ``at``, such as 'the second left turn', or None."""
     return _TargetReader(row).read(at)
 
 

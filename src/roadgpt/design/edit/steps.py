@@ -1,5 +1,5 @@
-"""Defines the steps of an edit, which change elements and store in ``RoadElement.asked`` what must be
-measured afterwards.
+"""Defines the steps of an edit, which change elements and store in ``RoadElement.asked`` the ranges that the
+measured values must meet.
 
 A step sets the desired values. ``design.fit`` then adjusts the elements that have a requirement, if the road
 would break a rule, or if its measurements differ from the desired values.
@@ -67,7 +67,7 @@ def near(aim: float, slack: float) -> Wanted:
 
 @dataclass(frozen=True, slots=True)
 class Adjust:
-    """Gives one element new values; those that are None stay as they are."""
+    """Gives one element new values; a value stays as it is if the field for it is None."""
 
     element: RoadElement
     degrees: Wanted | None = None
@@ -91,7 +91,9 @@ class Adjust:
         )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements; the adjusted one has new values, and their ranges become its requirement."""
+        """Returns the elements, with new values for this one; the ranges of these values become its
+        requirement.
+        """
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
@@ -180,7 +182,7 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
 
 
 def straight(length: float, incline: float) -> Segment:
-    """Returns a straight segment with its numbers rounded as they are written."""
+    """Returns a straight segment with its numbers rounded as in files."""
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
 
 

@@ -61,8 +61,8 @@ class Requirements(NamedTuple):
     compared with its own requirement.
     """
     before: Design | None = None
-    """The road before an edit; the parabolas between its slopes stay. None for a proposal, whose turns
-    must be measured with the slopes that were proposed.
+    """The road before an edit; the parabolas between its slopes are kept. None for a proposal; then each turn
+    must be measured with the slope that was proposed for it.
     """
     geometry: Geometry = "arcs"
 
