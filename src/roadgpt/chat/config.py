@@ -139,7 +139,7 @@ def key_for(base_url: str | None) -> Key | None:
 
     If a server is named only in a file of the working folder, it gets only a key from such a file; this does
     not apply to a server on this computer. If a server is named only in a plan, a campaign or a run, it gets
-    no key. The reason is that somebody else may have written these files.
+    no key. Somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.

@@ -30,7 +30,7 @@ class View(NamedTuple):
     s: float
     """Station of the car, in metres along the road's centre line."""
     t: float
-    """Offset of the car in metres to the left of the centre line; the middle of its lane is
+    """Offset of the car in metres to the left of the centre line. The middle of its lane is at
     ``world.profile_of(road).middle(s)``. On a road with superelevation it is measured along the surface, to
     the foot of the perpendicular from the centre of gravity.
     """

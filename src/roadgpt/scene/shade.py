@@ -160,8 +160,7 @@ def shade(
 ) -> None:  # fmt: skip
     """Colours all pixels of ``picture`` (height, width, 3) from the four samples of each pixel.
 
-    Haze and level of detail change slowly within a surface, so they are computed once for BLOCK neighbouring
-    pixels.
+    Haze and level of detail change slowly, so they are computed once for BLOCK neighbouring pixels.
 
     Args:
         ids: triangle of each sample, from `raster.draw`.

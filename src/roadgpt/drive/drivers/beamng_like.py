@@ -45,7 +45,7 @@ class BeamngLike:
         sharpness: curvature in 1/m at which the shift is 76 % of ``cut``.
         aside: constant shift of the line to the right of the lane's middle, in metres.
         joining: distance from the road's start, in metres, over which the driver moves from the lane's middle
-            to its planned line.
+            to its line.
         eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
         risk: lateral acceleration in bends, in g (BeamNG's AI at aggression 0.7 reaches 0.64); at most 0.95
             of the friction is used.

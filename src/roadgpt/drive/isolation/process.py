@@ -82,7 +82,7 @@ class DriverProcess:
         return answer
 
     def forget(self) -> None:
-        """Makes the process discard its driver, without waiting until it has done so."""
+        """Makes the process discard its driver, and does not wait for this."""
         with suppress(OSError):
             protocol.send(self._down, pickle.dumps(("forget",)))
 

@@ -20,7 +20,7 @@ BLOCK = 20_000  # pieces at a time, to spare memory
 def clothoids(poses: Array) -> list[Piece] | None:
     """Returns the clothoids that join consecutive poses; None if two poses cannot be joined by a clothoid.
 
-    Every clothoid ends at the next pose, except for rounding, so errors do not add up along the road.
+    Every clothoid ends at the next pose, except for rounding, so errors do not add up.
 
     Args:
         poses: One row (x, y, heading) per pose, ``(n + 1, 3)``, in metres and radians.

@@ -61,7 +61,7 @@ class PieceShape:
     piece: Piece
 
     def poses(self, share: Array) -> Array:
-        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
+        """Implements ``Shape.poses``."""
         curve = PieceCurve(0.0, 0.0, 0.0, (self.piece,))
         s = share * self.piece.length
         return np.column_stack([curve.at(s), curve.heading(s)])
@@ -104,7 +104,7 @@ class Polynomial:
         return np.stack([b + p * (2 * c + 3 * p * d) for _, b, c, d in (self.u, self.v)])
 
     def poses(self, share: Array) -> Array:
-        """Returns the poses (x, y, heading) at given fractions (0 to 1) of the length, as rows ``(n, 3)``."""
+        """Implements ``Shape.poses``."""
         p_table, walked = self._walked
         p = np.interp(share * walked[-1], walked, p_table)
         x, y = self._at(p)

@@ -1,8 +1,8 @@
 """Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
 
 The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
-in order, beginning with the innermost lanes. A lane that has a width of 0 where two sections meet is not
-joined there. In sections where a joined lane does not exist, its width is 0.
+in order, beginning with the innermost. A lane that has a width of 0 where two sections meet is not joined
+there. In sections where a joined lane does not exist, its width is 0.
 """
 
 import math
