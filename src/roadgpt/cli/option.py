@@ -36,7 +36,7 @@ FROM_FILES = "roadgpt.from_files"  # key of click's Context.meta
 
 
 class Option(click.Option):
-    """A command-line option that can also be set in configuration files and appear in printed commands.
+    """A command-line option that can also be set in files, and appears in the commands that RoadGPT prints.
 
     Several commands can share one Option. ``click.Option`` documents the other arguments.
 

@@ -229,7 +229,7 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
     """Calls ``look`` for every file, and prints the resulting rows and a table of them.
 
     Raises:
-        UsageError: The only file given cannot be used.
+        UsageError: Only one file is given, and it cannot be used.
     """
     with screen:
         for file in files:

@@ -26,7 +26,7 @@ MOST_LEFT_OUT = 2  # consecutive segments that could not be placed, after which 
 
 
 class DesignTask(NamedTuple):
-    """The task of a language model to design one road."""
+    """The design of one road, as a task for a language model."""
 
     brief: Brief
     world: World

@@ -102,8 +102,8 @@ def cut(element: Element) -> list[Segment]:
 
 
 def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
-    """Returns the elements of segments in driving order; neighbouring straights with the same incline become
-    one element.
+    """Returns the elements that these segments form, in driving order; neighbouring straights with the same
+    incline become one element.
     """
     out: list[Element] = []
     for group in _groups(segments):

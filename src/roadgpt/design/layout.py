@@ -119,7 +119,7 @@ def meeting(
     Args:
         z: points as x + iy in metres, ``(n,)``.
         s: their stations in metres.
-        earlier: points of the earlier part, ``(m,)``; the same points to compare a road with itself.
+        earlier: points of the earlier part, ``(m,)``; ``z`` again to compare a road with itself.
         earlier_s: their stations in metres.
         apart: distance in metres.
 

@@ -158,10 +158,9 @@ def made_to_fit(
 
 
 def runs_of(inclines: Sequence[float], joining: Collection[int]) -> list[int]:
-    """Returns a number for each segment; neighbours with the same number form one slope.
-
-    Neighbours with the same incline form one slope. A segment that only joins others belongs to the slope of
-    the neighbour with the nearer incline, because a short slope of its own would leave parabolas no room.
+    """Returns for each segment the number of its slope. Neighbours with the same incline form one slope. A
+    segment that only joins others belongs to the slope of the neighbour with the nearer incline, because a
+    short slope of its own would leave parabolas no room.
 
     Args:
         inclines: incline of each segment in percent.

@@ -26,7 +26,7 @@ def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.G
 
     Args:
         pair: the pair of a description and its plan.
-        others: hand-written pairs by language, one of which may be joined to the pair.
+        others: hand-written pairs, grouped by language; one of them may be joined to ``pair``.
         rng: source of randomness.
     """
     if rng.random() < 0.5:

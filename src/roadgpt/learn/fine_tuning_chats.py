@@ -1,5 +1,5 @@
-"""Writes pairs as chats for fine-tuning a larger language model, which answers a description with a Brief
-or a Design.
+"""Writes pairs as chats for fine-tuning a larger language model to answer a description with a Brief or a
+Design.
 """
 
 import json

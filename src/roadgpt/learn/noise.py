@@ -21,7 +21,7 @@ AFTER: dict[str, list[str]] = WORDS["after"]
 
 
 def tidy(text: str) -> str:
-    """Returns the text with corrected spaces and articles, after grammar rules have put it together."""
+    """Corrects the spaces and articles in a text that was put together by grammar rules."""
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([,.;:!?])(?!\d)", r"\1", text)
     text = re.sub(r"([,.;:])(?:\s*[,;])+", r"\1", text)

@@ -44,7 +44,8 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
 
 
 def simplifications() -> list[Simplifier]:
-    """Returns a function for each type of simplification, which lists the simplifications of a Design.
+    """Returns one function for each type of simplification; the function lists all such simplifications of a
+    Design.
 
     The types that remove most come first.
     """

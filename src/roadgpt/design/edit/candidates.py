@@ -1,4 +1,4 @@
-"""Lists ways to make a change: values to aim at, and ranges for what is then measured on the road.
+"""Lists ways to make a change: target values, and ranges for the values measured on the changed road.
 
 Words ('sharper') allow wide ranges. If a number is given, such as the angle of a turn, only other values may
 vary, such as its radius. A second candidate has wider ranges, or lets more elements change.

@@ -1,4 +1,4 @@
-"""Descriptions that refer to turns by number: which go left, are hairpins, are sharp, or have an angle."""
+"""Descriptions that refer to turns by number, such as 'turns 2 and 4 go left' or 'the third is a hairpin'."""
 
 from roadgpt.learn.compositions.voice import (
     NOUNS,
