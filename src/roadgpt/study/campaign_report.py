@@ -41,7 +41,7 @@ def write_store_report(folder: Path, command: str = "", next_steps: Steps = ()) 
     Args:
         folder: the campaign's folder.
         command: the command that repeats the campaign, as shown in the report; empty: none is shown.
-        next_steps: what to try if no test failed: pairs of a description and a command.
+        next_steps: what to try if no test failed, as pairs of a suggestion and its command.
 
     Raises:
         UsageError: the folder holds no campaign, or the campaign has no finished test.

@@ -163,7 +163,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
     Args:
         folder: the folder of runs.
         command: the command that repeats the runs, as shown in the report; empty: none is shown.
-        next_steps: what to try if no road failed: pairs of a description and a command.
+        next_steps: what to try if no road failed, as pairs of a suggestion and its command.
 
     Raises:
         UsageError: the folder holds no finished run, or a run cannot be read.

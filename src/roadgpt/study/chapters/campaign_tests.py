@@ -154,7 +154,7 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Returns feature maps of tests that are sampled evenly over the campaign; empty if the tests have no
+    """Returns feature maps of a sample of tests, spread evenly over the campaign; empty if the tests have no
     features."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))

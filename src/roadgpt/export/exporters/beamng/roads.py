@@ -105,7 +105,7 @@ def level_road(
         seed: Seed of the random shifts of mesh nodes that prevent flicker.
         materials: Names of materials that exist in the level.
         lift: Metres by which everything is raised, for a level whose ground is not at ``world.site.z_floor``.
-        prefix: Prefix of the strips' names, which must be unique in a level.
+        prefix: Prefix of the strips' names; all names in a level must differ.
 
     Raises:
         ExportError: The road has a number that is not finite.

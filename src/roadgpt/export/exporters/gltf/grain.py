@@ -21,9 +21,8 @@ class Grain(NamedTuple):
     """Side length in metres of the square area that the texture covers."""
     seed: int
     octaves: tuple[tuple[int, float], ...]
-    """Layers of noise. Each has the number of noise cells along a side of the texture, and the amplitude
-    relative to the mean brightness.
-    """
+    """Layers of noise: for each, the number of noise cells along a side of the texture, and the amplitude
+    relative to the mean brightness."""
 
 
 GRAINS = {

@@ -195,8 +195,7 @@ class AbstractTestExecutor(ABC):
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
         """Returns whether the test is valid, and the message of the first rule that it breaks. Validation
-        takes time, but is not counted as a test.
-        """
+        uses time of the budget, but does not count as a test."""
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
