@@ -83,7 +83,7 @@ def test_lines_by_hand(line: str, brief: Brief) -> None:
         "turn deg=",
         "turn deg=..",
         "turn deg=5..3",
-        "turn 3",
+        "turn 3 4",
         "turn slope",
         "| left",
         "| ends(road)",

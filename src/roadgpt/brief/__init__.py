@@ -15,6 +15,7 @@ from functools import cache
 from typing import Protocol, cast, runtime_checkable
 
 from roadgpt import plugins
+from roadgpt.brief import beside, motorway
 from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.map_fit import ROAD_WIDTH
 from roadgpt.brief.model import (
@@ -31,7 +32,7 @@ from roadgpt.brief.model import (
     between,
     exactly,
 )
-from roadgpt.brief.motorway import remarks, says_motorway
+from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.refusal import NoRoomError, TooMuchError
@@ -183,6 +184,15 @@ def alternatives(
     if first.motorway:
         others = tuple(brief.model_copy(update={"motorway": True}) for brief in others)
     return (first, *(brief for brief in others if is_possible(brief, map_size, min_radius, max_grade)))
+
+
+def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
+    """Returns sentences, without full stops, on what a road of this Brief lacks or has besides.
+
+    They say what becomes of each thing in ``brief.beside``, what "motorway" requires, and whether a map of
+    this size, in metres, can hold it.
+    """
+    return (*map(beside.remark, brief.beside), *motorway.remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

@@ -6,7 +6,9 @@ Numbers in a Brief are in everyday units (degrees, metres and percent), so that 
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+
+from roadgpt.brief.beside import BESIDE
 
 Side = Literal["left", "right"]
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
@@ -28,6 +30,15 @@ Kind = Literal[
     "zigzag",
     "winding",
 ]
+
+
+def _known(name: str) -> str:
+    if name not in BESIDE:
+        raise ValueError(f"'{name[:40]}' is none of the things beside a road: {', '.join(sorted(BESIDE))}")
+    return name
+
+
+Beside = Annotated[str, AfterValidator(_known)]
 
 
 class Frozen(BaseModel):
@@ -162,6 +173,9 @@ class Brief(Frozen):
     """True if the description asks for a motorway; see ``brief.motorway``."""
     hard: bool = False
     """True if the road should be difficult for a lane keeper: tight turns, fast approaches, crests."""
+    beside: tuple[Beside, ...] = ()
+    """Names of things that the description mentions and that no requirement expresses, such as 'roundabout';
+    ``brief.beside`` says what becomes of each."""
     unused: tuple[str, ...] = ()
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0

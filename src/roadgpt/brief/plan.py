@@ -1,10 +1,11 @@
-"""Writes a Brief as one short line, called a plan, and reads it back. Plans are written by models, and by
-people who label data.
+"""Writes a Brief as one short line, called a plan, and reads it back. Plans are written by models, by people
+who label data, and by users who want no words to be interpreted.
 
-    turn x3 left up; straight long down; hairpin right | len=300 hard
+    turn x3 left up; straight long down; hairpin right | len=300 hard beside(traffic, night)
 
 The clauses are in driving order, separated by ``;``. The requirements for the whole road follow after ``|``.
-A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief.
+A number is exact (``3``), a bound (``3..`` or ``..3``) or a range (``3..5``), in the units of the Brief. The
+page docs/reference/plans.md describes the language.
 """
 
 import re
@@ -13,6 +14,7 @@ from typing import TypeVar, get_args
 from pydantic import ValidationError
 
 from roadgpt.brief.model import Amount, Brief, Clause, Kind
+from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
 
 NUMBER = r"-?\d+(?:\.\d+)?"
@@ -25,6 +27,8 @@ WORDS = {
     **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
+BARE = {"straight": "length"}
+"""The field that a number without a key has in a clause; turns have it for their degrees."""
 FLAGS = ("alternating", "hard", "motorway")
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
 ROAD_KEYS = {
@@ -38,6 +42,7 @@ ROAD_KEYS = {
     **KEYS,
 }
 PLACES = ("starts", "ends")
+INNER = "(starts|ends|beside)"
 ONE = Amount(lo=1, hi=1)
 Model = TypeVar("Model", Brief, Clause)
 
@@ -49,6 +54,8 @@ def plan(brief: Brief) -> str:
         clause = getattr(brief, place)
         if clause:
             wishes.append(f"{place}({_clause(clause)})")
+    if brief.beside:
+        wishes.append(f"beside({', '.join(brief.beside)})")
     line = "; ".join(_clause(clause) for clause in brief.clauses)
     return f"{line} | {' '.join(wishes)}".strip() if wishes else line
 
@@ -79,15 +86,19 @@ def read_plan(line: str) -> Brief:
     """Returns the Brief that a plan describes.
 
     Raises:
-        BriefError: a word, key or number is not part of the plan language, or a field is given twice.
+        BriefError: a word, key or number is not part of the plan language, a field is given twice, or the
+            plan is a refusal.
     """
+    if line.lstrip().startswith("!"):
+        raise refused(line)
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {
         "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
     }
-    for place, inner in re.findall(r"(starts|ends)\(([^()]*)\)", wishes):
-        _set(fields, place, _read_clause(inner))
-    for word in re.sub(r"(starts|ends)\([^()]*\)", " ", wishes).split():
+    for place, inner in re.findall(rf"{INNER}\(([^()]*)\)", wishes):
+        names = tuple(name.strip() for name in inner.split(","))
+        _set(fields, place, names if place == "beside" else _read_clause(inner))
+    for word in re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split():
         _read_mod(fields, word, ROAD_KEYS)
     return _made(Brief, fields, line)
 
@@ -102,6 +113,10 @@ def _read_clause(text: str) -> Clause:
     for word in words:
         if word.startswith("x") and word[1:2] in "0123456789.":
             _set(fields, "count", _read_amount(word[1:]))
+        elif word[0] in "0123456789.":
+            _set(fields, BARE.get(kind, "degrees"), _read_amount(word))
+        elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
+            _set(fields, "radius", _read_amount(word[1:]))
         else:
             _read_mod(fields, word, KEYS)
     return _made(Clause, fields, text)
@@ -144,8 +159,8 @@ def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
     try:
         return model.model_validate(fields)
     except ValidationError as error:
-        problem = error.errors()[0]
-        raise BriefError(f"the plan '{text.strip()[:60]}' is not a Brief: {problem['msg']}") from error
+        problem = error.errors()[0]["msg"].removeprefix("Value error, ")
+        raise BriefError(f"the plan '{text.strip()[:60]}' is not a Brief: {problem}") from error
 
 
 def _number(value: float | None) -> str:

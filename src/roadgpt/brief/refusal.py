@@ -1,7 +1,56 @@
-"""Errors that depend on the size of the map; they carry the Brief, since the road may fit on another map."""
+"""Refusals of descriptions: what they say, and the errors that carry the Brief because the road may fit on
+another map.
+"""
 
+from roadgpt.brief.beside import NOT_BUILT
 from roadgpt.brief.model import Brief
 from roadgpt.errors import BriefError
+
+ADVICE = {
+    "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
+    "!contradiction": "the description contradicts itself; leave something out, or say which part of"
+    " the road is meant",
+    "!impossible": "no such road can be built: junctions, roundabouts, loops, radii below 15 m and grades"
+    " above 15 percent are not possible; leave that out",
+}
+"""The refusals of the language of plans, with what they say if no cause is named."""
+CLASHING = {
+    "turns": "the number of turns",
+    "sides": "left and right",
+    "order": "the order of its parts",
+    "sharpness": "how sharp the turns are",
+    "degrees": "the angles",
+    "radius": "the radii",
+    "slope": "uphill, downhill and level",
+    "steepness": "how steep it is",
+    "climb": "its heights",
+    "length": "its length",
+}
+"""Causes of a contradiction, with what they concern."""
+BEYOND = {
+    "grade": "grades above 15 percent",
+    "radius": "radii below 15 m",
+    "degrees": "turns of more than 240 degrees",
+    "length": "more than 1500 m of road on a map of 250 m",
+    "turns": "more than 12 turns on a map of 250 m",
+    "loop": "a road that crosses itself",
+}
+"""Causes of an impossibility, with what cannot be built."""
+
+
+def refused(line: str) -> BriefError:
+    """Returns the error for a plan that is a refusal, such as '!impossible roundabout'."""
+    kind, *causes = line.split()
+    known = {"!contradiction": CLASHING, "!impossible": {**NOT_BUILT, **BEYOND}}.get(kind, {})
+    unknown = [cause for cause in causes if cause not in known]
+    if kind not in ADVICE or unknown:
+        return BriefError(f"a plan has no refusal '{line.strip()[:60]}'; begin one with {', '.join(ADVICE)}")
+    if not causes:
+        return BriefError(ADVICE[kind])
+    said = " and ".join(known[cause] for cause in causes)
+    if kind == "!contradiction":
+        return BriefError(f"the description contradicts itself about {said}; leave one of them out")
+    return BriefError(f"no such road can be built: {said}; leave that out")
 
 
 class TooMuchError(BriefError):

@@ -63,7 +63,7 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "Reader: model, grammar or chat.", str, "model", guard=reader_guard),
+    _run("--reader", "Reader: model, grammar, chat or plan.", str, "model", guard=reader_guard),
     _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
@@ -185,6 +185,13 @@ WORKERS = (
     _work("--address", "Address of a Ray cluster. [default: this machine]", str, ""),
 )
 # fmt: on
+PLAN = Option(
+    "--plan is_plan",
+    "DESCRIPTION is a plan, such as 'turn left 90 r30; straight 40'.",
+    bool,
+    heading=Heading.DESIGN,
+    is_rare=True,
+)  # fmt: skip
 OPEN = Option("--open opens", "Open the page in the browser.", bool)
 WORDS = Argument(
     "words...", "DESCRIPTION", 'Say what road you want: roadgpt run "an uphill road with 3 turns"'
@@ -222,6 +229,20 @@ def world_of(values: dict[str, Any]) -> "World":
 
     given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
     return World().changed(**given)
+
+
+def reader_of(values: dict[str, Any]) -> str:
+    """Returns the name of the reader, which is "plan" with --plan; removes --plan from ``values``.
+
+    Raises:
+        UsageError: --plan is given, and --reader names another reader.
+    """
+    if not values.pop("is_plan"):
+        return str(values["reader"])
+    source = click.get_current_context().get_parameter_source("reader")
+    if source is ParameterSource.COMMANDLINE and values["reader"] != "plan":
+        raise UsageError("--plan and --reader contradict each other; leave one of them out")
+    return "plan"
 
 
 def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "ChatSettings | None":

@@ -6,8 +6,8 @@ import json
 from collections.abc import Iterable, Iterator
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model import ADVICE
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
+from roadgpt.brief.refusal import ADVICE
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
 from roadgpt.learn.generator import Pair

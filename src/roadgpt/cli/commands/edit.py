@@ -13,10 +13,11 @@ from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.result_row import row_of, spending
 from roadgpt.cli.screen import Screen
+from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.chat import ChatSettings
-    from roadgpt.design.edit import Edited
+    from roadgpt.design.edit import Edited, EditRequest
     from roadgpt.report import Format
     from roadgpt.road import World
     from roadgpt.run.editing import Original
@@ -25,6 +26,7 @@ PARAMETERS = (
     Argument("run", "RUN", "Name the folder of a run, or the file of a design."),
     Argument("words...", "CHANGE", 'Say what to change: roadgpt edit RUN "make the second turn sharper"'),
     options.out("Folder for the changed road. [default: a new one]"),
+    Option("--plan is_plan", "CHANGE is a plan, such as 'turn 2: radius x0.75'.", bool),
     Option(
         "--designer", "What changes the road: planner (by rules) or chat (a language model).", str, "planner"
     ),
@@ -46,6 +48,7 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
     \b
     roadgpt edit my-roads/runs/0001 "make the second turn sharper and the end downhill"
     roadgpt edit design.json "add a hairpin after the first turn, then remove the last straight"
+    roadgpt edit design.json --plan "turn 2: radius x0.75; end: slope down"
 
     The exit status is 2 if the words cannot be read, refer to something that is not on the road, or ask for
     a road that cannot be valid. In these cases nothing is written.
@@ -65,7 +68,7 @@ def command(run: str, words: tuple[str, ...], as_json: bool, quiet: bool, **rest
 def edit_road(
     screen: Screen, road: str, words: str, world: "World", out: Path | None = None, designer: str = "planner",
     chat: "ChatSettings | None" = None, driver: str | None = None, drives: bool = True,
-    pictures: "tuple[Format, ...]" = ("png",),
+    pictures: "tuple[Format, ...]" = ("png",), is_plan: bool = False,
 ) -> Path:  # fmt: skip
     """Changes a road as requested, checks and drives it, writes and prints its run, and returns its folder.
 
@@ -80,6 +83,7 @@ def edit_road(
         driver: The run's driver as given with ``--driver``; None if it was not given.
         drives: Whether to drive the changed road; it is never driven if the original road was not.
         pictures: The formats of the pictures; none are drawn if empty.
+        is_plan: Whether the change request is a plan.
 
     Raises:
         RoadGPTError: The request or the road cannot be used; nothing is written.
@@ -97,7 +101,7 @@ def edit_road(
     check_named_driver(driver, {before.setup.driver}, road)
     if drives and before.setup.drives:
         require_permission(before.setup.driver)
-    made = _edited(before, words, designer, chat, screen)
+    made = _edited(before, _planned(words, designer) if is_plan else words, designer, chat, screen)
     drives = drives and before.setup.drives
     setup = before.setup.model_copy(update={"designer": designer, "chat": chat, "drives": drives})
     old = prove(before.design, before.seed, before.world, setup.model_copy(update={"drives": False}))
@@ -133,8 +137,23 @@ def _of_test(road: str) -> "Original | None":
     return None if place is None or place.number is None else original_of(place.run(), place.said)
 
 
+def _planned(line: str, designer: str) -> "EditRequest":
+    """Returns the changes of a plan.
+
+    Raises:
+        UsageError: The plan cannot be read, or the designer asks a language model.
+    """
+    from roadgpt import plugins
+    from roadgpt.chat import asks_a_model
+    from roadgpt.design.edit.change_plan import read_change_plan
+
+    if asks_a_model(plugins.find("designers", designer)):
+        raise UsageError(f"--plan needs no language model; leave out --designer {designer}")
+    return read_change_plan(line)
+
+
 def _edited(
-    before: "Original", words: str, designer: str, chat: "ChatSettings | None", screen: Screen
+    before: "Original", words: "str | EditRequest", designer: str, chat: "ChatSettings | None", screen: Screen
 ) -> "Edited":
     """Returns the changed design, and prints what a language model has cost even if the change failed."""
     from roadgpt.chat import Meter, counting

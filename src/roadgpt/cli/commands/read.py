@@ -22,6 +22,7 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 
 
 OPTIONS = (
+    options.PLAN,
     *named(options.SETUP, "reader"),
     *named(options.WORLD, "map_size"),
     Option("--table as_table", "Print a row for each turn and straight.", bool),
@@ -32,9 +33,7 @@ OPTIONS = (
 
 
 @click.command(cls=GroupedCommand, params=[options.WORDS, *OPTIONS])
-def command(
-    words: tuple[str, ...], reader: str, as_table: bool, as_json: bool, number: int, **rest: Any
-) -> None:
+def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, **rest: Any) -> None:
     """Show how RoadGPT interprets a description, how confident it is, and whether the road fits on the map.
 
     \b
@@ -44,7 +43,7 @@ def command(
     """
     from roadgpt.cli.commands.run import understood
 
-    world = options.world_of(rest)
+    world, reader = options.world_of(rest), options.reader_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
         found = [_as_data(brief, world.site.map_size) for brief in briefs]

@@ -57,6 +57,7 @@ OPTIONS = (
     Option("-n --roads", "Number of roads.", ROADS, 1),
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
+    options.PLAN,
     *named(options.SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
@@ -95,6 +96,7 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
 
     own = {name: given.pop(name) for name in ("roads", "seed", "out", "axes", "formats", "junit")}
     world, pictures = options.world_of(given), options.pictures_of(given)
+    given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])
     setup = Setup(drives=not given.pop("no_drive"), chat=chat, **given)
     return RunJob(words=words, world=world, setup=setup, pictures=pictures, **own)

@@ -43,7 +43,7 @@ class Edited(NamedTuple):
 
 def edit(
     design: Design,
-    words: str,
+    words: str | EditRequest,
     world: World,
     geometry: Geometry = "arcs",
     designer: str = "planner",
@@ -53,7 +53,7 @@ def edit(
 
     Args:
         design: the Design before the edit; this value itself is not changed.
-        words: a change request.
+        words: a change request, or what was read from it.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that the road is built with.
         designer: name of a designer. If it uses a language model, the model makes the change; otherwise rules
@@ -69,8 +69,10 @@ def edit(
     part = plugins.find("designers", designer)
     if asks_a_model(part):
         settings = chat or configured()
-        return Edited(*edited_by_chat(open_chat(settings), settings, design, words, world, geometry))
-    return _by_rules(design, read_request(words), world, geometry)
+        said = words if isinstance(words, str) else words.words
+        return Edited(*edited_by_chat(open_chat(settings), settings, design, said, world, geometry))
+    request = read_request(words) if isinstance(words, str) else words
+    return _by_rules(design, request, world, geometry)
 
 
 def _by_rules(design: Design, request: EditRequest, world: World, geometry: Geometry) -> Edited:
@@ -81,7 +83,7 @@ def _by_rules(design: Design, request: EditRequest, world: World, geometry: Geom
     elements, found = elements_on_road(design, geometry)
     rows: list[tuple[Change, Sequence[EditCandidate]]] = []
     idle: list[Change] = []
-    for number, change in enumerate(_folded(request.changes), 1):
+    for number, change in enumerate(request.changes, 1):
         ways = _ways(change, elements, found, world, number)
         if ways:
             rows.append((change, ways))
@@ -136,40 +138,6 @@ def _ways(
     if change.what == "remove":
         return removal_candidates(meant, elements)
     return change_candidates(change, meant, found, world)
-
-
-def _folded(changes: tuple[Change, ...]) -> tuple[Change, ...]:
-    """What is said of a new turn is a part of its addition: 'add a left turn, downhill at 5 %'."""
-    out: list[Change] = []
-    for change in changes:
-        is_of_new = change.target is not None and change.target.indefinite and change.what != "add"
-        last = next((i for i in reversed(range(len(out))) if out[i].what == "add"), None)
-        if not is_of_new:
-            out.append(change)
-        elif last is None:
-            raise EditError(f"which one is meant in '{change.words}' is not said; say: the second turn")
-        else:
-            out[last] = _with(out[last], change)
-    return tuple(out)
-
-
-def _with(added: Change, more: Change) -> Change:
-    match more.what:
-        case "slope":
-            grade = None if more.to is None else -abs(more.to) if more.way == "down" else more.to
-            return replace(added, way=more.way or added.way, grade=grade)
-        case "angle":
-            return replace(added, degrees=more.to or added.degrees)
-        case "radius":
-            return replace(added, radius=more.to or added.radius)
-        case "length":
-            return replace(added, length=more.to or added.length)
-        case "side":
-            return replace(added, side=more.side or added.side)
-        case "shape":
-            return replace(added, kind=more.kind or added.kind, sharpness=more.sharpness or added.sharpness)
-        case _:
-            return added
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from roadgpt.brief.model import Sharpness, Side
 from roadgpt.design.edit.clause import RequestClause
-from roadgpt.design.edit.request import Change, Way
+from roadgpt.design.edit.request import MUCH, SLIGHTLY, Change, Way
 from roadgpt.errors import EditError
 
 PREPOSITIONS = {"by", "to", "at", "of", "with"}
@@ -17,7 +17,6 @@ ADJECTIVES: tuple[Sharpness, ...] = ("sharp", "gentle", "sweeping")
 OF_LENGTHS = ("longer", "shorter", "long", "short", "length_noun")
 OF_ANGLES = ("radius", "tighter", "wider", "sharper", "gentler", "angle_noun")
 STEEPLY, GENTLY = 10.0, 3.5  # percent: inside what brief.words promises
-SLIGHTLY, MUCH = 0.5, 1.8
 HEIGHTS = {"raise", "lower"}  # metres of it are not of length
 NEAR = 3  # words between a number and the noun that it belongs to
 

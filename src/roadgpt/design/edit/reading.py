@@ -48,7 +48,7 @@ def read_request(words: str) -> EditRequest:
     if not changes:
         told = f"'{short(words)}' is no change of a road that I know"
         raise EditError(f"{told}; {ADVICE}")
-    return EditRequest(words, tuple(changes), unused)
+    return EditRequest(words, _folded(changes), unused)
 
 
 def _settled(changes: Sequence[Change]) -> list[Change]:
@@ -165,3 +165,37 @@ def _sparing(change: Change, kept: Sequence[Target]) -> Change:
     if len(kept) > 1 and not all(one.numbers and one.noun == kept[0].noun for one in kept):
         raise EditError("several things are to be left alone; name them with numbers: leave turns 1 and 3")
     return replace(change, target=replace(target, but=replace(kept[0], numbers=numbers)))
+
+
+def _folded(changes: Sequence[Change]) -> tuple[Change, ...]:
+    """What is said of a new turn is a part of its addition: 'add a left turn, downhill at 5 %'."""
+    out: list[Change] = []
+    for change in changes:
+        is_of_new = change.target is not None and change.target.indefinite and change.what != "add"
+        last = next((i for i in reversed(range(len(out))) if out[i].what == "add"), None)
+        if not is_of_new:
+            out.append(change)
+        elif last is None:
+            raise EditError(f"which one is meant in '{change.words}' is not said; say: the second turn")
+        else:
+            out[last] = _with(out[last], change)
+    return tuple(out)
+
+
+def _with(added: Change, more: Change) -> Change:
+    match more.what:
+        case "slope":
+            grade = None if more.to is None else -abs(more.to) if more.way == "down" else more.to
+            return replace(added, way=more.way or added.way, grade=grade)
+        case "angle":
+            return replace(added, degrees=more.to or added.degrees)
+        case "radius":
+            return replace(added, radius=more.to or added.radius)
+        case "length":
+            return replace(added, length=more.to or added.length)
+        case "side":
+            return replace(added, side=more.side or added.side)
+        case "shape":
+            return replace(added, kind=more.kind or added.kind, sharpness=more.sharpness or added.sharpness)
+        case _:
+            return added

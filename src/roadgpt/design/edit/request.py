@@ -21,6 +21,8 @@ What = Literal[
 ]
 Way = Literal["up", "down", "flat"]
 Measure = Literal["sharp", "long", "steep"]
+SLIGHTLY, MUCH = 0.5, 1.8
+"""Doses of a change for which no number is given."""
 
 
 @dataclass(frozen=True, slots=True)

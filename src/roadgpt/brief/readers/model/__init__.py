@@ -29,7 +29,7 @@ from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.refusal import TooMuchError
+from roadgpt.brief.refusal import ADVICE, TooMuchError
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json
 
@@ -38,13 +38,6 @@ FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.js
 MOST_LETTERS = 2000
 ALMOST = 2.0  # difference of score
 NO_ROAD = "does not describe a road"
-ADVICE = {
-    "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
-    "!contradiction": "the description contradicts itself; leave something out, or say which part of"
-    " the road is meant",
-    "!impossible": "no such road can be built: junctions, roundabouts, loops, radii below 15 m and grades"
-    " above 15 percent are not possible; leave that out",
-}
 TOO_MUCH = (
     "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
 )

@@ -1,0 +1,69 @@
+"""The table of things that descriptions of roads mention and that no requirement of a Brief expresses.
+
+A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then says what becomes of
+it, so that no word of a description is dropped in silence.
+"""
+
+NOT_BUILT = {
+    # networks
+    "junction": "a junction",
+    "crossroads": "a crossroads",
+    "roundabout": "a roundabout",
+    "merge": "a merge",
+    "exit": "an exit or a slip road",
+    "lane_change": "a lane change",
+    "loop": "a road that crosses itself",
+    # structures and furniture
+    "bridge": "a bridge",
+    "tunnel": "a tunnel",
+    "railway_crossing": "a level crossing",
+    "zebra_crossing": "a pedestrian crossing",
+    "parking": "a parking place",
+    "bus_stop": "a bus stop",
+    "roadworks": "a construction site",
+    "traffic_light": "a traffic light",
+    "sign": "a road sign",
+    "speed_bump": "a speed bump",
+    "pothole": "a pothole",
+    "kerb": "a kerb",
+    "guardrail": "a guard rail",
+    "obstacle": "an obstacle",
+    # road users
+    "traffic": "other traffic",
+    "pedestrian": "a pedestrian",
+    "cyclist": "a cyclist",
+    "animal": "an animal",
+    # weather, light and landscape
+    "rain": "rain",
+    "fog": "fog",
+    "snowfall": "falling snow",
+    "wind": "wind",
+    "night": "darkness",
+    "sun": "a low sun",
+    "trees": "a forest",
+    "buildings": "buildings",
+    "water": "a river, a lake or a coast",
+    "landscape": "a landscape",
+    # surfaces
+    "gravel": "a gravel or dirt surface",
+    "cobbles": "a cobbled surface",
+}
+"""Names of what RoadGPT does not build, with the words of the remark."""
+OPTIONS = {
+    "wet": "a wet surface is set with --friction 0.6",
+    "snow": "snow on the road is set with --friction 0.35",
+    "ice": "ice on the road is set with --friction 0.1",
+    "lanes": "the number of lanes is set with --lanes, such as --lanes 2+1",
+    "lane_width": "the width of lanes is set with --lane-width, such as --lane-width 3",
+    "bank": "superelevation is set with --bank, such as --bank auto",
+    "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
+}
+"""Names of what an option sets and words do not, with the remark."""
+BESIDE = frozenset({*NOT_BUILT, *OPTIONS})
+
+
+def remark(name: str) -> str:
+    """Returns the sentence, without a full stop, that says what becomes of a thing of this name."""
+    if name in OPTIONS:
+        return OPTIONS[name]
+    return f"{NOT_BUILT[name]} is not built yet; the road is made without it"

@@ -1,0 +1,361 @@
+"""Writes a change request as one short line, called a plan, and reads it back.
+
+    turn 2: radius x0.75; end: slope down; turn all but(turn 1): side left; add hairpin right after(turn 2)
+
+Changes are separated by ``;``. Each names a place, then a colon, then what is wanted there; or it begins with
+``add``. The page docs/reference/plans.md describes the language.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, Literal, cast, get_args
+
+from roadgpt.brief.model import Kind, Sharpness, Side
+from roadgpt.design.edit.request import MUCH, SLIGHTLY, Change, EditRequest, Measure, Place, Target, Way
+from roadgpt.errors import EditError
+
+TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+-]))")
+KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
+NOUNS = ("turn", "straight", "start", "end", "road")
+SUPERLATIVES: dict[str, tuple[Measure, int]] = {
+    "longest": ("long", 1),
+    "shortest": ("long", -1),
+    "sharpest": ("sharp", 1),
+    "gentlest": ("sharp", -1),
+    "steepest": ("steep", 1),
+    "flattest": ("steep", -1),
+}
+PROPERTIES = {
+    **dict.fromkeys(get_args(Side), "side"),
+    **dict.fromkeys(get_args(Sharpness), "sharpness"),
+    **dict.fromkeys(get_args(Way), "way"),
+    **dict.fromkeys(("long", "short"), "size"),
+}
+NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
+HALVES = {"half1": 1, "half2": 2}
+POSITIONS = ("after", "before", "between", "on")
+ENDS: dict[str, Literal["start", "end", "middle"]] = {
+    "at_start": "start",
+    "at_end": "end",
+    "at_middle": "middle",
+}
+MEASURES = ("angle", "radius", "length", "slope")
+ALONE = ("straighten", "remove", "mirror", "alternate")
+DOSES = {"slightly": SLIGHTLY, "much": MUCH}
+PAGE = "the page 'Plans' of the reference describes the language"
+
+
+def change_plan(request: EditRequest) -> str:
+    """Returns the plan of a change request; the plan omits the words of the request and the unused words."""
+    return "; ".join(_change(change) for change in request.changes)
+
+
+def _change(change: Change) -> str:
+    if change.what == "add":
+        return " ".join(["add", *_added(change)])
+    if change.target is None:
+        place = "road"
+    else:
+        place = _place(change.target)
+    return f"{place}: {' '.join(_wish(change))}"
+
+
+def _wish(change: Change) -> Iterator[str]:
+    yield change.what
+    if change.what == "side":
+        yield change.side or "other"
+    if change.what == "shape":
+        yield from (word for word in (change.kind, change.sharpness) if word)
+    if change.way and change.what == "slope":
+        yield change.way
+    if change.what in MEASURES:
+        yield from _value(change)
+
+
+def _value(change: Change) -> Iterator[str]:
+    if change.to is not None:
+        number = _number(change.to)
+        yield {-1: f"..{number}", 0: f"={number}", 1: f"{number}.."}[change.bound]
+    elif change.by is not None:
+        yield f"{'+' if change.more > 0 else '-'}{_number(change.by)}"
+    elif change.times is not None:
+        yield f"x{_number(change.times)}"
+    elif change.more:
+        yield from (word for word, dose in DOSES.items() if dose == change.dose)
+        yield "more" if change.more > 0 else "less"
+
+
+def _added(change: Change) -> Iterator[str]:
+    assert change.target is not None
+    yield change.kind or change.target.noun or "turn"
+    if change.count != 1:
+        yield f"x{change.count}"
+    yield from (word for word in (change.side, change.sharpness, change.way) if word)
+    for key, field in NUMBERS.items():
+        if (value := getattr(change, field)) is not None:
+            yield f"{key}={_number(value)}"
+    if change.is_whole:
+        yield "whole"
+    if change.place:
+        yield _position(change.place)
+
+
+def _position(place: Place) -> str:
+    if place.target is None:
+        return f"at_{place.how}"
+    inner = [_place(target) for target in (place.target, place.other) if target]
+    return f"{place.how}({', '.join(inner)})"
+
+
+def _place(target: Target) -> str:
+    """Returns a place; without a noun it is a turn, as ``pointing`` takes it."""
+    words: list[str] = [target.kind or target.noun or "turn"]
+    if target.numbers:
+        words.append(",".join(map(str, target.numbers)))
+    words += ["all"] if target.every else []
+    words += ["middle"] if target.middle else []
+    words += [name for name, most in SUPERLATIVES.items() if most == target.most]
+    words += [f"x{target.count}"] if target.count is not None else []
+    words += [word for word in (target.side, target.sharpness, target.way, target.size) if word]
+    for key in ("deg", "len"):
+        if (value := getattr(target, NUMBERS[key])) is not None:
+            words.append(f"{key}={_number(value)}")
+    words += [name for name, half in HALVES.items() if half == target.half]
+    words += [_position(target.place)] if target.place else []
+    words += [f"but({_place(target.but)})"] if target.but else []
+    return " ".join(words)
+
+
+def _number(value: float) -> str:
+    """Returns a number in plain decimals, never with an exponent."""
+    return f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def read_change_plan(line: str) -> EditRequest:
+    """Returns the changes that a plan describes.
+
+    Raises:
+        EditError: A word or number is not part of the language, or stands where it cannot; the message names
+            it.
+    """
+    changes = tuple(_Parser(part).change() for part in line.split(";") if part.strip())
+    if not changes:
+        raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
+    return EditRequest(line, changes)
+
+
+class _Parser:
+    """Reads one change from its tokens, from left to right."""
+
+    def __init__(self, text: str) -> None:
+        self.text = " ".join(text.split())
+        self.tokens: list[str] = []
+        at = 0
+        while at < len(self.text):
+            match = TOKEN.match(self.text, at)
+            if match is None:
+                raise self._error(self.text[at:].split()[0])
+            self.tokens.append(match[0].strip())
+            at = match.end()
+        self.at = 0
+
+    def change(self) -> Change:
+        """Returns the change."""
+        if self._take("add"):
+            found = self._new()
+        else:
+            target = self._target()
+            if not self._take(":"):
+                raise EditError(
+                    f"the change '{self.text[:60]}' does not say what is wanted; "
+                    "write the place, a colon and the wish"
+                )
+            found = self._wish(target)
+        if self._next():
+            raise self._error(self._next())
+        return replace(found, words=self.text)
+
+    def _wish(self, target: Target) -> Change:
+        what = self._word()
+        if what in ALONE:
+            whole = what == "mirror" and target.noun == "road"
+            return Change(cast(Any, what), None if whole else target)
+        if what == "side":
+            side = self._word()
+            if side not in (*get_args(Side), "other"):
+                raise self._error(side)
+            return Change("side", target, side=None if side == "other" else cast(Side, side))
+        if what == "shape":
+            return self._shape(Change("shape", target))
+        if what not in MEASURES:
+            raise self._error(what)
+        change = Change(cast(Any, what), target)
+        if what == "slope" and self._next() in get_args(Way):
+            change = replace(change, way=cast(Way, self._word()))
+            if not self._next():
+                return change
+        return self._valued(change)
+
+    def _shape(self, change: Change) -> Change:
+        while word := self._next():
+            if word in KINDS | {"turn"} and change.kind is None:
+                change = replace(change, kind=cast(Kind, word))
+            elif word in get_args(Sharpness) and change.sharpness is None:
+                change = replace(change, sharpness=cast(Sharpness, word))
+            else:
+                raise self._error(word)
+            self.at += 1
+        if not (change.kind or change.sharpness):
+            raise self._error("")
+        return change
+
+    def _valued(self, change: Change) -> Change:
+        if self._take("="):
+            return replace(change, to=self._figure())
+        if self._take(".."):
+            return replace(change, to=self._figure(), bound=-1)
+        if self._take("+"):
+            return replace(change, more=1, by=self._figure())
+        if self._take("-"):
+            return replace(change, more=-1, by=self._figure())
+        if self._take("x"):
+            return replace(change, times=self._figure())
+        if _is_number(self._next()):
+            number = self._figure()
+            if number < 0 and not self._next():  # the sign belongs to the difference: -20
+                return replace(change, more=-1, by=-number)
+            if not self._take(".."):
+                raise self._error(self._next())
+            return replace(change, to=number, bound=1)
+        dose = DOSES.get(self._next(), 1.0)
+        self.at += dose != 1.0
+        word = self._word()
+        if word not in ("more", "less"):
+            raise self._error(word)
+        return replace(change, more=1 if word == "more" else -1, dose=dose)
+
+    def _new(self) -> Change:
+        kind = self._word()
+        if kind not in KINDS | {"turn", "straight"}:
+            raise self._error(kind)
+        noun: Any = "straight" if kind == "straight" else "turn"
+        own = cast(Kind, kind) if kind in KINDS else None
+        change = Change("add", Target(noun, indefinite=True, words=kind), kind=own)
+        fields: dict[str, Any] = {}
+        while word := self._next():
+            self.at += 1
+            if word == "x":
+                self._set(fields, "count", self._whole())
+            elif word == "whole":
+                self._set(fields, "is_whole", True)
+            elif word in NUMBERS:
+                self._set(fields, NUMBERS[word], self._equal())
+            elif PROPERTIES.get(word) in ("side", "sharpness", "way"):
+                self._set(fields, PROPERTIES[word], word)
+            elif word in ENDS or word in POSITIONS:
+                self._set(fields, "place", self._position(word))
+            else:
+                raise self._error(word)
+        return replace(change, **fields)
+
+    def _position(self, word: str) -> Place:
+        if word in ENDS:
+            return Place(ENDS[word])
+        self._need("(")
+        target = self._target()
+        other = None
+        if word == "between":
+            self._need(",")
+            other = self._target()
+        self._need(")")
+        return Place(cast(Any, word), target, other)
+
+    def _target(self) -> Target:
+        begun = self.at
+        noun = self._word()
+        if noun not in (*NOUNS, *KINDS):
+            raise self._error(noun)
+        fields: dict[str, Any] = {"kind": noun} if noun in KINDS else {}
+        while (word := self._next()) not in ("", ":", ")", ","):
+            if _is_number(word):
+                self._set(fields, "numbers", self._list())
+                continue
+            self.at += 1
+            if word == "all":
+                self._set(fields, "every", True)
+            elif word == "middle":
+                self._set(fields, "middle", True)
+            elif word in SUPERLATIVES:
+                self._set(fields, "most", SUPERLATIVES[word])
+            elif word == "x":
+                self._set(fields, "count", self._whole())
+            elif word in ("deg", "len"):
+                self._set(fields, NUMBERS[word], self._equal())
+            elif word in HALVES:
+                self._set(fields, "half", HALVES[word])
+            elif word in PROPERTIES:
+                self._set(fields, PROPERTIES[word], word)
+            elif word in POSITIONS or word in ENDS:
+                self._set(fields, "place", self._position(word))
+            elif word == "but":
+                self._need("(")
+                self._set(fields, "but", self._target())
+                self._need(")")
+            else:
+                raise self._error(word)
+        words = " ".join(self.tokens[begun : self.at])
+        return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
+
+    def _list(self) -> tuple[int, ...]:
+        numbers = [self._whole()]
+        while self._next() == "," and _is_number(self._next(1)):
+            self.at += 1
+            numbers.append(self._whole())
+        return tuple(numbers)
+
+    def _set(self, fields: dict[str, Any], name: str, value: Any) -> None:
+        if name in fields:
+            raise EditError(f"the change '{self.text[:60]}' gives its {name} twice; give it once")
+        fields[name] = value
+
+    def _equal(self) -> float:
+        self._need("=")
+        return self._figure()
+
+    def _figure(self) -> float:
+        word = self._word()
+        if not _is_number(word):
+            raise self._error(word)
+        return float(word)
+
+    def _whole(self) -> int:
+        number = self._figure()
+        if not number.is_integer() or not number:
+            raise self._error(_number(number))
+        return int(number)
+
+    def _need(self, sign: str) -> None:
+        if not self._take(sign):
+            raise self._error(self._next())
+
+    def _take(self, word: str) -> bool:
+        is_next = self._next() == word
+        self.at += is_next
+        return is_next
+
+    def _word(self) -> str:
+        self.at += 1
+        return self.tokens[self.at - 1] if self.at <= len(self.tokens) else ""
+
+    def _next(self, further: int = 0) -> str:
+        place = self.at + further
+        return self.tokens[place] if place < len(self.tokens) else ""
+
+    def _error(self, word: str) -> EditError:
+        where = f"'{word[:40]}' is not expected in" if word else "something is missing at the end of"
+        return EditError(f"{where} the change '{self.text[:60]}'; {PAGE}")
+
+
+def _is_number(word: str) -> bool:
+    return bool(re.fullmatch(r"-?\d+(?:\.\d+)?", word))

@@ -1,0 +1,109 @@
+"""Plans as users write them: in short forms, with things beside the road, with refusals."""
+
+from pathlib import Path
+
+import pytest
+
+from roadgpt.brief import read, remarks
+from roadgpt.brief.beside import BESIDE, NOT_BUILT, OPTIONS
+from roadgpt.brief.model import Amount, Brief, Clause, exactly
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.plan import PlanReader
+from roadgpt.brief.refusal import BEYOND, CLASHING
+from roadgpt.check.measures import measure
+from roadgpt.design import draft
+from roadgpt.errors import BriefError
+from roadgpt.road import World, build
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "plans.md"
+
+
+def examples(language: str) -> list[str]:
+    """The lines of the page's fenced blocks of one language."""
+    text = PAGE.read_text(encoding="utf-8")
+    blocks = text.split(f"```{language}\n")[1:]
+    return [line for block in blocks for line in block.split("```")[0].splitlines()]
+
+
+def test_a_number_without_a_key_is_the_angle_of_a_turn_and_the_length_of_a_straight() -> None:
+    brief = read_plan("turn left 90 r30; straight 40..60; hairpin 170 r..20")
+    assert brief.clauses == (
+        Clause(kind="turn", side="left", degrees=exactly(90), radius=exactly(30)),
+        Clause(kind="straight", length=Amount(lo=40, hi=60)),
+        Clause(kind="hairpin", degrees=exactly(170), radius=Amount(hi=20)),
+    )
+
+
+def test_a_plan_becomes_the_road_that_it_describes() -> None:
+    brief = read("turn left 90 r30; straight 40; turn right 60", reader="plan")
+    found = measure(build(draft(brief, World(), seed=3)).sample().points)
+    first, second = found.turns
+    assert (first.side, second.side) == ("left", "right")
+    assert first.degrees == pytest.approx(90, abs=10)
+    assert first.radius == pytest.approx(30, rel=0.15)
+    assert second.degrees == pytest.approx(60, abs=8)
+    (between,) = found.gaps[1]
+    assert between.length == pytest.approx(40, rel=0.15)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("", "the plan is empty"),
+        ("straigt 40", "no clause 'straigt'"),
+        ("straight 40 r30", "a straight has no radius"),
+        ("crest left", "a crest has no side"),
+        ("turn long", "a turn has no size"),
+        ("turn 90 deg=60", "gives degrees twice"),
+        ("turn 90 60", "gives degrees twice"),
+        ("turn r30 r=20", "gives radius twice"),
+        ("turn 9x", "'9x' is not a number"),
+        ("turn | beside(moon)", "'moon' is none of the things beside a road"),
+        ("turn | beside()", "'' is none of the things beside a road"),
+        ("!contradiction turns sides", "contradicts itself about the number of turns and left and right"),
+        ("!impossible roundabout", "no such road can be built: a roundabout"),
+        ("!impossible turns roundabouts", "a plan has no refusal '!impossible turns roundabouts'"),
+        ("!nonsense turns", "a plan has no refusal"),
+        ("!perhaps", "a plan has no refusal '!perhaps'"),
+        ("!nonsense", "does not describe a road"),
+        ("| turns=3 lefts=2 rights=2", "left"),
+    ],
+)
+def test_what_is_no_plan_of_a_road_is_refused_in_one_sentence(line: str, told: str) -> None:
+    with pytest.raises(BriefError, match=told.replace("(", r"\(")) as refusal:
+        PlanReader().read(line)
+    assert "\n" not in str(refusal.value)
+
+
+def test_things_beside_the_road_are_kept_and_told_by_name() -> None:
+    brief = read_plan("turn | hard beside(roundabout, wet)")
+    assert brief.beside == ("roundabout", "wet")
+    assert read_plan(plan(brief)) == brief
+    assert remarks(brief, 250) == (
+        "a roundabout is not built yet; the road is made without it",
+        "a wet surface is set with --friction 0.6",
+    )
+    assert Brief.model_validate_json(brief.model_dump_json()) == brief
+
+
+def test_every_name_of_the_language_has_a_remark_and_stands_on_the_page() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    words = {word for part in text.split("`")[1::2] for word in part.split()}
+    assert not NOT_BUILT.keys() & OPTIONS.keys()
+    assert not {*BESIDE, *CLASHING, *BEYOND} - words
+    for name in BESIDE:
+        (told,) = remarks(Brief(beside=(name,)), 250)
+        assert len(told) > 20
+
+
+@pytest.mark.parametrize("line", examples("plan"))
+def test_the_plans_of_the_page_are_plans(line: str) -> None:
+    brief = PlanReader().read(line)
+    assert read_plan(plan(brief)).model_copy(update={"words": line}) == brief
+
+
+@pytest.mark.parametrize("line", examples("refusal"))
+def test_the_refusals_of_the_page_are_refusals(line: str) -> None:
+    with pytest.raises(BriefError) as refusal:
+        PlanReader().read(line)
+    assert "has no refusal" not in str(refusal.value)

@@ -1,0 +1,198 @@
+"""Plans of changes: they say all that a request says, and make the same road."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from edit_truth import requests, roads
+from roadgpt.brief.model import Sharpness, Side
+from roadgpt.check.measures import measure
+from roadgpt.design.edit import edit, read_request
+from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.design.edit.request import Change, EditRequest, Place, Target, Way
+from roadgpt.errors import EditError
+from roadgpt.road import Design, World, build
+
+PAGE = Path(__file__).parents[2] / "docs" / "reference" / "plans.md"
+WORLD = World()
+KNOWN = roads()
+
+
+@cache
+def changed(road: str, request: str | EditRequest) -> Design | str:
+    """The changed road, or 'refused'."""
+    try:
+        return edit(KNOWN[road], request, WORLD).design
+    except EditError:
+        return "refused"
+
+
+def understood() -> list[tuple[str, str]]:
+    """Every request of the collection that can be read, with its road."""
+    out = []
+    for row in requests():
+        try:
+            read_request(row["request"])
+        except EditError:
+            continue
+        out.append((row["road"], row["request"]))
+    return out
+
+
+@pytest.mark.parametrize(("road", "words"), understood())
+def test_a_request_and_its_plan_make_the_same_road(road: str, words: str) -> None:
+    line = change_plan(read_request(words))
+    assert changed(road, read_change_plan(line)) == changed(road, words), line
+
+
+SIDES: st.SearchStrategy[Side] = st.sampled_from(["left", "right"])
+SHARPNESS: st.SearchStrategy[Sharpness] = st.sampled_from(["gentle", "sweeping", "sharp"])
+WAYS: st.SearchStrategy[Way] = st.sampled_from(["up", "down", "flat"])
+NUMBERS = st.integers(1, 4000).map(lambda n: n / 20)
+PLACED = st.deferred(lambda: PLACES)
+TARGETS = st.deferred(
+    lambda: (
+        st.builds(
+            Target,
+            noun=st.sampled_from(["turn", "straight", "start", "end", "road"]),
+            numbers=st.lists(st.integers(1, 9) | st.integers(-3, -1), max_size=3).map(tuple),
+            every=st.booleans(),
+            middle=st.booleans(),
+            most=st.none() | st.tuples(st.sampled_from(["sharp", "long", "steep"]), st.sampled_from([1, -1])),
+            count=st.none() | st.integers(1, 9),
+            side=st.none() | SIDES,
+            sharpness=st.none() | SHARPNESS,
+            way=st.none() | WAYS,
+            size=st.none() | st.sampled_from(["long", "short"]),
+            degrees=st.none() | NUMBERS,
+            length=st.none() | NUMBERS,
+            half=st.none() | st.sampled_from([1, 2]),
+            place=st.none() | PLACED,
+            but=st.none() | TARGETS,
+        )
+        | st.builds(Target, noun=st.just("turn"), kind=st.sampled_from(["hairpin", "u_turn", "s_bend"]))
+    )
+)
+PLACES = (
+    st.builds(Place, st.sampled_from(["after", "before", "on"]), TARGETS)
+    | st.builds(Place, st.just("between"), TARGETS, TARGETS)
+    | st.builds(Place, st.sampled_from(["start", "end", "middle"]))
+)
+MEASURED = st.sampled_from(["angle", "radius", "length", "slope"])
+CHANGES = (
+    st.builds(Change, MEASURED, TARGETS, to=NUMBERS, bound=st.sampled_from([-1, 0, 1]))
+    | st.builds(Change, MEASURED, TARGETS, by=NUMBERS, more=st.sampled_from([-1, 1]))
+    | st.builds(Change, MEASURED, TARGETS, times=NUMBERS)
+    | st.builds(
+        Change, MEASURED, TARGETS, more=st.sampled_from([-1, 1]), dose=st.sampled_from([0.5, 1.0, 1.8])
+    )
+    | st.builds(Change, st.just("slope"), TARGETS, way=WAYS, to=st.none() | NUMBERS)
+    | st.builds(Change, st.just("side"), TARGETS, side=st.none() | SIDES)
+    | st.builds(Change, st.just("shape"), TARGETS, kind=st.just("hairpin"), sharpness=st.none() | SHARPNESS)
+    | st.builds(Change, st.sampled_from(["straighten", "remove", "alternate"]), TARGETS)
+    | st.builds(
+        Change,
+        st.just("add"),
+        st.just(Target("turn", indefinite=True)),
+        side=st.none() | SIDES,
+        kind=st.none() | st.sampled_from(["hairpin", "s_bend"]),
+        sharpness=st.none() | SHARPNESS,
+        count=st.integers(1, 4),
+        way=st.none() | WAYS,
+        place=st.none() | PLACES,
+        degrees=st.none() | NUMBERS,
+        radius=st.none() | NUMBERS,
+        grade=st.none() | NUMBERS.map(lambda n: -n),
+        is_whole=st.booleans(),
+    )
+)
+
+
+def without_words(text: str) -> str:
+    """The same value without the texts that messages quote."""
+    return re.sub(r"words='[^']*'", "words=''", text)
+
+
+@given(st.lists(CHANGES, min_size=1, max_size=3))
+def test_a_plan_says_all_of_a_request(changes: list[Change]) -> None:
+    request = EditRequest("", tuple(changes))
+    line = change_plan(request)
+    again = read_change_plan(line)
+    assert without_words(repr(again.changes)) == without_words(repr(request.changes)), line
+    assert change_plan(again) == line
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("", "names no change"),
+        (" ; ", "names no change"),
+        ("turn 2", "does not say what is wanted"),
+        ("turn 2:", "something is missing"),
+        ("turn 2: radius", "something is missing"),
+        ("turn 2: radius =", "something is missing"),
+        ("turn 2: radius 20", "something is missing"),
+        ("turn 2: radius x0.75 x2", "'x' is not expected"),
+        ("turn 2: colour blue", "'colour' is not expected"),
+        ("turn 2.5: remove", "'2.5' is not expected"),
+        ("turn 0: remove", "'0' is not expected"),
+        ("turn 2 left right: remove", "gives its side twice"),
+        ("moon: remove", "'moon' is not expected"),
+        ("turn 2: side up", "'up' is not expected"),
+        ("turn 2: shape", "something is missing"),
+        ("turn after(turn 2: remove", "':' is not expected"),
+        ("straight between(turn 1): remove", "'\\)' is not expected"),
+        ("add moon", "'moon' is not expected"),
+        ("add turn deg=x", "'x' is not expected"),
+        ("turn 2: remove; $", "'\\$' is not expected"),
+        ("turn 2: radius more than", "'than' is not expected"),
+    ],
+)
+def test_what_is_no_change_is_refused_in_one_sentence(line: str, told: str) -> None:
+    with pytest.raises(EditError, match=told) as refusal:
+        read_change_plan(line)
+    assert "\n" not in str(refusal.value)
+
+
+@given(st.text(alphabet="turn 12:;,().=x-+abdeghilmorsw", max_size=60))
+def test_any_text_is_a_plan_or_refused(line: str) -> None:
+    try:
+        request = read_change_plan(line)
+    except EditError:
+        return
+    assert read_change_plan(change_plan(request))
+
+
+def test_a_plan_changes_what_it_names_and_nothing_else() -> None:
+    old = KNOWN["r01"]
+    before, after = (
+        measure(build(old).sample().points),
+        measure(build(edit(old, read_change_plan("turn 2: radius x0.75"), WORLD).design).sample().points),
+    )
+    assert after.turns[1].radius == pytest.approx(0.75 * before.turns[1].radius, rel=0.05)
+    for number in (0, 2):
+        assert after.turns[number].radius == pytest.approx(before.turns[number].radius, rel=0.02)
+        assert after.turns[number].degrees == pytest.approx(before.turns[number].degrees, abs=1)
+
+
+def test_what_is_not_on_the_road_is_refused_by_the_words_of_the_plan() -> None:
+    with pytest.raises(EditError, match="there is no ninth turn"):
+        edit(KNOWN["r01"], read_change_plan("turn 9: remove"), WORLD)
+    with pytest.raises(EditError, match="'turn' could be any of 3"):
+        edit(KNOWN["r01"], read_change_plan("turn: remove"), WORLD)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        line
+        for block in PAGE.read_text(encoding="utf-8").split("```change\n")[1:]
+        for line in block.split("```")[0].splitlines()
+    ],
+)
+def test_the_changes_of_the_page_are_plans(line: str) -> None:
+    assert change_plan(read_change_plan(line)) == line
