@@ -112,9 +112,10 @@ class Clause(Frozen):
 
     kind: Kind
     count: Amount = Amount(lo=1, hi=1)
-    """How many features of this kind follow one another. For a serpentine, zigzag, slalom, winding road or
+    """The number of features of this kind in a row. For a serpentine, zigzag, slalom, winding road or
     switchback with a number ("4 switchbacks"), ``count`` is the number of turns. An s_bend or a chicane
-    counts as one feature ("two S-bends" is 2)."""
+    counts as one feature ("two S-bends" is 2).
+    """
     side: Side | None = None
     """The direction of every turn; if the turns alternate, that of the first."""
     alternating: bool = False
@@ -162,7 +163,7 @@ class Brief(Frozen):
     climb: Amount | None = None
     """The height of the end above the start in metres, negative if the road falls."""
     hills: Amount | None = None
-    """How often the road changes between climbing and falling."""
+    """The number of changes between climbing and falling."""
     length: Amount | None = None
     """The length of the whole road in metres."""
     starts: Clause | None = None

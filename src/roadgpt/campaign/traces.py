@@ -1,11 +1,11 @@
 """Stores the drives of a campaign compactly: every column at 50 Hz, as integer multiples of small steps.
 
-The drives of a group of tests are one file under ``traces/``, in the format of ``numpy.savez``. Its entry
-``header`` is a line of JSON: the ``columns`` in their order, the ``steps`` in which they are measured, and
-the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 is the entry ``c02/17``, integers
-``(columns, n)``: the second differences of each column, in steps, which are near 0 for a car's motion and
-compress well (12 kB for a drive of 28 s). The cumulative sum of a row, taken twice and multiplied by its
-step, is the column of ``roadgpt.drive.COLUMNS`` in its unit.
+The drives of a group of tests are stored in one file under ``traces/``, in the format of ``numpy.savez``. Its
+entry ``header`` is a line of JSON: the ``columns`` in their order, the ``steps`` in which they are measured,
+and the tests whose ``drives`` the file holds. The drive of test 17 of cell c02 is the entry ``c02/17``,
+integers ``(columns, n)``: the second differences of each column, in steps, which are near 0 for a car's
+motion and compress well (12 kB for a drive of 28 s). The cumulative sum of a row, taken twice and multiplied
+by its step, is the column of ``roadgpt.drive.COLUMNS`` in its unit.
 
 Stores of earlier versions hold Apache Parquet files instead (``parquet_traces``).
 """

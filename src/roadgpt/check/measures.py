@@ -94,7 +94,7 @@ class Measures:
     steepest: float
     """Greatest absolute grade over any 10 m in percent."""
     hills: int
-    """How often the road changes between climbing and falling; grades are averaged over 20 m."""
+    """Number of changes between climbing and falling; grades are averaged over 20 m."""
     radius: float
     """Radius in metres at the tightest place of the road."""
     turning: float

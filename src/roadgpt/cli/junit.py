@@ -99,7 +99,7 @@ def _named(words: str) -> str:
 
 
 def common(request: "Request") -> "Properties":
-    """Returns the settings of a request as JUnit properties, which hold for all its tests."""
+    """Returns the settings that all tests of a request share, as JUnit properties."""
     setup, world = request.setup, request.world
     return {
         "words": request.words or None,

@@ -46,7 +46,7 @@ class Option(click.Option):
         sentence: The option's text in the help.
         kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
         default: The value if the option is not given; the help shows it unless ``sentence`` states a default.
-        heading: The heading in the help.
+        heading: The heading under which the help lists the option.
         is_rare: Whether --help omits the option and only --help-all lists it; has no effect on commands with
             few options.
         table: The table of configuration files in which the option can be set; empty if files cannot set it.

@@ -209,7 +209,8 @@ def shown_runs(
 
 
 def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
-    """Returns the Run of a road, or a new Run without a drive for a road file; prints remarks.
+    """Returns the Run of a road, or a new Run without a drive for a road file; prints the remarks of
+    ``blueprint_of``.
 
     Raises:
         UsageError: The road cannot be read.

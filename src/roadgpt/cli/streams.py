@@ -83,7 +83,7 @@ def warn(sentence: object) -> None:
 
 
 def is_coloured() -> bool:
-    """Returns whether colours are wanted on a terminal."""
+    """Returns whether output on a terminal may be coloured, from the variables NO_COLOR and TERM."""
     return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 

@@ -1,10 +1,9 @@
 """Drafts long roads turn by turn, directly on the map.
 
-A draft that is composed as a whole and then placed hardly ever fits if the road is much longer than the side
-of the map. A long road therefore starts at a random place on the map. For every turn, several combinations of
-side, angle and preceding straight are tried. The first one that stays on the map, keeps clear of the road so
-far and leaves room ahead is used. If the description leaves the number of turns open, a longer road has more
-turns.
+If the road is much longer than the side of the map, a draft that is composed as a whole hardly ever fits. A
+long road therefore starts at a random place on the map. For every turn, several combinations of side, angle
+and preceding straight are tried. The first one that stays on the map, keeps clear of the road so far and
+leaves room ahead is used. If the description leaves the number of turns open, a longer road has more turns.
 """
 
 from collections.abc import Sequence

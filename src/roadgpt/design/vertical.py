@@ -135,7 +135,8 @@ def made_to_fit(
     pace: Pace,
     roomier: float = 1.0,
 ) -> list[float]:
-    """Returns grades, changed so that the parabolas that the rule ``too_abrupt`` requires fit between them.
+    """Returns grades, changed so that parabolas as large as the rule ``too_abrupt`` requires fit between
+    them.
 
     Args:
         grades: grade of each segment in percent.

@@ -1,7 +1,7 @@
 """The test generator ``genetic``: a plain genetic algorithm whose roads all satisfy the Brief.
 
-The fittest roads so far, those that came nearest to failing, are crossed and mutated; the parents are the
-winners of small tournaments. It has no feature map and no surrogate, and serves as a baseline for
+The fittest roads so far, on which the car came nearest to failing, are crossed and mutated; the parents are
+the winners of small tournaments. It has no feature map and no surrogate, and serves as a baseline for
 ``quality_diversity``.
 """
 

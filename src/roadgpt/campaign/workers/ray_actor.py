@@ -21,9 +21,7 @@ class RayActor:
         self._shared: dict[str, Any] = {}
 
     def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
-        """Prepares the worker; returns its Ray node, host name and process id, or the error that prevented
-        it.
-        """
+        """Prepares the worker; returns its Ray node, host name and process id, or the error that occurred."""
         import ray
 
         from roadgpt import __version__

@@ -32,7 +32,7 @@ def unordered_map(function: Callable[[T], U], items: Sequence[T], workers: int, 
 
     Raises:
         UsageError: the log is a symbolic link.
-        RoadGPTError: workers cannot be started, or three of them died over the same item.
+        RoadGPTError: workers cannot be started, or three of them died while working on the same item.
         Exception: any error that ``function`` raises.
     """
     refuse_links(log)

@@ -22,7 +22,7 @@ HILLY = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """Which numbers a description can imply: angles ("right angle"), a grade ("mountain road"), a number
+    """The numbers that a description can imply: angles ("right angle"), a grade ("mountain road"), a number
     of hills ("rolling").
     """
 
