@@ -3,7 +3,7 @@
 from math import ceil, floor, sqrt
 
 from roadgpt.brief.minimum_length import least_length
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, span
 from roadgpt.brief.normal import STRAIGHT
 from roadgpt.brief.refusal import NoRoomError
 from roadgpt.brief.words import LENGTH_SLACK, ROAD_LENGTH_SLACK
@@ -48,14 +48,14 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
     """
     _straights(brief, map_size, road_width)
     for clause in brief.clauses:
-        if clause.radius and (clause.radius.lo or 0) > map_size:
+        radius = span(clause.radius).lo
+        if radius > map_size:
             raise BriefError(
-                f"a radius of {clause.radius.lo:g} m is wider than the map of {map_size:g} m;"
+                f"a radius of {radius:g} m is wider than the map of {map_size:g} m;"
                 f" ask for {map_size / 2:g} m"
             )
-    metres = least = least_length(brief, min_radius)
-    if brief.length and brief.length.lo is not None:
-        metres = max(metres, brief.length.lo * (1 - ROAD_LENGTH_SLACK))
+    least = least_length(brief, min_radius)
+    metres = max(least, span(brief.length).lo * (1 - ROAD_LENGTH_SLACK))
     if metres > map_size * map_size / WIDTH_OF_A_TURN:
         offer = floor(SIDES_OF_ROAD * map_size / 10) * 10
         less = f"{offer} m, " if brief.length and least < offer else ""
@@ -69,16 +69,17 @@ def check_room(brief: Brief, map_size: float, min_radius: float, road_width: flo
 def _straights(brief: Brief, map_size: float, road_width: float) -> None:
     """Checks that each straight fits from corner to corner; if there are no turns, the whole road has to."""
     longest = longest_straight(map_size, road_width)
-    lengths = [c.length.lo or 0.0 for c in brief.clauses if c.kind == "straight" and c.length]
-    if lengths and max(lengths) * (1 - LENGTH_SLACK) > longest:
-        raise _too_long("a straight", max(lengths), brief, map_size, road_width)
+    straight = max((span(c.length).lo for c in brief.clauses if c.kind == "straight"), default=0.0)
+    if straight * (1 - LENGTH_SLACK) > longest:
+        raise _too_long("a straight", straight, brief, map_size, road_width)
     if not brief.turns or brief.turns.hi != 0:
         return
-    said = sum((c.length.lo or 0) if c.length else 0 for c in brief.clauses if c.kind in STRAIGHT)
+    said = sum(max(span(c.length).lo, 0) for c in brief.clauses if c.kind in STRAIGHT)
     if least_length(brief, 0.0) > longest:
         raise _too_long("a straight road", said or least_length(brief, 0.0), brief, map_size, road_width)
-    if brief.length and brief.length.lo and brief.length.lo * (1 - ROAD_LENGTH_SLACK) > longest:
-        raise _too_long("a straight road", brief.length.lo, brief, map_size, road_width)
+    length = span(brief.length).lo
+    if length * (1 - ROAD_LENGTH_SLACK) > longest:
+        raise _too_long("a straight road", length, brief, map_size, road_width)
 
 
 def _too_long(what: str, metres: float, brief: Brief, map_size: float, road_width: float) -> NoRoomError:

@@ -1,10 +1,10 @@
 """Computes a lower bound of the length of the roads that satisfy a Brief."""
 
-from math import radians
+from math import inf, radians
 
-from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, total, turns_of
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, SHARPNESS, SIZES
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, LENGTH_SLACK, SHARPNESS, SIZES
 
 WAY_OF_A_TURN = 30.0  # metres that a turn and the straight after it need at least
 GAP = 16.0  # metres of straight between two turns to the same side
@@ -18,17 +18,16 @@ def least_length(brief: Brief, min_radius: float) -> float:
         min_radius: radius of the tightest turn allowed, in metres.
     """
     metres = sum(_way(clause, min_radius) for clause in brief.clauses)
-    extra = (brief.turns.lo or 0) - (total(brief.clauses).lo or 0) if brief.turns else 0
+    extra = span(brief.turns).lo - span(total(brief.clauses)).lo
     return metres + max(extra, 0) * WAY_OF_A_TURN
 
 
 def _way(clause: Clause, min_radius: float) -> float:
     """Returns the least length of a clause in metres."""
     if clause.kind in STRAIGHT:
-        if clause.length and clause.length.lo is not None:
-            return 0.85 * clause.length.lo
         size = SIZES[clause.size].length if clause.size else None
-        return size.lo if size else LEAST_STRAIGHT
+        least = (1 - LENGTH_SLACK) * span(clause.length).lo
+        return least if least > -inf else size.lo if size else LEAST_STRAIGHT
     least, _ = turns_of(clause)
     own, sharp = KINDS[clause.kind].degrees, SHARPNESS[clause.sharpness] if clause.sharpness else None
     angle = clause.degrees.lo if clause.degrees and clause.degrees.lo else own.lo if own else 25.0
@@ -36,6 +35,6 @@ def _way(clause: Clause, min_radius: float) -> float:
         angle = sharp.degrees.lo
     radius = sharp.radius.lo if sharp and sharp.radius else 0.0
     if clause.radius and clause.radius.lo:
-        radius = 0.85 * clause.radius.lo
+        radius = (1 - LENGTH_SLACK) * clause.radius.lo
     arc = radians(angle) * max(radius, min_radius)
     return least * max(arc + (0 if clause.kind in ("s_bend", "chicane") else GAP), WAY_OF_A_TURN * 0.8)

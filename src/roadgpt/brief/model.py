@@ -4,11 +4,14 @@ Numbers in a Brief are in everyday units (degrees, metres and percent), so that 
 """
 
 from collections.abc import Iterator
+from math import inf
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from roadgpt.brief.beside import BESIDE
+
+from roadgpt.brief.words import Range
 
 Side = Literal["left", "right"]
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
@@ -80,6 +83,12 @@ class Amount(Frozen):
     def exact(self) -> bool:
         """True if the amount is a single number, not a bound or a range."""
         return self.lo == self.hi
+
+
+def span(amount: Amount | None) -> Range:
+    """Returns the numbers that an amount allows as an interval; None allows every number."""
+    lo, hi = (amount.lo, amount.hi) if amount else (None, None)
+    return Range(-inf if lo is None else lo, inf if hi is None else hi)
 
 
 def figure(number: float) -> str:

@@ -17,7 +17,7 @@ from collections.abc import Iterator
 from math import ceil, radians
 
 from roadgpt.brief.map_fit import LARGEST_MAP
-from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
 from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
 
@@ -80,7 +80,7 @@ def has_low_grades(brief: Brief) -> bool:
     things: list[Brief | Clause] = [brief, *_clauses(brief)]
     steep = any(thing.slope in STEEP and not thing.incline for thing in things)
     amounts = [brief.steepest, *(thing.incline for thing in things)]
-    return not steep and not any(amount and (amount.lo or 0) > MOTORWAY_GRADE for amount in amounts)
+    return not steep and not any(span(amount).lo > MOTORWAY_GRADE for amount in amounts)
 
 
 def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
@@ -121,21 +121,20 @@ def _needed(brief: Brief) -> float:
     if said.turns and said.turns.hi == 0:
         return 0.0
     turning = [clause for clause in said.clauses if clause.kind not in STRAIGHT]
-    straights = sum((c.length.lo or 0) if c.length else 0 for c in said.clauses if c.kind in STRAIGHT)
-    sides = sum((side.lo or 0) if side else 0 for side in (said.left, said.right))
-    more = max((said.turns.lo or 0) if said.turns else 0, sides, 1) - (total(turning).lo or 0)
+    straights = sum(max(span(c.length).lo, 0) for c in said.clauses if c.kind in STRAIGHT)
+    sides = sum(max(span(side).lo, 0) for side in (said.left, said.right))
+    count = max(span(total(turning)).lo, span(said.turns).lo, sides, 1)
+    more = count - span(total(turning)).lo
     curves = sum(turns_of(clause)[0] * _curve(clause) for clause in turning)
     if more > 0:
         curves += more * _curve(Clause(kind="turn", degrees=said.degrees, radius=said.radius))
-    count = (total(turning).lo or 0) + max(more, 0)
     return curves + (count - 1) * BETWEEN + straights + LEADS
 
 
 def _curve(clause: Clause) -> float:
     """Returns the least length of one turn in metres."""
-    degrees = (clause.degrees.lo or 0) if clause.degrees else 0.0
-    radius = max(MOTORWAY_RADIUS, (clause.radius.lo or 0) if clause.radius else 0)
-    return max(SHORTEST_CURVE, radius * radians(degrees))
+    degrees = max(span(clause.degrees).lo, 0.0)
+    return max(SHORTEST_CURVE, max(MOTORWAY_RADIUS, span(clause.radius).lo) * radians(degrees))
 
 
 def _is_tighter(brief: Brief) -> bool:
@@ -147,8 +146,7 @@ def _is_tighter(brief: Brief) -> bool:
 
 
 def _below(thing: Brief | Clause) -> bool:
-    hi = thing.radius.hi if thing.radius else None
-    return hi is not None and hi * (1 + LENGTH_SLACK) < MOTORWAY_RADIUS
+    return span(thing.radius).hi * (1 + LENGTH_SLACK) < MOTORWAY_RADIUS
 
 
 def _clauses(brief: Brief) -> Iterator[Clause]:

@@ -20,8 +20,7 @@
 
 from math import inf
 
-from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly
-from roadgpt.brief.sides import as_clause, forced_side, with_other_side
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly, span
 from roadgpt.brief.words import KINDS
 
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
@@ -54,7 +53,6 @@ def _simpler(brief: Brief) -> Brief:
     whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0})
     whole, clauses = _ends(whole, clauses)
     whole, clauses = _turns_as_clause(whole, clauses)
-    whole, clauses = as_clause(whole, clauses)
     whole, clauses = _sided(whole, clauses)
     whole, clauses = _pushed_down(whole, clauses)
     whole = _with_one_slope(whole, clauses)
@@ -117,7 +115,7 @@ def turns_of(clause: Clause) -> tuple[float, float]:
     """Returns the smallest and largest number of turns in a clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
-    lo, hi = clause.count.lo or 0.0, inf if clause.count.hi is None else clause.count.hi
+    lo, hi = max(span(clause.count).lo, 0.0), span(clause.count).hi
     if clause.kind in ("s_bend", "chicane"):
         return lo * least, hi * most
     return (least, most) if clause.count == exactly(1) else (lo, hi)
@@ -217,19 +215,22 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Turns 'exactly 3 turns' into a clause."""
-    turns = whole.turns
-    if clauses or not turns or not turns.exact or not turns.lo or whole.starts or whole.ends:
+    """Turns 'exactly 3 turns', or '3 turns or more, none to the right', into a clause."""
+    turns, side = whole.turns, _forced_side(whole)
+    if clauses or not turns or not turns.lo or whole.starts or whole.ends or not (turns.exact or side):
         return whole, clauses
-    return whole.model_copy(update={"turns": None}), [Clause(kind="turn", count=turns)]
+    alternating = whole.alternating and turns.exact
+    return whole.model_copy(update={"turns": None, "alternating": alternating}), [
+        Clause(kind="turn", count=turns, side=None if turns.exact else side)
+    ]
 
 
 def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
     """Fills in the sides of turns where the numbers leave no choice."""
     if not clauses_turn(clauses):
         return whole, clauses
-    whole = with_other_side(whole, total(clauses))
-    side = forced_side(whole)
+    whole = _with_other_side(whole, total(clauses))
+    side = _forced_side(whole)
     open_kinds = SINGLE - {"switchback"}
     if not side:
         return whole, clauses
@@ -237,6 +238,27 @@ def _sided(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
         c.model_copy(update={"side": side}) if c.kind in open_kinds and not (c.side or c.alternating) else c
         for c in clauses
     ]
+
+
+def _with_other_side(whole: Brief, turns: Amount) -> Brief:
+    """Fills in the number of turns in one direction, if the total and the number in the other direction
+    are exact.
+    """
+    for one, other in OTHER_SIDE.items():
+        counted: Amount | None = getattr(whole, one)
+        if turns.exact and counted and counted.exact and getattr(whole, other) is None:
+            rest = span(turns).lo - span(counted).lo
+            if rest >= 0:
+                return whole.model_copy(update={other: exactly(rest)})
+    return whole
+
+
+def _forced_side(whole: Brief) -> Side | None:
+    """Returns the direction of all turns if turns in the other direction are excluded; None if they are
+    not.
+    """
+    sides = [one for one, other in OTHER_SIDE.items() if getattr(whole, other) == exactly(0)]
+    return sides[0] if len(sides) == 1 else None
 
 
 def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
@@ -331,6 +353,4 @@ def _without_repeats(whole: Brief, clauses: list[Clause]) -> Brief:
 
 def _within(one: Amount, other: Amount) -> bool:
     """True if ``other`` allows every number that ``one`` allows."""
-    low = other.lo is None or (one.lo is not None and one.lo >= other.lo)
-    high = other.hi is None or (one.hi is not None and one.hi <= other.hi)
-    return low and high
+    return span(other).lo <= span(one).lo and span(one).hi <= span(other).hi

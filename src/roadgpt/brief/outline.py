@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal
 
-from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope
+from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.quantities import FEATURE, ROAD, Quantity
 from roadgpt.brief.words import (
@@ -282,9 +282,7 @@ def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
 
 
 def _count(amount: Amount | None) -> Range:
-    if amount is None:
-        return NO_LIMIT
-    return Range(amount.lo if amount.lo is not None else 0, amount.hi if amount.hi is not None else inf)
+    return Range(max(span(amount).lo, 0), span(amount).hi) if amount else NO_LIMIT
 
 
 def _angle(amount: Amount) -> Range:
@@ -298,7 +296,5 @@ def _near(amount: Amount | None, quantity: Quantity) -> Range | None:
     """Returns an exact number with its tolerance, and a bound or a range unchanged."""
     if amount is None:
         return None
-    if amount.exact and amount.lo is not None:
-        slack = quantity.slack(amount.lo)
-        return Range(amount.lo - slack, amount.lo + slack)
-    return Range(amount.lo if amount.lo is not None else -inf, amount.hi if amount.hi is not None else inf)
+    slack = quantity.slack(amount.lo) if amount.exact and amount.lo is not None else 0.0
+    return Range(span(amount).lo - slack, span(amount).hi + slack)
