@@ -10,7 +10,6 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
 from roadgpt.brief.beside import BESIDE
-
 from roadgpt.brief.words import Range
 
 Side = Literal["left", "right"]

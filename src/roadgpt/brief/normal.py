@@ -115,7 +115,7 @@ def turns_of(clause: Clause) -> tuple[float, float]:
     """Returns the smallest and largest number of turns in a clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
-    lo, hi = max(span(clause.count).lo, 0.0), span(clause.count).hi
+    lo, hi = max(span(clause.count).lo, 1.0), span(clause.count).hi
     if clause.kind in ("s_bend", "chicane"):
         return lo * least, hi * most
     return (least, most) if clause.count == exactly(1) else (lo, hi)

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
+from roadgpt.brief.normal import turns_of
 from roadgpt.brief.quantities import FEATURE, ROAD, Quantity
 from roadgpt.brief.words import (
     KINDS,
@@ -169,25 +170,10 @@ def _groups(clause: Clause, roomy: bool) -> list[Group]:
         return [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
     if clause.kind == "straight":
         return [Group(_straight(clause))]
-    lo, hi = _how_many(clause)
+    lo, hi = turns_of(clause)
     meaning = KINDS[clause.kind]
-    alternates = (clause.alternating or meaning.alternating) and (hi is None or hi > 1)
-    return [Group(_turn(clause, roomy), lo, hi, alternates)]
-
-
-def _how_many(clause: Clause) -> tuple[int, int | None]:
-    """Returns the least and largest number of turns of a clause.
-
-    For S-bends and chicanes it is the number of turns in all of them; for a serpentine and the like without a
-    number, it is the usual number of its kind.
-    """
-    own, asked = KINDS[clause.kind].turns or Range(1, 1), clause.count
-    lo, hi = asked.lo or 1, asked.hi
-    if clause.kind in ("s_bend", "chicane"):
-        return int(lo * own.lo), None if hi is None else int(hi * own.hi)
-    if asked == Amount(lo=1, hi=1) and own.lo > 1:
-        return int(own.lo), None if own.hi == inf else int(own.hi)
-    return int(lo), None if hi is None else int(hi)
+    alternates = (clause.alternating or meaning.alternating) and hi > 1
+    return [Group(_turn(clause, roomy), int(lo), None if hi == inf else int(hi), alternates)]
 
 
 def _turn(clause: Clause, roomy: bool, angle_is_free: bool = False) -> Feature:
