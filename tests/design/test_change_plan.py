@@ -78,7 +78,7 @@ TARGETS = st.deferred(
     )
 )
 PLACES = (
-    st.builds(Place, st.sampled_from(["after", "before", "on"]), TARGETS)
+    st.builds(Place, st.sampled_from(["after", "before", "from", "up_to", "on"]), TARGETS)
     | st.builds(Place, st.just("between"), TARGETS, TARGETS)
     | st.builds(Place, st.sampled_from(["start", "end", "middle"]))
 )
@@ -103,7 +103,7 @@ CHANGES = (
         sharpness=st.none() | SHARPNESS,
         count=st.integers(1, 4),
         way=st.none() | WAYS,
-        place=st.none() | PLACES,
+        place=st.none() | PLACES.filter(lambda place: place.how not in ("from", "up_to")),
         degrees=st.none() | NUMBERS,
         radius=st.none() | NUMBERS,
         grade=st.none() | NUMBERS.map(lambda n: -n),
@@ -147,6 +147,7 @@ def test_a_plan_says_all_of_a_request(changes: list[Change]) -> None:
         ("turn after(turn 2: remove", "':' is not expected"),
         ("straight between(turn 1): remove", "'\\)' is not expected"),
         ("add moon", "'moon' is not expected"),
+        ("add turn from(turn 2)", "'from' is not expected"),
         ("add turn deg=x", "'x' is not expected"),
         ("turn 2: remove; $", "'\\$' is not expected"),
         ("turn 2: radius more than", "'than' is not expected"),
@@ -177,6 +178,19 @@ def test_a_plan_changes_what_it_names_and_nothing_else() -> None:
     for number in (0, 2):
         assert after.turns[number].radius == pytest.approx(before.turns[number].radius, rel=0.02)
         assert after.turns[number].degrees == pytest.approx(before.turns[number].degrees, abs=1)
+
+
+def test_a_range_of_the_road_includes_what_it_is_counted_from() -> None:
+    old = KNOWN["r01"]
+    before = measure(build(old).sample().points)
+
+    def radii(line: str) -> list[float]:
+        found = measure(build(edit(old, read_change_plan(line), WORLD).design).sample().points)
+        return [new.radius / was.radius for new, was in zip(found.turns, before.turns, strict=True)]
+
+    assert radii("turn all from(turn 2): radius x1.3") == pytest.approx([1, 1.3, 1.3], rel=0.05)
+    assert radii("turn all up_to(turn 2): radius x1.3") == pytest.approx([1.3, 1.3, 1], rel=0.05)
+    assert radii("turn all after(turn 2): radius x1.3") == pytest.approx([1, 1, 1.3], rel=0.05)
 
 
 def test_what_is_not_on_the_road_is_refused_by_the_words_of_the_plan() -> None:

@@ -49,6 +49,13 @@ NOT_BUILT = {
     "cobbles": "a cobbled surface",
 }
 """Names of what RoadGPT does not build, with the words of the remark."""
+NEEDS_NUMBERS = {
+    "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
+    "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
+    "compared": "how one part compares with another is not built yet; give each its own number",
+    "alike": "equal or evenly spaced parts are not built yet; give each its own number",
+}
+"""Names of wishes that are understood and that only numbers can express yet, with the remark."""
 OPTIONS = {
     "wet": "a wet surface is set with --friction 0.6",
     "snow": "snow on the road is set with --friction 0.35",
@@ -59,11 +66,11 @@ OPTIONS = {
     "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
 }
 """Names of what an option sets and words do not, with the remark."""
-BESIDE = frozenset({*NOT_BUILT, *OPTIONS})
+BESIDE = frozenset({*NOT_BUILT, *NEEDS_NUMBERS, *OPTIONS})
 
 
 def remark(name: str) -> str:
     """Returns the sentence, without a full stop, that says what becomes of a thing of this name."""
-    if name in OPTIONS:
-        return OPTIONS[name]
-    return f"{NOT_BUILT[name]} is not built yet; the road is made without it"
+    if name in NOT_BUILT:
+        return f"{NOT_BUILT[name]} is not built yet; the road is made without it"
+    return NEEDS_NUMBERS.get(name) or OPTIONS[name]

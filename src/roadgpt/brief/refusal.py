@@ -12,6 +12,7 @@ ADVICE = {
     " the road is meant",
     "!impossible": "no such road can be built: junctions, roundabouts, loops, radii below 15 m and grades"
     " above 15 percent are not possible; leave that out",
+    "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
 }
 """The refusals of the language of plans, with what they say if no cause is named."""
 CLASHING = {

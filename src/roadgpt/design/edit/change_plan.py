@@ -34,7 +34,9 @@ PROPERTIES = {
 }
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
 HALVES = {"half1": 1, "half2": 2}
-POSITIONS = ("after", "before", "between", "on")
+BESIDE = ("after", "before", "between", "on")
+"""Where something new can stand."""
+POSITIONS = (*BESIDE, "from", "up_to")
 ENDS: dict[str, Literal["start", "end", "middle"]] = {
     "at_start": "start",
     "at_end": "end",
@@ -253,7 +255,7 @@ class _Parser:
                 self._set(fields, NUMBERS[word], self._equal())
             elif PROPERTIES.get(word) in ("side", "sharpness", "way"):
                 self._set(fields, PROPERTIES[word], word)
-            elif word in ENDS or word in POSITIONS:
+            elif word in ENDS or word in BESIDE:
                 self._set(fields, "place", self._position(word))
             else:
                 raise self._error(word)

@@ -55,12 +55,16 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
     if target.half:
         found = _half(elements, target.half)
     place = target.place
-    if place and place.target and place.how in ("after", "before", "between"):
+    if place and place.target and place.how != "on":
         marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
         if place.how == "after":
             found = found[marks[-1] + 1 :]
         elif place.how == "before":
             found = found[: marks[0]]
+        elif place.how == "from":
+            found = found[marks[0] :]
+        elif place.how == "up_to":
+            found = found[: marks[-1] + 1]
         elif place.other:
             stop = elements.index(pointed(_single(place.other), elements, what)[0])
             found = found[marks[-1] + 1 : stop]
@@ -155,6 +159,10 @@ def _placed(
     if place.how == "before":
         out = [element for element in found if at[element.name] < marks[0]]
         return out if many else out[-1:]
+    if place.how == "from":
+        return [element for element in found if at[element.name] >= marks[0]]
+    if place.how == "up_to":
+        return [element for element in found if at[element.name] <= marks[-1]]
     if place.how == "between" and place.other:
         stop = at[pointed(_named(place.other), elements, "length")[0].name]
         low, high = min(marks[-1], stop), max(marks[-1], stop)

@@ -76,9 +76,12 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A place on the road: after, before or on something, or between two things."""
+    """A place on the road: after, before or on something, or between two things.
 
-    how: Literal["after", "before", "between", "on", "start", "end", "middle"]
+    'from' and 'up_to' include the thing itself, as in 'from the third turn on'.
+    """
+
+    how: Literal["after", "before", "from", "up_to", "between", "on", "start", "end", "middle"]
     target: Target | None = None
     other: Target | None = None
 
