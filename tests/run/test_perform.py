@@ -6,7 +6,8 @@ import pytest
 
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
-from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.isolation import IsolatedDriver
+from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of
@@ -196,7 +197,7 @@ def test_a_driver_that_hangs_while_it_is_made_is_given_up(tmp_path: Path) -> Non
         "    def steer(self, view): ...\n"
     )
     with pytest.raises(DriverError, match=r"slow\.py:Slow was not made within 0\.5 s: let its __init__"):
-        driver_of(f"{file}:Slow", limit=0.5)
+        IsolatedDriver(f"{file}:Slow", limit=0.5)
     with pytest.raises(UsageError, match="has no class 'Fast'; it has Slow"):
         driver_of(f"{file}:Fast")
 

@@ -26,7 +26,7 @@ from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.loading import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.run import Draw, Setup, brief_of

@@ -14,10 +14,12 @@ from roadgpt.reading import json_of
 from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
 
-RESULT = (
-    "tests.cell, tests.number, batch, seed, given, outcome, cause, side, length, margin, max_oob, "
-    "beyond, at_s, "
-    "origin, design, description, features"
+MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s")
+"""The columns of the table ``tests`` that hold fields of a Result, of the same names."""
+SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
+"""The columns of the table ``tests`` that depend on the clock or on the session."""
+RESULT = ", ".join(
+    ("tests.cell, tests.number, batch, seed, given", *MEASURED, "origin, design, description, features")
 )
 """The columns of a result in the joined tables ``tests`` and ``details``."""
 
@@ -44,9 +46,8 @@ def proposal_rows(
 
 
 def result_values(result: Result) -> tuple[Any, ...]:
-    """Returns the values that are written to the table ``tests`` when a test has ended."""
-    numbers = (result.length, result.margin, result.max_oob, result.beyond, result.at_s)
-    return (result.outcome, result.cause, result.side, *map(_number, numbers))
+    """Returns the values of the columns ``MEASURED`` of a test that has ended."""
+    return tuple(_stored(getattr(result, name)) for name in MEASURED)
 
 
 def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
@@ -62,35 +63,24 @@ def _plain(text: str) -> str:
     return to_bytes(text).decode()
 
 
-def _number(value: float | None) -> float | None:
-    """Returns None for NaN, which SQLite does not have."""
-    return None if value is None or math.isnan(value) else float(value)
+def _stored(value: str | float | None) -> str | float | None:
+    """Returns None for NaN, which SQLite does not have, and other values unchanged."""
+    if value is None or isinstance(value, str):
+        return value
+    return None if math.isnan(value) else float(value)
 
 
 def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
     """Converts a row with the columns ``RESULT`` to the name of the cell and the result."""
-    cell, number, batch, seed, given, outcome, cause, side, length, margin, max_oob, beyond, at_s = row[:13]
-    origin, text, description, features = row[13:]
+    cell, number, batch, seed, given, *measured, origin, text, description, features = row
     values = _features_of(features)
     if not (isinstance(description, str) and isinstance(origin, str)):
         raise TypeError("a description is a text")
     design = design_of(text)
     proposal = Proposal(design if given else None, seed, origin)
+    named = dict(zip(MEASURED, measured, strict=True))
     return cell, Result(
-        number=number,
-        batch=batch,
-        proposal=proposal,
-        outcome=outcome,
-        description=description,
-        design=design,
-        length=length,
-        margin=margin,
-        max_oob=max_oob,
-        beyond=beyond,
-        at_s=at_s,
-        side=side,
-        cause=cause,
-        features=values,
+        number, batch, proposal, description=description, design=design, features=values, **named
     )
 
 

@@ -181,7 +181,7 @@ class RunFolder:
         with writing(self.folder):
             refuse_links(self.folder / RUNS)
             sweep(self.folder)
-            self._write_card(is_finished=False)
+            self.write_card(is_finished=False)
             (self.folder / RUNS).mkdir(exist_ok=True)
             sweep(self.folder / RUNS)
             write_description(self.request, self.roads, self.folder)
@@ -199,10 +199,14 @@ class RunFolder:
         written, self._held_back = self._held_back, []
         with writing(self.folder):
             for one in written:
-                write_whole(self.folder / test_name(one.result.number), one.test_file)
-                self._count(one)
-                self._tally.write(self.folder)
+                self.keep(one)
         return written
+
+    def keep(self, ended: FinishedRun) -> None:
+        """Writes the file of a test whose Run is in its folder, and then the tables; raises OSError."""
+        write_whole(self.folder / test_name(ended.result.number), ended.test_file)
+        self._count(ended)
+        self._tally.write(self.folder)
 
     def remove(self, number: int) -> None:
         """Removes a test that has no drive, so that it is run when the campaign continues."""
@@ -224,7 +228,7 @@ class RunFolder:
             self._tally.write(self.folder)
             if draw is not None:
                 draw.of_campaign(self.folder)
-            self._write_card(is_finished=True)
+            self.write_card(is_finished=True)
 
     def drop_held_back(self) -> None:
         """Discards the tests that were held back because they have no road; removes the folder if it holds
@@ -238,15 +242,20 @@ class RunFolder:
             if self.tests:
                 self._tally.write(self.folder)
             else:
-                names = (CARD, DESCRIPTION, *TABLES, LOCK)
-                take_away((self.folder / name for name in names), (self.folder / RUNS, *self.made))
+                self.take_away(LOCK)
+
+    def take_away(self, *names: str) -> None:
+        """Removes the folder's own files and those of the given names, then each folder that is empty."""
+        every = (CARD, DESCRIPTION, *TABLES, *names)
+        take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 
     def _count(self, ended: FinishedRun) -> None:
         self.tests[ended.result.number] = replace(ended, test_file="", run=None)
         if ended.entry is not None:
             self._tally.add(ended.entry)
 
-    def _write_card(self, is_finished: bool) -> None:
+    def write_card(self, is_finished: bool) -> None:
+        """Writes ``campaign.json``; raises OSError."""
         card = Card(request=self.request, roads=self.roads, is_finished=is_finished)
         write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
 

@@ -33,7 +33,7 @@ from typing import Any, Self
 from roadgpt.campaign.executors import RunningJob
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.record import FORMAT, STORE, Record
-from roadgpt.campaign.rows import cell_text, detail_values, proposal_rows, result_values
+from roadgpt.campaign.rows import MEASURED, SPENT, cell_text, detail_values, proposal_rows, result_values
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.chat import Spent
 from roadgpt.errors import RoadGPTError, UsageError
@@ -59,6 +59,14 @@ CREATE TABLE sittings(begun REAL NOT NULL, seen REAL NOT NULL, workers INTEGER N
 CREATE TABLE features(name TEXT PRIMARY KEY) WITHOUT ROWID;
 CREATE INDEX waiting ON tests(cell, number) WHERE outcome IS NULL;
 """
+
+
+OF_A_DRIVE = (*MEASURED, *(name for name in SPENT if name not in ("tokens", "cost")))
+"""The columns of ``tests`` that a test loses when it is opened again."""
+
+
+def _set(names: Sequence[str], value: str) -> str:
+    return ", ".join(f"{name} = {value}" for name in names)
 
 
 class Store(Record):
@@ -197,9 +205,7 @@ class Store(Record):
         """Marks a test that ended without a drive as not ended, so that it is run again."""
         with self._whole() as db:
             db.execute(
-                "UPDATE tests SET outcome = NULL, cause = NULL, side = NULL, length = NULL, margin = NULL, "
-                "max_oob = NULL, beyond = NULL, at_s = NULL, ended = NULL, design_s = NULL, drive_s = NULL, "
-                "trace = NULL WHERE cell = ? AND number = ?",
+                f"UPDATE tests SET {_set(OF_A_DRIVE, 'NULL')} WHERE cell = ? AND number = ?",  # noqa: S608
                 (cell, number),
             )
             db.execute(
@@ -263,9 +269,7 @@ class Store(Record):
             if trace is not None:
                 db.execute("INSERT INTO traces VALUES (?, ?)", trace)
             db.executemany(
-                "UPDATE tests SET outcome = ?, cause = ?, side = ?, length = ?, margin = ?, max_oob = ?, "
-                "beyond = ?, at_s = ?, ended = ?, design_s = ?, drive_s = ?, tokens = ?, cost = ?, trace = ? "
-                "WHERE cell = ? AND number = ?",
+                f"UPDATE tests SET {_set(MEASURED + SPENT, '?')} WHERE cell = ? AND number = ?",  # noqa: S608
                 [_test_values(cell, one, now, trace) for cell, one in ended],
             )
             db.executemany(

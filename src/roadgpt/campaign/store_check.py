@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from roadgpt.campaign.rows import MEASURED, SPENT
 from roadgpt.errors import UsageError
 
 TEXT = "typeof({0}) = 'text'"
@@ -26,20 +27,6 @@ SIDE = "{0} IN ('left', 'right')"
 
 LATER = ("beyond",)
 """Columns of ``tests`` that stores of earlier versions lack."""
-NUMBERS = (
-    "length",
-    "margin",
-    "max_oob",
-    "beyond",
-    "at_s",
-    "ended",
-    "design_s",
-    "drive_s",
-    "tokens",
-    "cost",
-    "trace",
-)
-
 TABLES: dict[str, dict[str, str]] = {
     "meta": {"name": TEXT, "value": TEXT},
     "cells": {"name": NAME, "cell": TEXT, "seconds": NUMBER, "closed": f"({{0}} IS NULL OR {TEXT})"},
@@ -51,7 +38,7 @@ TABLES: dict[str, dict[str, str]] = {
         "outcome": f"({{0}} IS NULL OR {OUTCOME})",
         "cause": f"({{0}} IS NULL OR {TEXT})",
         "side": f"({{0}} IS NULL OR {SIDE})",
-        **dict.fromkeys(NUMBERS, f"({{0}} IS NULL OR {NUMBER})"),
+        **dict.fromkeys(MEASURED[3:] + SPENT, f"({{0}} IS NULL OR {NUMBER})"),
     },
     "details": dict.fromkeys(("cell", "number", "origin", "design", "description", "features", "error"), ""),
     "traces": {"trace": WHOLE, "file": FILE},

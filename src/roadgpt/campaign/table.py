@@ -7,7 +7,6 @@ cells.csv      one row per cell: its settings, the number of tests with each out
 
 import csv
 import json
-import os
 import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -18,33 +17,22 @@ from roadgpt.campaign.behaviour import BOUNDS, cell_of
 from roadgpt.campaign.cell_status import CellStatus, cell_statuses
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.rows import MEASURED
 from roadgpt.campaign.store_check import reading_store
 from roadgpt.reading import json_of
 from roadgpt.run import seed_of
-from roadgpt.run.atomic import PART
+from roadgpt.run.atomic import write_lines
 
 RESULTS, CELLS = "results.csv", "cells.csv"
 COLUMNS = (
-    "cell",
-    "test",
-    "batch",
-    "origin",
-    "seed",
-    "outcome",
-    "cause",
-    "side",
-    "length_m",
-    "margin_m",
-    "max_oob",
-    "beyond_m",
-    "at_s_m",
-    "description",
-)
+    "cell", "test", "batch", "origin", "seed", "outcome", "cause", "side", "length_m", "margin_m", "max_oob",
+    "beyond_m", "at_s_m", "description",
+)  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
 """The map of a cell whose search names no other: its features, and the cells along each."""
 EVERY = (
-    "SELECT tests.cell, tests.number, batch, origin, seed, given, outcome, cause, side, length, margin, "
-    "max_oob, beyond, at_s, description, features FROM tests JOIN details USING (cell, number) "
+    f"SELECT tests.cell, tests.number, batch, origin, seed, given, {', '.join(MEASURED)}, description, "  # noqa: S608
+    "features FROM tests JOIN details USING (cell, number) "
     "WHERE outcome IS NOT NULL ORDER BY tests.cell, tests.number"
 )
 OUTCOMES = {
@@ -60,10 +48,10 @@ def write_tables(record: Record, folder: Path) -> None:
     """Writes both tables, row by row; raises OSError."""
     features = record.feature_names()
     with reading_store(record.path):
-        _write(folder / RESULTS, _lines(record.stream(EVERY), features))
+        write_lines(folder / RESULTS, _lines(record.stream(EVERY), features))
     both = zip(record.cells(), cell_statuses(record), strict=True)
     cells = [_cell_row(record, cell, status) for cell, status in both]
-    _write(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
+    write_lines(folder / CELLS, map(_line, [tuple(cells[0]), *(tuple(row.values()) for row in cells)]))
 
 
 class _Echo:
@@ -138,15 +126,3 @@ def _failing_cells(record: Record, cell: Cell) -> int:
     with reading_store(record.path):
         places = {cell_of(json_of(features), axes, cells) for (features,) in failures}
     return len(places - {None})
-
-
-def _write(path: Path, lines: Iterator[str]) -> None:
-    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
-    try:
-        draft.unlink(missing_ok=True)
-        with draft.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
-            file.writelines(lines)
-        draft.replace(path)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise

@@ -18,9 +18,8 @@ IN_CASE = ("seed", "max_oob", "beyond_m", "margin_m", "length_m", "at_s_m", "sid
 UNKNOWN = "roads that were given"
 
 
-def junit_writer(path: Path | None, request: "Request") -> "Callable[[Sequence[Row]], object] | None":
-    """Returns a function that writes result rows to a JUnit file, one test case each; None if ``path`` is
-    None.
+def junit_writer(path: Path, request: "Request") -> "Callable[[Sequence[Row]], object]":
+    """Returns a function that writes result rows to a JUnit file, one test case each.
 
     Args:
         path: The JUnit file to write.
@@ -28,8 +27,6 @@ def junit_writer(path: Path | None, request: "Request") -> "Callable[[Sequence[R
 
     The returned function raises RoadGPTError if the file cannot be written.
     """
-    if path is None:
-        return None
     from roadgpt.report.junit import Suite, write_junit
 
     name, shared = _named(request.words), common(request)

@@ -35,10 +35,10 @@ class Screen:
         as_json: bool = False,
         quiet: bool = False,
         verbose: bool = False,
-        junit: "Callable[[Sequence[Row]], object] | None" = None,
     ) -> None:
         self.total, self.as_json, self.quiet, self.verbose = total, as_json, quiet, verbose
-        self.junit = junit
+        self.junit: Callable[[Sequence[Row]], object] | None = None
+        """Writes the rows as a JUnit file; None: none is written."""
         self.rows: list[Row] = []
         if quiet:
             logging.getLogger("roadgpt").setLevel(logging.ERROR)

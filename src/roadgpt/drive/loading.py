@@ -14,12 +14,40 @@ from roadgpt import plugins
 from roadgpt.drive.permission import require_permission, split_spec
 from roadgpt.errors import UsageError
 
+OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
+
+
+def driver_of(spec: str) -> Any:
+    """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
+    separate process.
+
+    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
+    a plan names it (see ``drive.permission``).
+
+    Args:
+        spec: the name of a driver plug-in, or PATH.py:CLASS.
+
+    Raises:
+        PartError: there is no driver plug-in of that name.
+        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
+            the user did not permit it.
+        DriverError: the driver hung while it was created.
+    """
+    require_permission(spec)
+    path, _ = split_spec(spec)
+    module = "" if path else plugins.module_of("drivers", spec)
+    if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
+        return load_driver(spec)
+    from roadgpt.drive.isolation import IsolatedDriver
+
+    return IsolatedDriver(spec)
+
 
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
     A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
-    a plan names it (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a
+    a plan names it (see ``drive.permission``). Use ``driver_of`` to get a user's driver in a
     process of its own.
 
     Args:

@@ -10,15 +10,14 @@ suites with counts, cases with ``name``, ``classname``, ``time`` and ``file``, a
 cases. Source: the documentation of the common format, https://github.com/testmoapp/junitxml.
 """
 
-import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.errors import RoadGPTError
+from roadgpt.errors import RoadGPTError, explained
 from roadgpt.export.markup import DECLARATION, escaped
-from roadgpt.run.atomic import PART
+from roadgpt.run.atomic import write_lines
 
 Properties = Mapping[str, str | float | int | None]
 
@@ -78,20 +77,16 @@ def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> P
     every = _Counts()
     for _, counts in listed:
         every = every.plus(counts)
-    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
-    try:
-        with draft.open("w", encoding="utf-8", newline="\n") as file:
-            file.write(f'{DECLARATION}\n<testsuites name="{escaped(name)}"{every.attributes()}>\n')
-            for suite, counts in listed:
-                file.writelines(_suite(suite, counts))
-            file.write("</testsuites>\n")
-        draft.replace(path)
-    except OSError as error:
-        said = f"cannot write {path}: {error.strerror}; name another file with --junit"
-        raise RoadGPTError(said) from error
-    finally:
-        draft.unlink(missing_ok=True)
+    with explained(RoadGPTError, f"cannot write {path}", "name another file with --junit"):
+        write_lines(path, _document(listed, name, every))
     return path
+
+
+def _document(listed: Sequence[tuple[Suite, _Counts]], name: str, every: _Counts) -> Iterator[str]:
+    yield f'{DECLARATION}\n<testsuites name="{escaped(name)}"{every.attributes()}>\n'
+    for suite, counts in listed:
+        yield from _suite(suite, counts)
+    yield "</testsuites>\n"
 
 
 def _counted(suite: Suite) -> _Counts:

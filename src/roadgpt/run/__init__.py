@@ -23,7 +23,7 @@ from roadgpt.design import designer_of
 from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import refuse_ignored, simulate
-from roadgpt.drive.isolation import driver_of
+from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
 from roadgpt.run.card import seed_in

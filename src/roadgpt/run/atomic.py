@@ -20,22 +20,35 @@ except ImportError:  # Windows has no such locks, and does without
 
 LOCK = "campaign.lock"
 PART = ".part"  # end of the name of what is not yet whole
+LETTERS = "backslashreplace"  # letters that UTF-8 has not are written as escapes
 
 
-def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
-    """Writes the content to a temporary file in the same folder, and then renames that file to ``path``.
-    If ``is_private``, only the owner can read the file."""
-    data = to_bytes(content) if isinstance(content, str) else content
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """Yields the path of a temporary file in the same folder; renames that file to ``path`` when the block
+    succeeds, and removes it otherwise."""
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
         draft.unlink(missing_ok=True)  # were it a link, it would be written through
-        if is_private:
-            draft.touch(0o600, exist_ok=False)
-        draft.write_bytes(data)
+        yield draft
         draft.replace(path)
     except BaseException:
         draft.unlink(missing_ok=True)
         raise
+
+
+def write_whole(path: Path, content: str | bytes, is_private: bool = False) -> None:
+    """Writes a file completely or not at all. If ``is_private``, only the owner can read the file."""
+    with whole_file(path) as draft:
+        if is_private:
+            draft.touch(0o600, exist_ok=False)
+        draft.write_bytes(to_bytes(content) if isinstance(content, str) else content)
+
+
+def write_lines(path: Path, lines: Iterable[str]) -> None:
+    """Writes a long text file line by line, completely or not at all, as UTF-8."""
+    with whole_file(path) as draft, draft.open("w", encoding="utf-8", errors=LETTERS, newline="") as file:
+        file.writelines(lines)
 
 
 def refuse_links(*paths: Path) -> None:
@@ -134,7 +147,7 @@ def sweep(folder: Path) -> None:
 
 def to_bytes(text: str) -> bytes:
     """Returns text as UTF-8; characters that UTF-8 cannot encode become backslash escapes."""
-    return text.encode("utf-8", "backslashreplace")
+    return text.encode("utf-8", LETTERS)
 
 
 def csv_text(head: Iterable[str], rows: Iterable[Iterable[Any]]) -> str:

@@ -61,7 +61,7 @@ class Competition:
         try:
             host = GeneratorProcess(self.folder / LOG, self.experiment.python)
         except UsageError:
-            self.results.discard()
+            self.results.take_away(LOG)
             raise
         try:
             self._begin(host)
@@ -75,9 +75,9 @@ class Competition:
         finally:
             host.stop()
             if self._is_begun:
-                self.results.close()
+                self.results.write_card(is_finished=True)
             else:
-                self.results.discard()
+                self.results.take_away(LOG)
         if self.ending is not None and not self.ending.is_of_a_generator:
             raise UsageError(self.ending.sentence)
 
@@ -132,7 +132,7 @@ class Competition:
             answer(OVER)
             return
         self.tests += 1
-        test = self.results.add(run)
+        test = self.results.write(run)
         answer(_answer(run, test))
         yield run
         if self._losses.count(run.index, run.is_lost):
@@ -145,7 +145,7 @@ class Competition:
     def _number(self, asked: Any) -> int:
         """Returns the generator's own number of a test if it is valid and unused, else the next free one."""
         is_number = isinstance(asked, int) and not isinstance(asked, bool) and 0 < asked <= LARGEST_ID
-        numbers = self.results.numbers
+        numbers = self.results.tests
         return asked if is_number and asked not in numbers else max(numbers, default=0) + 1
 
     @property
@@ -219,7 +219,7 @@ def compete(
     check_parts(setup, world)
     request = Request(seed=seed, world=world, setup=setup)
     folder, made = new_folder(experiment, out)
-    results = Results(folder, request, draw, made)
+    results = Results(folder, request, None, 1, made, draw=draw)
     results.describe(experiment)
     return Competition(experiment, request, folder, results)
 

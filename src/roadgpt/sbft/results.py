@@ -7,21 +7,21 @@ results/MODULE_CLASS_STAMP/
 
 import os
 import time
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from roadgpt.campaign.run_folder import RunFolder, finished_run
 from roadgpt.errors import UsageError, explained
 from roadgpt.geometry import interpolate
 from roadgpt.run import Run
-from roadgpt.run.atomic import json_text, missing, take_away, write_whole
-from roadgpt.run.card import CARD, Card
+from roadgpt.run.atomic import json_text, missing
 from roadgpt.run.execution import records_of
 from roadgpt.run.features import features_of
-from roadgpt.run.folder import RUNS, Draw, write_run
-from roadgpt.run.model import Request
-from roadgpt.run.tables import DESCRIPTION, SETTINGS, TABLES, Tally, TallyEntry, write_settings
+from roadgpt.run.folder import RUNS, Draw, write_run_folder
+from roadgpt.run.tables import SETTINGS, TallyEntry, write_settings
 from roadgpt.sbft.experiment import Experiment
 
 HOME = Path("results")
@@ -52,35 +52,27 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     return folder, made
 
 
-class Results:
+@dataclass
+class Results(RunFolder):
     """Writes the result files after each test, so that they are complete at any time."""
 
-    def __init__(
-        self, folder: Path, request: Request, draw: Draw | None = None, made: tuple[Path, ...] = ()
-    ) -> None:
-        """Uses an empty folder; ``made`` are the folders that were made for it, the innermost first."""
-        self.folder = folder
-        self._made = made
-        self._request = request
-        self._draw = draw
-        self._tally = Tally()
-        self.numbers: set[int] = set()
-        """Numbers of the tests so far."""
+    draw: Draw | None = None
+    """Draws pictures of each test; None: no pictures."""
 
-    def add(self, run: Run) -> dict[str, Any]:
+    def write(self, run: Run) -> dict[str, Any]:
         """Writes the files of a test; returns the content of its ``test.NNNN.json``."""
         test = test_of(run)
-        write_run(run, self.folder, self._draw, json_text(test, indent=None))
-        self._tally.add(TallyEntry.of(run))
-        self.numbers.add(run.index)
-        self._tally.write(self.folder)
+        write_run_folder(run, self.folder, self.draw)
+        text = json_text(test, indent=None)
+        self.keep(replace(finished_run(run), test_file=text, entry=TallyEntry.of(run)))
+        self.roads = len(self.tests)
         return test
 
     def describe(self, experiment: Experiment) -> None:
         """Writes the settings, and tables of results in which all counts are 0."""
-        self._tally.write(self.folder)
-        self._write_card(is_finished=False)
-        setup, told = self._request.setup, experiment.model_dump()
+        self.write_tables()
+        self.write_card(is_finished=False)
+        setup, told = self.request.setup, experiment.model_dump()
         is_beamng = setup.simulator == "beamng"
         homes = {
             f"beamng_{name}": os.environ.get(f"ROADGPT_BEAMNG_{name.upper()}", "") if is_beamng else ""
@@ -88,21 +80,8 @@ class Results:
         }
         theirs = {name: value for name, value in told.items() if name in SETTINGS} | homes | {"log_to": LOG}
         ours = {name: value for name, value in told.items() if name not in SETTINGS}
-        driven = {"driver": setup.driver, "seed": self._request.seed}
-        write_settings(self._request, theirs, ours | driven, self.folder)
-
-    def close(self) -> None:
-        """Marks the results as complete."""
-        self._write_card(is_finished=True)
-
-    def discard(self) -> None:
-        """Removes all files that were written; called if the generator could not be started."""
-        names = (CARD, DESCRIPTION, *TABLES, LOG)
-        take_away((self.folder / name for name in names), (self.folder / RUNS, *self._made))
-
-    def _write_card(self, is_finished: bool) -> None:
-        card = Card(request=self._request, roads=max(len(self.numbers), 1), is_finished=is_finished)
-        write_whole(self.folder / CARD, json_text(card.model_dump(mode="json")))
+        driven = {"driver": setup.driver, "seed": self.request.seed}
+        write_settings(self.request, theirs, ours | driven, self.folder)
 
 
 def test_of(run: Run) -> dict[str, Any]:

@@ -11,7 +11,6 @@ from click.core import ParameterSource
 
 from roadgpt.cli import options
 from roadgpt.cli.campaigns import one_line
-from roadgpt.cli.junit import junit_writer
 from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import driver_again, folder
@@ -86,7 +85,11 @@ def command(
     with redirect_stdout(sys.stderr):
         check_parts(setup, world)  # a driver that does not exist is told of before any road is looked at
     asked = Request(seed=seed, world=world, setup=setup)
-    screen = Screen(len(files), as_json, quiet, verbose, junit_writer(junit, asked))
+    screen = Screen(len(files), as_json, quiet, verbose)
+    if junit is not None:
+        from roadgpt.cli.junit import junit_writer
+
+        screen.junit = junit_writer(junit, asked)
     losses: LostDrives[str] = LostDrives()
     each_road(files, screen, lambda file: _driven(screen, file, seed, world, setup, losses))
     return UNREADABLE if any(row.cause == "unreadable" for row in screen.rows) else 0

@@ -13,7 +13,6 @@ import click
 
 from roadgpt.cli import options
 from roadgpt.cli.crash import crashes_go_to
-from roadgpt.cli.junit import junit_writer
 from roadgpt.cli.next_steps import lines, of_rows
 from roadgpt.cli.option import Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
@@ -133,7 +132,10 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, draw, meter)
-    screen.junit = junit_writer(job.junit, work.request)
+    if job.junit is not None:
+        from roadgpt.cli.junit import junit_writer
+
+        screen.junit = junit_writer(job.junit, work.request)
     screen.say(understood(brief, job.world.site.map_size))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)

@@ -7,6 +7,6 @@ If a driver hangs (in Python or in compiled code), ends its process, or takes mo
 its own drive fails. One process serves many drives, one after another; the driver is created anew for each.
 """
 
-from roadgpt.drive.isolation.proxy import IsolatedDriver, driver_of
+from roadgpt.drive.isolation.proxy import IsolatedDriver
 
-__all__ = ["IsolatedDriver", "driver_of"]
+__all__ = ["IsolatedDriver"]

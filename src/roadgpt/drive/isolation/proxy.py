@@ -8,45 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from roadgpt import plugins
 from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, RemoteDriverError
 from roadgpt.drive.isolation import protocol
 from roadgpt.drive.isolation.process import DriverProcess, GoneError, give_back, take
-from roadgpt.drive.loading import load_driver
-from roadgpt.drive.permission import require_permission, split_spec
 from roadgpt.drive.view import CameraSpec, Command, View
 from roadgpt.errors import DriverError, RoadGPTError, UsageError
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
 MAKING = 30.0  # s for a new process to import what it needs, on top of the driver's own limit
-
-
-def driver_of(spec: str, limit: float = BEFORE_START) -> Any:
-    """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
-    separate process.
-
-    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
-    a plan names it (see ``drive.permission``).
-
-    Args:
-        spec: the name of a driver plug-in, or PATH.py:CLASS.
-        limit: seconds within which the driver must be created.
-
-    Raises:
-        PartError: there is no driver plug-in of that name.
-        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit it.
-        DriverError: the driver hung while it was created.
-    """
-    require_permission(spec)
-    path, _ = split_spec(spec)
-    module = "" if path else plugins.module_of("drivers", spec)
-    if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
-        return load_driver(spec)
-    return IsolatedDriver(spec, limit)
 
 
 class _TraceError(Exception):
@@ -60,7 +31,7 @@ class IsolatedDriver:
     """A driver that runs in another process."""
 
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
-        """Creates the driver there; raises the errors of ``driver_of``."""
+        """Creates the driver there; raises the errors of ``loading.driver_of``."""
         self._road: Road | None = None
         self._world: World | None = None
         self._picture: Any = None

@@ -1,15 +1,13 @@
 """Writes frames as an MP4 file (H.264) through PyAV."""
 
-import os
 from collections.abc import Iterable
-from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import RoadGPTError, UsageError
+from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.report.film.glyphs import Frame
-from roadgpt.run.atomic import PART
+from roadgpt.run.atomic import whole_file
 
 ENCODER = "libx264"
 QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which less is better
@@ -47,18 +45,14 @@ def write_film(frames: Iterable[Frame], path: Path, fps: int, about: str = "") -
         RoadGPTError: the file cannot be written.
     """
     av = encoder()
-    draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
-    try:
+    with explained(RoadGPTError, f"cannot write {path}", "name another --out"):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with av.open(str(draft), "w", format="mp4", options={"movflags": "+faststart"}) as file:
+        with (
+            whole_file(path) as draft,
+            av.open(str(draft), "w", format="mp4", options={"movflags": "+faststart"}) as file,
+        ):
             file.metadata["title"] = about
             _encode(av, file, frames, fps)
-        draft.replace(path)
-    except OSError as error:
-        raise RoadGPTError(f"cannot write {path}: {error.strerror or error}; name another --out") from error
-    finally:
-        with suppress(OSError):
-            draft.unlink(missing_ok=True)
 
 
 def _encode(av: Any, file: Any, frames: Iterable[Frame], fps: int) -> None:
