@@ -75,9 +75,9 @@ def compiled(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Compiles a small function that only other compiled functions call. Its machine code is cached as
-    part of theirs."""
+    """Returns a small function that is inlined into the compiled functions that call it. Its machine code is
+    cached as part of theirs."""
     if not COMPILES:
         return function
-    made: Function = numba.njit(nogil=True)(function)
+    made: Function = numba.njit(nogil=True, forceinline=True)(function)
     return made

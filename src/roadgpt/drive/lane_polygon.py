@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from roadgpt.drive.compiled import compiled
+from roadgpt.drive.compiled import compiled, inlined
 from roadgpt.drive.drive import FloatArray
 
 if TYPE_CHECKING:
@@ -45,6 +45,50 @@ class LanePolygon(NamedTuple):
         return share_outside(self.edges, self.step, box, float(s), np.empty((2, 16, 2)))
 
 
+@inlined
+def _clipped(scratch: FloatArray, source: int, count: int, px: float, py: float, qx: float, qy: float) -> int:
+    """Clips the polygon in ``scratch[source]`` by the half-plane to the left of the line from p to q
+    (Sutherland and Hodgman); writes its corners to ``scratch[1 - source]`` and returns their number."""
+    kept = 0
+    for k in range(count):
+        x0, y0 = scratch[source, k, 0], scratch[source, k, 1]
+        after = k + 1 if k + 1 < count else 0
+        x1, y1 = scratch[source, after, 0], scratch[source, after, 1]
+        d0 = (qx - px) * (y0 - py) - (qy - py) * (x0 - px)
+        d1 = (qx - px) * (y1 - py) - (qy - py) * (x1 - px)
+        if d0 >= 0.0:
+            scratch[1 - source, kept, 0] = x0
+            scratch[1 - source, kept, 1] = y0
+            kept += 1
+        if (d0 >= 0.0) != (d1 >= 0.0):
+            share = d0 / (d0 - d1)
+            scratch[1 - source, kept, 0] = x0 + share * (x1 - x0)
+            scratch[1 - source, kept, 1] = y0 + share * (y1 - y0)
+            kept += 1
+    return kept
+
+
+@inlined
+def _with_overlap(area: float, box: FloatArray, a: FloatArray, b: FloatArray, scratch: FloatArray) -> float:
+    """Returns ``area`` plus the area that the box shares with the quadrilateral between the rows a and b."""
+    for k in range(4):
+        scratch[0, k, 0], scratch[0, k, 1] = box[k, 0], box[k, 1]
+    source, count = 0, 4
+    # Counter-clockwise round the quad: right edge forward, across, left edge back, across.
+    px, py = a[2], a[3]
+    for qx, qy in ((b[2], b[3]), (b[0], b[1]), (a[0], a[1]), (a[2], a[3])):
+        count = _clipped(scratch, source, count, px, py, qx, qy)
+        source, px, py = 1 - source, qx, qy
+        if count < 3:
+            return area
+    x0, y0 = scratch[source, 0, 0], scratch[source, 0, 1]
+    for k in range(1, count - 1):  # a fan of triangles
+        ax, ay = scratch[source, k, 0] - x0, scratch[source, k, 1] - y0
+        bx, by = scratch[source, k + 1, 0] - x0, scratch[source, k + 1, 1] - y0
+        area += 0.5 * (ax * by - ay * bx)
+    return area
+
+
 @compiled
 def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
     """Returns the share of the convex box's area that is outside the strip; ``scratch`` is working memory of
@@ -67,49 +111,8 @@ def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scr
         a = edges[i]
         b = edges[i + 1]
         far = around + 0.5 * (math.hypot(a[0] - b[2], a[1] - b[3]) + step)
-        if math.hypot(0.5 * (a[0] + b[2]) - mid_x, 0.5 * (a[1] + b[3]) - mid_y) > far:
-            continue
-        count = 4
-        for k in range(4):
-            scratch[0, k, 0] = box[k, 0]
-            scratch[0, k, 1] = box[k, 1]
-        source = 0
-        # Counter-clockwise round the quad: right edge forward, across, left edge back, across.
-        for side in range(4):
-            if side == 0:
-                px, py, qx, qy = a[2], a[3], b[2], b[3]
-            elif side == 1:
-                px, py, qx, qy = b[2], b[3], b[0], b[1]
-            elif side == 2:
-                px, py, qx, qy = b[0], b[1], a[0], a[1]
-            else:
-                px, py, qx, qy = a[0], a[1], a[2], a[3]
-            kept = 0
-            for k in range(count):
-                x0, y0 = scratch[source, k, 0], scratch[source, k, 1]
-                after = k + 1 if k + 1 < count else 0
-                x1, y1 = scratch[source, after, 0], scratch[source, after, 1]
-                d0 = (qx - px) * (y0 - py) - (qy - py) * (x0 - px)
-                d1 = (qx - px) * (y1 - py) - (qy - py) * (x1 - px)
-                if d0 >= 0.0:
-                    scratch[1 - source, kept, 0] = x0
-                    scratch[1 - source, kept, 1] = y0
-                    kept += 1
-                if (d0 >= 0.0) != (d1 >= 0.0):
-                    share = d0 / (d0 - d1)
-                    scratch[1 - source, kept, 0] = x0 + share * (x1 - x0)
-                    scratch[1 - source, kept, 1] = y0 + share * (y1 - y0)
-                    kept += 1
-            count = kept
-            source = 1 - source
-            if count < 3:
-                break
-        if count >= 3:
-            x0, y0 = scratch[source, 0, 0], scratch[source, 0, 1]
-            for k in range(1, count - 1):
-                ax, ay = scratch[source, k, 0] - x0, scratch[source, k, 1] - y0
-                bx, by = scratch[source, k + 1, 0] - x0, scratch[source, k + 1, 1] - y0
-                inside += 0.5 * (ax * by - ay * bx)
+        if math.hypot(0.5 * (a[0] + b[2]) - mid_x, 0.5 * (a[1] + b[3]) - mid_y) <= far:
+            inside = _with_overlap(inside, box, a, b, scratch)
     share = 1.0 - inside / whole
     # A box wholly inside leaves rounding only.
     return min(share, 1.0) if share > 1e-9 else 0.0

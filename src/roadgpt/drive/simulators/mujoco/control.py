@@ -22,8 +22,8 @@ from roadgpt.drive.simulators.mujoco.dynamics import (
     MujocoHandles,
     step_once,
 )
-from roadgpt.drive.simulators.mujoco.hull import normal_of
 from roadgpt.drive.simulators.mujoco.model import BODY, STEP
+from roadgpt.drive.simulators.mujoco.vectors import normal_of
 
 STEPS = 10  # physics steps in a control step
 FALLEN = 2.0  # m below the road: from there RoadGPT's car cannot return to its floating road

@@ -19,7 +19,7 @@ from roadgpt.drive.simulators.mujoco.chassis_control import (
     expected_yaw_rate,
     slip_valve,
 )
-from roadgpt.drive.simulators.mujoco.hull import hull_forces, normal_of
+from roadgpt.drive.simulators.mujoco.hull import hull_forces
 from roadgpt.drive.simulators.mujoco.model import (
     BODY,
     CARRIER,
@@ -30,6 +30,7 @@ from roadgpt.drive.simulators.mujoco.model import (
     WHEEL,
 )
 from roadgpt.drive.simulators.mujoco.tyres import tyre_forces
+from roadgpt.drive.simulators.mujoco.vectors import Vector, add_force, cross, dot, normal_of, velocity_at
 
 AIR = 1.2  # kg/m^3, at 20 degrees C
 UNDER = 0.25  # m below the road's surface, beyond which a wheel has no contact any more
@@ -171,6 +172,90 @@ def _hinge_angle(car: Any, axle: Any, steer: float, side: int) -> float:
 
 
 @inlined
+def _ground_contact(
+    car: Any, ground: Ground, wheel: FloatArray, centre: FloatArray
+) -> tuple[Vector, float, float]:
+    """Finds the ground under the centre of a wheel.
+
+    Returns:
+        The normal of the ground; the distance of the centre from it in m; the share of the tyre's width, 0
+        to 1, that has ground under it.
+    """
+    sampled = ground.sampled
+    s, t, height, slope, lateral, heading = locate_on(
+        sampled.table, sampled.first, sampled.step, centre[0], centre[1], wheel[AT]
+    )
+    wheel[AT] = s
+    normal = normal_of(slope, lateral, heading)
+    over = room_at(ground.rims, sampled.first, sampled.step, s, t)
+    over = min(over, s + ground.beyond, sampled.length + ground.beyond - s)
+    return normal, (centre[2] - height) * normal[2], min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
+
+
+@inlined
+def _contact_axes(axis: Vector, normal: Vector) -> tuple[Vector, Vector, float]:
+    """Returns the directions in the ground along the wheel and to its left, and 1 / cosine of the camber,
+    at most 20."""
+    lx, ly, lz = cross(axis, normal)
+    norm = 1.0 / max(math.sqrt(lx * lx + ly * ly + lz * lz), 0.05)
+    along = lx * norm, ly * norm, lz * norm
+    return along, cross(normal, along), norm
+
+
+@inlined
+def _wheel_load(axle: Any, share: float, depth: float, rate: float) -> float:
+    """Returns the load on the wheel in N; a tyre cannot pull.
+
+    Args:
+        axle: record with the tyre's stiffness and damping.
+        share: share of the tyre's width that has ground under it.
+        depth: compression of the tyre in m.
+        rate: speed in m/s at which the contact point moves away from the ground.
+    """
+    load: float = share * (axle.tyre_vertical_stiffness * depth - axle.tyre_vertical_damping * rate)
+    return max(load, 0.0)
+
+
+@inlined
+def _suspension_force(i: int, mj: MujocoHandles, car: Any, axle: Any, force: Vector) -> float:
+    """Returns the force along the suspension in N: the tyre's force less spring, damper, anti-roll bar and
+    bump stops."""
+    slide, opposite = SLIDE_DOF[i], SLIDE_DOF[i + 1 - 2 * (i % 2)]
+    out, other = mj.qpos[slide + 1], mj.qpos[opposite + 1]
+    m = mj.xmat[BODY]
+    sy, sz = (1.0 - 2.0 * (i % 2)) * math.sin(axle.inclination), math.cos(axle.inclination)
+    strut = m[1] * sy + m[2] * sz, m[4] * sy + m[5] * sz, m[7] * sy + m[8] * sz
+    spring: float = axle.sprung_load + axle.wheel_rate * out + axle.damping * mj.qvel[slide]
+    spring += axle.anti_roll_stiffness / (axle.track_width * axle.track_width) * (out - other)
+    spring += car.bump_stop_rate * (max(out - car.bump_travel, 0.0) + min(out + car.bump_travel, 0.0))
+    return dot(force, strut) - spring
+
+
+@inlined
+def _set_valves(car: Any, friction: float, forward: float, wheel: FloatArray) -> None:
+    """Updates the valves of ABS and traction control.
+
+    The slip at peak friction falls with the friction; the valves are assumed to know the friction.
+    """
+    grip = min(friction, 1.0)
+    wheel[ABS] = (
+        slip_valve(wheel[ABS], -wheel[SLIP_X], car.abs_slip_threshold * grip, STEP)
+        if forward > SLOWEST_ABS
+        else 1.0
+    )
+    wheel[TCS] = slip_valve(wheel[TCS], wheel[SLIP_X], car.tcs_slip_threshold * grip, STEP)
+
+
+@inlined
+def _spin_torque(car: Any, axle: Any, load: float, free: float, brake: float, rate: float) -> float:
+    """Returns the torque about the wheel's axle in Nm: ``free`` (engine and tyre) turns it; brakes and
+    rolling resistance can only stop it. ``rate`` is its angular speed in rad/s."""
+    most: float = brake + axle.tyre_rolling_resistance * load * car.unloaded_radius
+    stops: float = -(car.wheel_inertia * rate / STEP + free)
+    return free + min(max(stops, -most), most)
+
+
+@inlined
 def _wheel(
     i: int,
     mj: MujocoHandles,
@@ -184,96 +269,36 @@ def _wheel(
     extra: float,
 ) -> None:
     """Adds one wheel to the generalised forces: tyre, spring, engine and brakes."""
-    qfrc = mj.qfrc
-    sampled = ground.sampled
-    side = 1.0 - 2.0 * (i % 2)
-    slide, spin = SLIDE_DOF[i], SPIN_DOF[i]
-    centre = mj.xpos[WHEEL[i]]
-    cx, cy, cz = centre[0], centre[1], centre[2]
-    k = mj.xmat[CARRIER[i]]
-    ax, ay, az = k[1], k[4], k[7]
-    s, t, height, slope, lateral, heading = locate_on(
-        sampled.table, sampled.first, sampled.step, cx, cy, wheel[AT]
-    )
-    wheel[AT] = s
-    nx, ny, nz = normal_of(slope, lateral, heading)
-    gap = (cz - height) * nz
-    over = room_at(ground.rims, sampled.first, sampled.step, s, t)
-    over = min(over, s + ground.beyond, sampled.length + ground.beyond - s)
-    share = min(max(over / car.tyre_width + 0.5, 0.0), 1.0)
+    spin = SPIN_DOF[i]
+    centre, k = mj.xpos[WHEEL[i]], mj.xmat[CARRIER[i]]
+    axis = k[1], k[4], k[7]
+    normal, gap, share = _ground_contact(car, ground, wheel, centre)
     state[SUPPORT] = min(state[SUPPORT], share)
-
-    # Velocity of the contact point, as if the wheel did not spin.
-    v = mj.cvel[CARRIER[i]]
-    px, py, pz = cx - nx * gap, cy - ny * gap, cz - nz * gap
-    rx, ry, rz = px - mj.com[BODY, 0], py - mj.com[BODY, 1], pz - mj.com[BODY, 2]
-    ux, uy, uz = v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
-
-    # Along the wheel: axle x normal; to its left: normal x along.
-    lean = ax * nx + ay * ny + az * nz
-    lx, ly, lz = ay * nz - az * ny, az * nx - ax * nz, ax * ny - ay * nx
-    norm = 1.0 / max(math.sqrt(lx * lx + ly * ly + lz * lz), 0.05)
-    lx, ly, lz = lx * norm, ly * norm, lz * norm
-    wx, wy, wz = ny * lz - nz * ly, nz * lx - nx * lz, nx * ly - ny * lx
-
+    px, py, pz = centre[0] - normal[0] * gap, centre[1] - normal[1] * gap, centre[2] - normal[2] * gap
+    # As if the wheel did not spin.
+    velocity = velocity_at(mj, CARRIER[i], (px, py, pz))
+    along, left, norm = _contact_axes(axis, normal)
     depth = car.unloaded_radius - gap * norm
-    load = 0.0
-    if depth > 0.0 and gap > -UNDER:
-        load = share * (
-            axle.tyre_vertical_stiffness * depth - axle.tyre_vertical_damping * (ux * nx + uy * ny + uz * nz)
-        )
-    load = max(load, 0.0)
-    out = mj.qpos[slide + 1]
-    camber = math.asin(min(max(lean, -1.0), 1.0)) - side * axle.camber_gain * out
-    forward = ux * lx + uy * ly + uz * lz
+    touches = depth > 0.0 and gap > -UNDER
+    load = _wheel_load(axle, share, depth, dot(velocity, normal)) if touches else 0.0
+    gain = (1.0 - 2.0 * (i % 2)) * axle.camber_gain
+    camber = math.asin(min(max(dot(axis, normal), -1.0), 1.0)) - gain * mj.qpos[SLIDE_DOF[i] + 1]
+    forward, rolling = dot(velocity, along), mj.qvel[spin] * gap
     fx, fy, wheel[SLIP_X], wheel[SLIP_Y] = tyre_forces(
-        axle,
-        ground.friction,
-        load,
-        camber,
-        forward,
-        ux * wx + uy * wy + uz * wz,
-        mj.qvel[spin] * gap,
-        wheel[SLIP_X],
-        wheel[SLIP_Y],
-        STEP,
-    )
+        axle, ground.friction, load, camber, forward, dot(velocity, left), rolling,
+        wheel[SLIP_X], wheel[SLIP_Y], STEP,
+    )  # fmt: skip
     wheel[LOAD], wheel[FX], wheel[FY] = load, fx, fy
-    gx, gy, gz = fx * lx + fy * wx + load * nx, fx * ly + fy * wy + load * ny, fx * lz + fy * wz + load * nz
-
-    # On the whole car: force, and moment about the body's centre.
-    bx, by, bz = px - mj.xpos[BODY, 0], py - mj.xpos[BODY, 1], pz - mj.xpos[BODY, 2]
-    qfrc[0] += gx
-    qfrc[1] += gy
-    qfrc[2] += gz
-    qfrc[3] += by * gz - bz * gy
-    qfrc[4] += bz * gx - bx * gz
-    qfrc[5] += bx * gy - by * gx
-    # Along the suspension: the tyre's force less spring, damper, bar and stops.
-    m = mj.xmat[BODY]
-    sy, sz = side * math.sin(axle.inclination), math.cos(axle.inclination)
-    pushed = gx * (m[1] * sy + m[2] * sz) + gy * (m[4] * sy + m[5] * sz) + gz * (m[7] * sy + m[8] * sz)
-    other = mj.qpos[SLIDE_DOF[i + 1 - 2 * (i % 2)] + 1]
-    spring = axle.sprung_load + axle.wheel_rate * out + axle.damping * mj.qvel[slide]
-    spring += axle.anti_roll_stiffness / (axle.track_width * axle.track_width) * (out - other)
-    spring += car.bump_stop_rate * (max(out - car.bump_travel, 0.0) + min(out + car.bump_travel, 0.0))
-    qfrc[slide] = pushed - spring
-
-    # About the wheel's axle: engine and tyre turn it; brakes and rolling resistance can only stop it.
-    # The slip at peak friction falls with the friction; the valves are assumed to know the friction.
-    grip = min(ground.friction, 1.0)
-    wheel[ABS] = (
-        slip_valve(wheel[ABS], -wheel[SLIP_X], car.abs_slip_threshold * grip, STEP)
-        if forward > SLOWEST_ABS
-        else 1.0
+    force = (
+        fx * along[0] + fy * left[0] + load * normal[0],
+        fx * along[1] + fy * left[1] + load * normal[1],
+        fx * along[2] + fy * left[2] + load * normal[2],
     )
-    wheel[TCS] = slip_valve(wheel[TCS], wheel[SLIP_X], car.tcs_slip_threshold * grip, STEP)
-    free = turn * wheel[TCS] - gap * (
-        ax * (ny * gz - nz * gy) + ay * (nz * gx - nx * gz) + az * (nx * gy - ny * gx)
-    )
-    most = (hold + extra) * wheel[ABS] + axle.tyre_rolling_resistance * load * car.unloaded_radius
-    stops = -(car.wheel_inertia * mj.qvel[spin] / STEP + free)
-    qfrc[spin] = free + min(max(stops, -most), most)
+    add_force(mj.qfrc, force, (px - mj.xpos[BODY, 0], py - mj.xpos[BODY, 1], pz - mj.xpos[BODY, 2]))
+    mj.qfrc[SLIDE_DOF[i]] = _suspension_force(i, mj, car, axle, force)
+    _set_valves(car, ground.friction, forward, wheel)
+    free = turn * wheel[TCS] - gap * dot(axis, cross(normal, force))
+    mj.qfrc[spin] = _spin_torque(car, axle, load, free, (hold + extra) * wheel[ABS], mj.qvel[spin])
 
 
 @inlined

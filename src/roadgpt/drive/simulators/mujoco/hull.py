@@ -14,6 +14,7 @@ from roadgpt.drive.drive import FloatArray
 from roadgpt.drive.sampled_road import locate_on, room_at
 from roadgpt.drive.simulators.mujoco.car import Car
 from roadgpt.drive.simulators.mujoco.model import BODY
+from roadgpt.drive.simulators.mujoco.vectors import add_force, dot, normal_of, velocity_at
 
 SPRING = 100e3  # N/m at each point
 DAMPER = 6e3  # Ns/m
@@ -39,22 +40,11 @@ def hull_points(car: Car) -> FloatArray:
 
 
 @inlined
-def normal_of(slope: float, lateral: float, heading: float) -> tuple[float, float, float]:
-    """Returns the unit normal of a surface, given two slopes of the surface: one along a heading, and one
-    at a right angle to the left of that heading."""
-    nz = 1.0 / math.sqrt(1.0 + slope * slope + lateral * lateral)
-    cos, sin = math.cos(heading), math.sin(heading)
-    return (lateral * sin - slope * cos) * nz, -(slope * sin + lateral * cos) * nz, nz
-
-
-@inlined
 def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray) -> None:
     """Adds the contact forces at the hull's points to the forces and moments on the body; moments are in
     world axes."""
-    qfrc = mj.qfrc
     sampled = ground.sampled
     m = mj.xmat[BODY]
-    v = mj.cvel[BODY]
     for j in range(hull.shape[0]):
         hx, hy, hz = hull[j, 0], hull[j, 1], hull[j, 2]
         bx = m[0] * hx + m[1] * hy + m[2] * hz
@@ -64,23 +54,18 @@ def hull_forces(mj: Any, car: Any, ground: Any, station: float, hull: FloatArray
         s, t, height, slope, lateral, heading = locate_on(
             sampled.table, sampled.first, sampled.step, px, py, station + hx
         )
-        nx, ny, nz = normal_of(slope, lateral, heading)
+        normal = normal_of(slope, lateral, heading)
+        nx, ny, nz = normal
         depth = (height - pz) * nz
         if depth <= 0.0 or depth > DEEP or room_at(ground.rims, sampled.first, sampled.step, s, t) < 0.0:
             continue
         if s < -ground.beyond or s > sampled.length + ground.beyond:
             continue
-        rx, ry, rz = px - mj.com[BODY, 0], py - mj.com[BODY, 1], pz - mj.com[BODY, 2]
-        ux, uy, uz = v[3] + v[1] * rz - v[2] * ry, v[4] + v[2] * rx - v[0] * rz, v[5] + v[0] * ry - v[1] * rx
-        up = ux * nx + uy * ny + uz * nz
+        ux, uy, uz = velocity_at(mj, BODY, (px, py, pz))
+        up = dot((ux, uy, uz), normal)
         force = max(SPRING * depth - DAMPER * up, 0.0)
         ux, uy, uz = ux - up * nx, uy - up * ny, uz - up * nz
         slide = math.sqrt(ux * ux + uy * uy + uz * uz)
         drag = -FRICTION * ground.friction * force / max(slide, SMOOTH)
-        fx, fy, fz = force * nx + drag * ux, force * ny + drag * uy, force * nz + drag * uz
-        qfrc[0] += fx
-        qfrc[1] += fy
-        qfrc[2] += fz
-        qfrc[3] += by * fz - bz * fy
-        qfrc[4] += bz * fx - bx * fz
-        qfrc[5] += bx * fy - by * fx
+        push = force * nx + drag * ux, force * ny + drag * uy, force * nz + drag * uz
+        add_force(mj.qfrc, push, (bx, by, bz))

@@ -23,6 +23,49 @@ def _curve(shape: float, bend: float, slip: float) -> float:
 
 
 @inlined
+def _relaxed(slip: float, sliding: float, speed: float, length: float, dt: float) -> float:
+    """Returns the slip after a time step, for a sliding speed in m/s and a relaxation length in m.
+
+    Implicit integration makes the relaxation stable at every speed.
+    """
+    way = dt / length
+    return (slip + way * sliding) / (1.0 + way * speed)
+
+
+@inlined
+def _peak_friction(axle: Any, friction: float, over: float, camber: float) -> tuple[float, float]:
+    """Returns the longitudinal and lateral peak friction coefficients of the tyre; ``over`` is the load above
+    the nominal load, as a share of the nominal load."""
+    fade = max(1.0 - axle.tyre_friction_load_sensitivity * over, 0.3)
+    loss = 1.0 - axle.tyre_camber_friction_loss * camber * camber
+    return friction * axle.tyre_peak_friction_x * fade, friction * axle.tyre_peak_friction_y * fade * loss
+
+
+@inlined
+def _normalised_slips(
+    axle: Any, over: float, slip_x: float, slip_y: float, peak_x: float, peak_y: float
+) -> tuple[float, float, float]:
+    """Returns the slips in units of (peak friction / slip stiffness): longitudinal, lateral, combined."""
+    soft = max(1.0 - axle.tyre_stiffness_load_sensitivity * over, 0.3)
+    nx = slip_x * soft * axle.tyre_slip_stiffness / peak_x
+    ny = slip_y * soft * axle.tyre_cornering_stiffness / peak_y
+    return nx, ny, math.sqrt(nx * nx + ny * ny)
+
+
+@inlined
+def _combined(
+    axle: Any, most_x: float, most_y: float, nx: float, ny: float, total: float
+) -> tuple[float, float]:
+    """Returns the forces of combined slip in the friction ellipse with the semi-axes ``most_x`` and
+    ``most_y``, in N."""
+    if total < 1e-9:
+        return 0.0, 0.0
+    curve_x = _curve(axle.tyre_shape_factor_x, axle.tyre_curvature_factor_x, total)
+    curve_y = _curve(axle.tyre_shape_factor_y, axle.tyre_curvature_factor_y, total)
+    return most_x * curve_x * nx / total, most_y * curve_y * ny / total
+
+
+@inlined
 def tyre_forces(
     axle: Any,
     friction: float,
@@ -56,41 +99,21 @@ def tyre_forces(
     if load <= 0.0:
         return 0.0, 0.0, 0.0, 0.0
     speed = abs(forward)
-    # Implicit integration of the slips makes the relaxation stable at every speed.
-    way_x = dt / axle.tyre_relaxation_length_x
-    way_y = dt / axle.tyre_relaxation_length_y
-    slip_x = (slip_x + way_x * (rolling - forward)) / (1.0 + way_x * speed)
-    slip_y = (slip_y - way_y * across) / (1.0 + way_y * speed)
-
+    slip_x = _relaxed(slip_x, rolling - forward, speed, axle.tyre_relaxation_length_x, dt)
+    slip_y = _relaxed(slip_y, -across, speed, axle.tyre_relaxation_length_y, dt)
     over = load / axle.nominal_load - 1.0
-    fade = max(1.0 - axle.tyre_friction_load_sensitivity * over, 0.3)
-    grip_x = friction * axle.tyre_peak_friction_x * fade
-    grip_y = (
-        friction * axle.tyre_peak_friction_y * fade * (1.0 - axle.tyre_camber_friction_loss * camber * camber)
-    )
-    soft = max(1.0 - axle.tyre_stiffness_load_sensitivity * over, 0.3)
     side = 1.0 if camber > 0.0 else (-1.0 if camber < 0.0 else 0.0)
     shift = side * axle.tyre_horizontal_shift + axle.tyre_camber_horizontal_shift * camber
-    nx = slip_x * soft * axle.tyre_slip_stiffness / grip_x
-    ny = (slip_y - shift) * soft * axle.tyre_cornering_stiffness / grip_y
-    total = math.sqrt(nx * nx + ny * ny)
-    if total < 1e-9:
-        fx = 0.0
-        fy = 0.0
-    else:
-        fx = (
-            grip_x * load * _curve(axle.tyre_shape_factor_x, axle.tyre_curvature_factor_x, total) * nx / total
-        )
-        fy = (
-            grip_y * load * _curve(axle.tyre_shape_factor_y, axle.tyre_curvature_factor_y, total) * ny / total
-        )
-        if total > MOST_SLIP and speed < LOW_SPEED:
-            slip_x *= MOST_SLIP / total
-            slip_y *= MOST_SLIP / total
+    peak_x, peak_y = _peak_friction(axle, friction, over, camber)
+    nx, ny, total = _normalised_slips(axle, over, slip_x, slip_y - shift, peak_x, peak_y)
+    fx, fy = _combined(axle, peak_x * load, peak_y * load, nx, ny, total)
+    if total > MOST_SLIP and speed < LOW_SPEED:
+        slip_x *= MOST_SLIP / total
+        slip_y *= MOST_SLIP / total
     fy += load * (side * axle.tyre_vertical_shift + axle.tyre_camber_vertical_shift * camber)
     if speed < LOW_SPEED:
         damper = LOW_SPEED_DAMPING * load * 0.5 * (1.0 + math.cos(math.pi * speed / LOW_SPEED))
-        hold = math.hypot(grip_x, grip_y) * load
+        hold = math.hypot(peak_x, peak_y) * load
         fx = min(max(fx + damper * (rolling - forward), -hold), hold)
         fy = min(max(fy - damper * across, -hold), hold)
     return fx, fy, slip_x, slip_y
