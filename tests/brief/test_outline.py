@@ -69,7 +69,7 @@ def test_gentle_and_sharp_turns() -> None:
 def test_a_sweeping_turn_is_gentle_where_the_map_is_small() -> None:
     brief = Brief(clauses=(Clause(kind="turn", sharpness="sweeping"),))
     assert outline(brief).groups[0].feature.radius == Range(60)
-    assert outline(brief, roomy=False).groups[0].feature.radius == Range(40)
+    assert outline(brief, map_size=149).groups[0].feature.radius == Range(40)
 
 
 @pytest.mark.parametrize(

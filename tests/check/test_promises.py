@@ -2,8 +2,9 @@ import pytest
 
 from paper_roads import road_of, straight, turn
 from roadgpt.brief.model import Brief, Clause, at_least, between, exactly
+from roadgpt.brief.outline import outline
 from roadgpt.check.measures import measure
-from roadgpt.check.rules.promises import complaints, inspect, promises_of
+from roadgpt.check.rules.promises import complaints, inspect
 from roadgpt.road import World
 
 SEGMENTS = (straight(30, 5), turn(60, incline=5), straight(40, 5), turn(-50, incline=5), straight(30, 5))
@@ -157,6 +158,6 @@ def test_a_finding_tells_the_place() -> None:
     ],
 )
 def test_a_complaint_says_whether_other_heights_could_mend_it(brief: Brief, on_heights: bool) -> None:
-    found = complaints(measure(LEFT_RIGHT.centreline()), promises_of(brief, World()))
+    found = complaints(measure(LEFT_RIGHT.centreline()), outline(brief, World().site.map_size))
     assert found
     assert all(complaint.on_heights == on_heights for complaint in found)

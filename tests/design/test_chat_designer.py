@@ -8,9 +8,9 @@ import pytest
 from fake_chat import FakeChat
 from roadgpt import check
 from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import outline
 from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.chat import BudgetError, ChatSettings, Message, RefusedError, UnparsableError
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.asking import demands, drawn_start, request, rules
 from roadgpt.design.designers.chat import ChatDesigner
 from roadgpt.design.objections import objections
@@ -226,7 +226,7 @@ def test_model_text_is_data() -> None:
     "words", ["a road", "a straight flat road", "3 turns, up, ending in a hairpin, 300 m long"]
 )
 def test_demands_have_no_odd_words(words: str) -> None:
-    text = "\n".join(demands(promises_of(read(words), WORLD)))
+    text = "\n".join(demands(outline(read(words), WORLD.site.map_size)))
     assert not {"inf", "None", "nan", "-inf"} & {*text.replace(":", " ").split()}
 
 

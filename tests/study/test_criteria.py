@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 
 from roadgpt.brief import read
+from roadgpt.brief.outline import outline
 from roadgpt.check.measures import Measures, measure
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.road import Design, World, build, read_design
 from roadgpt.study.criteria import criteria_of
 from roadgpt.study.truth import Truth
@@ -76,7 +76,7 @@ def test_a_wrong_number_of_turns_spoils_what_is_told_turn_by_turn() -> None:
     ],
 )
 def test_without_a_truth_the_reading_is_the_truth(words: str, broken: set[str]) -> None:
-    asked = promises_of(read(words, "grammar"), World())
+    asked = outline(read(words, "grammar"), World().site.map_size)
     found = criteria_of(UP, asked)
     assert {name for name, good in found.items() if not good} == broken
 

@@ -30,6 +30,7 @@ SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a tur
 SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of it
 LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
+ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
@@ -116,15 +117,15 @@ class Outline:
         return any(group.feature.kind == "turn" for group in self.groups) or self.turns.hi == 0
 
 
-def outline(brief: Brief, roomy: bool = True, map_size: float = inf) -> Outline:
+def outline(brief: Brief, map_size: float = inf) -> Outline:
     """Returns the Outline of a Brief.
 
     Args:
         brief: the requirements.
-        roomy: True if the map can hold sweeping turns of 60 m radius; if False, sweeping turns only need a
-            radius of 40 m, as gentle turns do.
-        map_size: side of the map in metres; a motorway gets wide turns only if the map can hold them.
+        map_size: side of the map in metres. On a map of less than 150 m, sweeping turns only need a radius of
+            40 m, as gentle turns do; a motorway gets wide turns only if the map can hold them.
     """
+    roomy = map_size >= ROOMY
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
     whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}

@@ -7,11 +7,10 @@ from math import inf, radians
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Group, Outline
+from roadgpt.brief.outline import Group, Outline, outline
 from roadgpt.brief.quantities import ROAD, WHOLE_SLOPES
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import Range
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.objections import OF_DEFAULT_ARC
 from roadgpt.road import Design, World
 
@@ -59,7 +58,7 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
         earlier: designs of the campaign so far; the last six are listed.
         seed: determines the start that is suggested.
     """
-    demanded = demands(promises_of(brief, world))
+    demanded = demands(outline(brief, world.site.map_size))
     parts = [
         f"Description: {words_of(brief)}",
         f"Understood as: {sentence(brief)}",
@@ -91,20 +90,20 @@ def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
     return float(x), float(y), float(theta)
 
 
-def demands(outline: Outline) -> list[str]:
+def demands(asked: Outline) -> list[str]:
     """Returns the requirements of a road in driving order, one line each."""
-    out = [f"in this order: {_group(group)}" for group in outline.groups]
-    if not any(group.feature.kind == "turn" for group in outline.groups):
-        out.append(f"{outline.turns} turns" if outline.turns != Range() else "")
-    sides = {"left": outline.left, "right": outline.right}
+    out = [f"in this order: {_group(group)}" for group in asked.groups]
+    if not any(group.feature.kind == "turn" for group in asked.groups):
+        out.append(f"{asked.turns} turns" if asked.turns != Range() else "")
+    sides = {"left": asked.left, "right": asked.right}
     out += [f"{span} {side} turns" for side, span in sides.items() if span != Range()]
-    out.append("turns alternate between left and right" if outline.alternating else "")
-    each = outline.each_turn.limits()
+    out.append("turns alternate between left and right" if asked.alternating else "")
+    each = asked.each_turn.limits()
     out.append(f"every turn{each}" if each else "")
-    mean = f" (mean slope {outline.grade_range} %)" if outline.grade_range else ""
-    out.append(f"the whole road {WHOLE_SLOPES[outline.grade]}{mean}" if outline.grade else "")
-    out += [row.asked.format(span) for name, row in ROAD.items() if (span := getattr(outline, name))]
-    for end, feature in (("starts", outline.starts), ("ends", outline.ends)):
+    mean = f" (mean slope {asked.grade_range} %)" if asked.grade_range else ""
+    out.append(f"the whole road {WHOLE_SLOPES[asked.grade]}{mean}" if asked.grade else "")
+    out += [row.asked.format(span) for name, row in ROAD.items() if (span := getattr(asked, name))]
+    for end, feature in (("starts", asked.starts), ("ends", asked.ends)):
         out.append(f"it {end} with a {feature.name}{feature.limits()}" if feature else "")
     return [line for line in out if line]
 

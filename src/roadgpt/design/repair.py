@@ -18,11 +18,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Feature, Group, Outline
+from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.words import Range
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.fit import Look, Requirements, fit, look
 from roadgpt.design.road_elements import RoadElements, elements_as_proposed
 from roadgpt.design.sequence import both
@@ -64,10 +63,10 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
 def _fitted(design: Design, elements: RoadElements, brief: Brief | None, valid: Requirements) -> Look:
     """The road that meets its Brief; one that is only valid where it cannot, or has other turns."""
     if brief:
-        outline = promises_of(brief, valid.world)
-        asked = with_wishes(elements, outline)
+        required = outline(brief, valid.world.site.map_size)
+        asked = with_wishes(elements, required)
         if asked:
-            found = fit(design, asked, valid._replace(outline=outline, brief=brief))
+            found = fit(design, asked, valid._replace(outline=required, brief=brief))
             if found.keeps_all_but_slopes:
                 return found
     return fit(design, elements, valid)
@@ -117,7 +116,7 @@ def _metres(value: float | None) -> str:
     return "open" if value is None else f"{value:g} m"
 
 
-def with_wishes(elements: RoadElements, outline: Outline) -> RoadElements | None:
+def with_wishes(elements: RoadElements, required: Outline) -> RoadElements | None:
     """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
     The elements are matched with the Outline so that as few of them as possible have to change. Returns None
@@ -128,9 +127,9 @@ def with_wishes(elements: RoadElements, outline: Outline) -> RoadElements | None
     if any(
         number not in span
         for number, span in (
-            (len(turns), outline.turns),
-            (sides.count("left"), outline.left),
-            (sides.count("right"), outline.right),
+            (len(turns), required.turns),
+            (sides.count("left"), required.left),
+            (sides.count("right"), required.right),
         )
     ):
         return None
@@ -150,12 +149,12 @@ def with_wishes(elements: RoadElements, outline: Outline) -> RoadElements | None
             return Match(inf)
         return _matched(elements, list(zip(_answering(elements, straights, wanted), wanted, strict=True)))
 
-    match = best_match(outline, len(turns), of_turns, of_gap)
-    ends = _ends(elements, turns, outline)
+    match = best_match(required, len(turns), of_turns, of_gap)
+    ends = _ends(elements, turns, required)
     if match.wrong == inf or ends is None:
         return None
     asked: dict[int, Feature] = {}
-    for index, wish in (*match.items, *((i, outline.each_turn) for i in turns), *ends):
+    for index, wish in (*match.items, *((i, required.each_turn) for i in turns), *ends):
         asked[index] = both(asked[index], wish) if index in asked else wish
     return tuple(replace(element, asked=asked.get(i)) for i, element in enumerate(elements))
 
@@ -195,10 +194,10 @@ def _beyond(incline: float, asked: Range | None) -> float:
     return max(asked.lo - incline, incline - asked.hi, 0.0) if asked else 0.0
 
 
-def _ends(elements: RoadElements, turns: Sequence[int], outline: Outline) -> list[Wish] | None:
+def _ends(elements: RoadElements, turns: Sequence[int], required: Outline) -> list[Wish] | None:
     """Returns what the road must start and end with; None if the proposal does otherwise."""
     out: list[Wish] = []
-    for wish, end in ((outline.starts, 0), (outline.ends, -1)):
+    for wish, end in ((required.starts, 0), (required.ends, -1)):
         if wish is None:
             continue
         among = turns if wish.kind == "turn" else range(len(elements))

@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import outline
 from roadgpt.check import inspect
 from roadgpt.check.measures import measure
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.errors import RoadGPTError
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import FORMATS
@@ -212,7 +212,7 @@ def kept_of(
     points = road.centreline() if road is not None else STRAIGHT
     is_road = road is not None and bool(np.isfinite(points).all()) and len(points) > 1
     points = points if is_road else STRAIGHT
-    read = promises_of(brief, world) if brief is not None else None
+    read = outline(brief, world.site.map_size) if brief is not None else None
     asked = truth.outline() if truth is not None else read
     if asked is None:
         return {}

@@ -18,21 +18,14 @@ from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_co
 from roadgpt.check.measures import LEVEL, Measures, measure
 from roadgpt.road import Road, World
 
-ROOMY = 150.0  # m: a map with this side length holds a sweeping turn of 60 m radius with its straights
-
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the requested and the measured value for each requirement that the road does not meet."""
     if brief is None:
         return ()
-    asked = promises_of(brief, world)
+    asked = outline(brief, world.site.map_size)
     broken = complaints(measure(road.centreline(), asked.widest), asked)
     return tuple(_finding(road, complaint) for complaint in broken)
-
-
-def promises_of(brief: Brief, world: World) -> Outline:
-    """Returns the requirements of a Brief for a road on the map of ``world``, as an Outline."""
-    return outline(brief, world.site.map_size >= ROOMY, world.site.map_size)
 
 
 def complaints(found: Measures, asked: Outline) -> list[Complaint]:

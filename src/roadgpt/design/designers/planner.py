@@ -14,9 +14,8 @@ import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Outline
+from roadgpt.brief.outline import Outline, outline
 from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.check.rules.promises import promises_of
 from roadgpt.design.advice import advice, too_fast
 from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
@@ -90,7 +89,7 @@ class _Search:
 
     def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:
         self.brief, self.world, self.others, self.rng = brief, world, others, rng
-        self.outline: Outline = promises_of(brief, world)
+        self.outline: Outline = outline(brief, world.site.map_size)
         if self.outline.turns.lo > self.outline.turns.hi:
             low, high = self.outline.turns.lo, self.outline.turns.hi
             raise DesignError(
