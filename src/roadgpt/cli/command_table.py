@@ -10,7 +10,7 @@ HEADINGS = {
         "run": "Make roads from a description: design, check, drive and judge them.",
         "read": "Show how RoadGPT interprets a description, and how confident it is.",
         "edit": "Change a road with a request in plain words.",
-        "drive": "Drive roads from files, or drive tests of a campaign again.",
+        "drive": "Drive roads from files, or repeat tests of a campaign.",
     },
     "Look": {
         "show": "Summarise a run, a folder of runs or a campaign; watch a campaign.",

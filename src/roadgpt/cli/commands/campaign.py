@@ -46,8 +46,8 @@ PARAMETERS = (
     *options.WORKERS,
     *named(options.SETUP, "reader", "designer"),
     Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With "
-           "FILE.toml: confirms that a driver's file listed there may be run.", driver, ("beamng_like",),
-           multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
+           "FILE.toml, name a driver file that is listed there to allow RoadGPT to run it.", driver,
+           ("beamng_like",), multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
