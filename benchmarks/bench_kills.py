@@ -3,7 +3,8 @@
     python benchmarks/bench_kills.py            # or: TESTS KILLS [ROADS]
 
 Every third kill takes the whole campaign (then ``roadgpt resume``), the others one of its workers. A folder
-of ROADS runs (300) is killed as often, and continued by the same ``roadgpt run``.
+of ROADS runs (300) is killed as often, and continued by the same ``roadgpt run`` and ``roadgpt resume`` in
+turn.
 """
 
 import os
@@ -83,7 +84,9 @@ def killed_run(folder: Path, roads: int, kills: int) -> int:
     rng, hits = random.Random(7), 0
     command = ("run", WORDS, "-n", roads, "--no-drive", "--no-plot", "--quiet", "--reader", "grammar")
     for kill in range(kills + 1):
-        process = roadgpt(*command, "--seed", 7, "--out", folder)
+        is_resumed = kill % 2 == 1 and finished(folder)
+        begun = (*command, "--seed", 7, "--out", folder)
+        process = roadgpt(*(("resume", folder, "--quiet") if is_resumed else begun))
         goal = roads * (kill + rng.random()) / max(kills, 1) * 0.97
         while kill < kills and len(finished(folder)) < goal and process.poll() is None:
             time.sleep(0.02)

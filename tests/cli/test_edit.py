@@ -122,7 +122,7 @@ def test_a_changed_road_can_be_changed_again() -> None:
         ([], "Name the folder of a run"),
         (["design.json", WORDS, "--out", "full"], "not empty"),
         (["points.json", WORDS], "no design"),
-        (["many", WORDS], "holds 2 roads"),
+        (["many", WORDS], "many holds 2 roads; name one, as many/1"),
         (["design.json", WORDS, "--model", "x"], "--model"),
     ],
 )
@@ -130,9 +130,7 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
     Path("full").mkdir()
     Path("full", "note.txt").write_text("mine")
     Path("points.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110]]))
-    for number in ("0001", "0002"):
-        Path("many", "runs", number).mkdir(parents=True)
-        Path("many", "runs", number, "run.json").write_text("{}")
+    invoke("run", "a road with 2 turns", "-n", "2", "--seed", "1", "--no-drive", "--no-plot", "--out", "many")
     before = contents(Path())
     result = invoke("edit", *words)
     assert result.exit_code == 2

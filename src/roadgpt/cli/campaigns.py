@@ -1,6 +1,6 @@
 """Prints the progress of a running campaign, and its results."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 COMPARED = 500  # failures of a campaign, evenly spread, whose faults are counted: under a second
 MOST_CELLS = 40  # that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
-LINE = "{:<6} {:>9} {:>7} {:>7} {:>7} {:>13}  {}"
+GAP = "  "  # between columns
+LEAST = 12  # letters of the last column, below which it is left out
 LONGEST = 60  # letters of a description, in a line of a table
 
 
@@ -76,9 +77,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
     """Yields a campaign's status as lines of text: progress, distinct faults, outcomes, and what to do
     next.
     """
-    state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
-    of = "" if status.total is None else f" of {status.total:,}"
-    yield f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}" + _pace(status)
+    yield headline(status)
     if found is not None and found.failures:
         yield f"  {found.headline}"
     yield f"  {outcomes_line(status.outcomes)}"
@@ -88,9 +87,7 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:
         yield f"  continue with: roadgpt resume {status.folder}"
-    yield LINE.format(*HEAD)
-    for cell in status.cells[:MOST_CELLS]:
-        yield LINE.format(*cell_columns(cell))
+    yield from cell_lines(status.cells[:MOST_CELLS])
     if len(status.cells) > MOST_CELLS:
         yield f"and {len(status.cells) - MOST_CELLS:,} more cells; --json tells of all"
     yield from outside_lines(status)
@@ -116,16 +113,37 @@ def outside_lines(status: "Status") -> Iterator[str]:
     )
 
 
-def _pace(status: "Status") -> str:
-    left = status.seconds_left
-    if not status.rate:
-        return ""
-    more = f", {duration(left)} to go" if left and status.is_running else ""
-    return f", {status.rate:.1f} tests/s{more}"
+def headline(status: "Status") -> str:
+    """Returns the state of a campaign as one line: its folder, the number of tests, and the time."""
+    state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
+    of = "" if status.total is None else f" of {status.total:,}"
+    pace = f", {status.rate:.1f} tests/s" if status.rate else ""
+    left = status.seconds_left if status.rate and status.is_running else None
+    more = f", {duration(left)} to go" if left else ""
+    return f"{status.folder}: {state}, {status.done:,}{of} tests in {duration(status.seconds)}{pace}{more}"
 
 
-def cell_columns(cell: "CellStatus") -> tuple[str, ...]:
-    """Returns the columns of one cell's row in the table of results, in the order of ``HEAD``."""
+def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
+    """Returns a table of cells as lines; columns that do not fit into ``width`` letters are left out.
+
+    The last column, which may be cut, needs only ``LEAST`` letters.
+    """
+    rows = [HEAD, *map(_columns, cells)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    widths[-1] = LEAST
+    ends = [sum(widths[: n + 1]) + n * len(GAP) for n in range(len(HEAD))]
+    shown = sum(end <= width for end in ends)
+    return [
+        GAP.join(
+            text.rjust(wide) if name not in (HEAD[0], HEAD[-1]) else text.ljust(wide)
+            for name, text, wide in zip(HEAD[:shown], row, widths, strict=False)
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _columns(cell: "CellStatus") -> tuple[str, ...]:
+    """Returns one cell's row in the table of cells, in the order of ``HEAD``."""
     passed, failed = cell.outcomes.get("PASS", 0), cell.outcomes.get("FAIL", 0)
     margin = "-" if cell.least_margin is None else metres(cell.least_margin)
     words = one_line(cell.words, LONGEST) or "any road"

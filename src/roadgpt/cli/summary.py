@@ -14,7 +14,7 @@ from roadgpt.campaign.selection import Choice, Selection, selection_of
 from roadgpt.campaign.status import status_of
 from roadgpt.campaign.table import RESULTS
 from roadgpt.chat import Spent
-from roadgpt.cli.campaigns import HEAD, LINE, as_line, cell_columns, faults_of, outcomes_line, told
+from roadgpt.cli.campaigns import as_line, cell_lines, faults_of, outcomes_line, told
 from roadgpt.cli.repeat_commands import replay_lines
 from roadgpt.cli.result_row import WIDEST, Row, metres, row_of, row_of_result, spending
 from roadgpt.cli.roads import NamedRoad, roads_named
@@ -90,8 +90,7 @@ def _lines(path: Path | str, choice: Choice | None) -> Iterator[str]:
 def _cell_lines(place: Selection) -> Iterator[str]:
     """Yields a cell of a campaign and its first tests."""
     (cell,) = [cell for cell in status_of(place.folder).cells if cell.name == place.cell]
-    yield LINE.format(*HEAD)
-    yield LINE.format(*cell_columns(cell))
+    yield from cell_lines([cell])
     with open_record(place.folder) as record:
         for result in islice(record.results(place.cell), MOST_TESTS):
             name = place.of(NumberedTest(place.cell, result.number)).said

@@ -5,8 +5,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from roadgpt.cli.campaigns import HEAD, cell_columns, outcomes_line
-from roadgpt.cli.progress import duration
+from roadgpt.cli.campaigns import cell_lines, headline, outcomes_line
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -15,8 +14,6 @@ if TYPE_CHECKING:
     from roadgpt.campaign.status import Status
 
 MOST_CELLS, MOST_WORKERS = 12, 16  # rows of the screen
-GAP = 2  # between columns
-LEAST = 12  # letters of a description, below which it is left out
 
 
 def watch_campaign(campaign: Path, once: bool = False) -> None:
@@ -47,44 +44,15 @@ def watch_campaign(campaign: Path, once: bool = False) -> None:
 def _picture(status: "Status", width: int) -> "RenderableType":
     from rich.console import Group
     from rich.progress_bar import ProgressBar
-    from rich.table import Table
     from rich.text import Text
 
-    state = "finished" if status.is_finished else "at work" if status.is_running else "nobody is at work"
-    of = "" if status.total is None else f" of {status.total:,}"
-    left = f", {duration(status.seconds_left)} to go" if status.seconds_left else ""
-    head = Text(f"{status.folder}: {state}", style="bold")
-    pace = Text(f"{status.done:,}{of} tests, {status.rate:.1f} tests/s, {duration(status.seconds)}{left}")
     bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
-    workers = Table(box=None, pad_edge=False, show_header=False)
-    for lease in status.under_way[:MOST_WORKERS]:
-        workers.add_row(Text(lease.worker), f"test {lease.number} of {lease.cell}")
-    outcomes = Text(outcomes_line(status.outcomes))
-    return Group(head, pace, bar, outcomes, Text(""), _cells(status, width), Text(""), workers)
-
-
-def _cells(status: "Status", width: int) -> "RenderableType":
-    """Returns a table with as many columns as fit on the screen; the last one is cut if need be."""
-    from rich.table import Table
-    from rich.text import Text
-
-    cells = Table(box=None, pad_edge=False)
-    rows = [cell_columns(cell) for cell in _chosen(status)]
-    shown = 0
-    for name, *texts in zip(HEAD, *rows, strict=True):
-        wide = max(map(len, [name, *texts]))
-        is_words = name == "what"
-        if is_words:
-            wide = min(wide, width)
-        if width < (LEAST if is_words else wide):
-            break
-        cells.add_column(
-            name, justify="left" if name in ("cell", "what") else "right", width=wide, no_wrap=True
-        )
-        width, shown = width - wide - GAP, shown + 1
-    for row in rows:
-        cells.add_row(*(Text(text, overflow="ellipsis") for text in row[:shown]))
-    return cells
+    workers = [
+        f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
+    ]
+    lines = [outcomes_line(status.outcomes), "", *cell_lines(_chosen(status), width), "", *workers]
+    table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
+    return Group(Text(headline(status), style="bold"), bar, table)
 
 
 def _chosen(status: "Status") -> "list[CellStatus]":

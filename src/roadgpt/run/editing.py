@@ -13,7 +13,7 @@ from pathlib import Path
 from roadgpt.errors import UsageError, explained
 from roadgpt.road import Design, World, read_blueprint
 from roadgpt.run.atomic import json_text, to_bytes
-from roadgpt.run.folder import EDIT_CARD, Draw, is_run, only_run, read_run, write_run
+from roadgpt.run.folder import EDIT_CARD, Draw, write_run
 from roadgpt.run.folder_names import new_folder
 from roadgpt.run.model import Run, Setup
 
@@ -33,24 +33,23 @@ class Original:
     """Notes on adjustments that were made when the road's file was read."""
 
 
-def original(path: Path | str, world: World, setup: Setup) -> Original:
-    """Returns the Design to be changed, from a run's folder, a campaign's folder with one road, or a file.
+def original_in(path: str, world: World, setup: Setup) -> Original:
+    """Returns the Design in a file as the original of a change.
 
     Args:
-        path: the folder or the file.
-        world: the World for a Design that is read from a file and belongs to no run.
-        setup: the Setup for such a Design.
+        path: the file.
+        world: the World for the Design.
+        setup: the Setup for the Design.
 
     Raises:
-        UsageError: there is no Design, or there are several.
+        UsageError: there is no such file, or it holds no Design.
     """
-    path = only_run(Path(path))
-    if path.is_dir() or is_run(path.parent) or path.name.startswith("test."):
-        return original_of(read_run(path), str(path))
+    if not Path(path).exists():
+        raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
     blueprint, remarks = read_blueprint(path)
     if not isinstance(blueprint, Design):
         raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
-    return Original(blueprint, world, setup, 0, str(path), remarks)
+    return Original(blueprint, world, setup, 0, path, remarks)
 
 
 def original_of(run: Run, path: str) -> Original:
@@ -129,4 +128,4 @@ def write_edit(
     return write_run(replace(run, index=1, source=words), folder, beside)
 
 
-__all__ = ["Original", "folder_for", "original", "original_of", "reject_used", "write_edit"]
+__all__ = ["Original", "folder_for", "original_in", "original_of", "reject_used", "write_edit"]

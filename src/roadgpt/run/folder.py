@@ -139,24 +139,6 @@ def is_run(path: Path) -> bool:
     return (path / "run.json").is_file()
 
 
-def only_run(path: Path) -> Path:
-    """Returns the run's folder if ``path`` is a campaign's folder with one run; otherwise returns ``path``
-    unchanged.
-
-    Raises:
-        UsageError: the path does not exist, or the campaign has several runs, or none.
-    """
-    if not path.exists():
-        raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
-    if is_run(path) or not (path / RUNS).is_dir():
-        return path
-    inside = sorted(folder for folder in (path / RUNS).iterdir() if is_run(folder))
-    if len(inside) != 1:
-        what = f"{len(inside)} roads" if inside else "no road"
-        raise UsageError(f"{path} holds {what}; give one of the folders in {path / RUNS}")
-    return inside[0]
-
-
 def read_run(path: Path | str) -> Run:
     """Reads the Run in a folder, or the Run that a ``test.NNNN.json`` file belongs to.
 

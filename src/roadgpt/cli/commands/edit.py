@@ -12,6 +12,7 @@ from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.result_row import row_of, spending
+from roadgpt.cli.roads import roads_named
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import UsageError
 
@@ -90,12 +91,13 @@ def edit_road(
     """
     from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import Setup, prove
-    from roadgpt.run.editing import folder_for, original, reject_used, write_edit
+    from roadgpt.run.editing import folder_for, original_in, original_of, reject_used, write_edit
     from roadgpt.run.sbft_json import test_name
 
     if out is not None:
         reject_used(out)
-    before = _of_test(road) or original(road, world, Setup())
+    (named,) = roads_named([road], None)
+    before = original_of(named.run(), road) if named.run else original_in(road, world, Setup())
     for remark in before.remarks:
         screen.say(f"{road}: {remark}")
     check_named_driver(driver, {before.setup.driver}, road)
@@ -126,15 +128,6 @@ def edit_road(
         kind = pictures[0]
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
     return place
-
-
-def _of_test(road: str) -> "Original | None":
-    """Returns the design of a test or of a run by its number; None if the name is something else."""
-    from roadgpt.campaign.selection import selection_of
-    from roadgpt.run.editing import original_of
-
-    place = selection_of(road)
-    return None if place is None or place.number is None else original_of(place.run(), place.said)
 
 
 def _planned(line: str, designer: str) -> "EditRequest":
