@@ -13,15 +13,17 @@ from typing import Any, Literal
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import turns_of
-from roadgpt.brief.quantities import FEATURE, ROAD, Quantity
 from roadgpt.brief.words import (
+    FEATURE,
     KINDS,
     MOTORWAY_GRADE,
     MOTORWAY_RADIUS,
+    ROAD,
     SHARPNESS,
     SIZES,
     SLOPES,
     STEEPEST,
+    Quantity,
     Range,
     overlap,
 )

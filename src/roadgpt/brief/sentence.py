@@ -2,8 +2,7 @@
 
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
-from roadgpt.brief.quantities import FEATURE, ROAD
-from roadgpt.brief.words import KINDS, SLOPES
+from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES
 
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 

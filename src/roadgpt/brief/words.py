@@ -1,4 +1,6 @@
-"""The table of what words such as "hairpin" mean, used by the readers, the Outline and the documentation.
+"""The table of what words such as "hairpin" mean, and of the numbers that can be required.
+
+The readers, the Outline, the sentences, prompts and complaints, and the documentation take both from here.
 
 Every number is in everyday units (degrees, metres, percent with uphill positive) and applies to a measurement
 on the finished geometry: the angle and the tightest radius of a turn, the length of a straight, the mean
@@ -7,10 +9,10 @@ grade of a feature. Designers aim well inside these ranges; measured curvature i
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from roadgpt.brief.model import Kind, Sharpness, Size, Slope
@@ -157,6 +159,70 @@ def degrees_slack(degrees: float) -> float:
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
 
+class Quantity(NamedTuple):
+    """One measurable number of a road, its tolerance and its words; ``{}`` stands for a range."""
+
+    asked: str
+    """The requirement in prompts, complaints and advice."""
+    measured: str
+    """The measured number in complaints; ``{}`` stands for the number."""
+    said: str
+    """The requirement in the sentence of a Brief; empty if no Brief requires this quantity."""
+    slack: Callable[[float], float]
+    """Returns the tolerance around an exact number, in the unit of the number."""
+    tolerance: str
+    """The tolerance in words."""
+    on_heights: bool = False
+    """Whether the quantity depends only on the heights of the road."""
+    unit: str = ""
+    """The unit after a range, with a space before it."""
+
+
+Tolerance = tuple[Callable[[float], float], str]
+
+
+def _share(share: float, least: float = 0.0) -> Tolerance:
+    """Returns a tolerance of a share of the number, but of ``least`` metres or more, as code and in words."""
+    more = f", at least {least:g} m" if least else ""
+    return lambda number: max(share * abs(number), least), f"{100 * share:g} %{more}"
+
+
+_METRES = _share(LENGTH_SLACK)
+_PERCENT: Tolerance = (
+    lambda _: PERCENT_SLACK,
+    f"{PERCENT_SLACK:g} percentage point",
+)
+_DEGREES = (degrees_slack, "10 %, at most 7 degrees, or at most 10 from 90 degrees on")
+_COUNT: Tolerance = (lambda _: 0.0, "none")
+
+ROAD = {
+    "turning": Quantity(
+        "{} degrees of turning in all", "{:.0f}", "{} degrees of turning in all", *_share(TURNING_SLACK)
+    ),
+    "steepest": Quantity("a steepest place of {} %", "{:.1f} %", "steepest {} percent", *_PERCENT, True),
+    "climb": Quantity(
+        "a climb of {} m", "{:.1f} m", "a net climb of {} metres", *_share(LENGTH_SLACK, 1.0), True
+    ),
+    "hills": Quantity("{} changes between climbing and falling", "{}", "{} changes of slope", *_COUNT, True),
+    "length": Quantity("a length of {} m", "{:.0f} m", "{} metres long in all", *_share(ROAD_LENGTH_SLACK)),
+    "radius": Quantity("a tightest place of {} m radius", "{:.1f} m", "", *_METRES),
+}
+"""The quantities of a whole road, by their names in the Brief, the Outline and the Measures."""
+
+FEATURE = {
+    "degrees": Quantity("{} degrees", "turns {:.0f} degrees", "of {} degrees", *_DEGREES),
+    "radius": Quantity(
+        "radius {} m", "has a radius of {:.1f} m", "with a radius of {} metres", *_METRES, unit=" m"
+    ),
+    "length": Quantity("{} m long", "is {:.0f} m long", "of {} metres", *_METRES, unit=" m"),
+    "grade": Quantity("slope {} %", "has a grade of {:.1f} %", "{} percent", *_PERCENT, True, " %"),
+}
+"""The quantities of one turn or straight, by their names in a Feature and in a MeasuredFeature."""
+
+WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
+"""What the whole road does; it stands after 'the whole road' and 'a road that'."""
+
+
 def table() -> str:
     """Returns the whole table as a Markdown page; ``docs/reference/words.md`` is this text."""
     return "\n".join([*_top(), *_turns(), *_straights(), *_slopes(), *_numbers()]) + "\n"
@@ -232,19 +298,16 @@ def _slopes() -> list[str]:
 
 
 def _numbers() -> list[str]:
+    of = {"degrees": "a turn", "radius": "a turn"}
     rows = [
-        (
-            "degrees",
-            "10 %, at most 7 degrees, or at most 10 from 90 degrees on; 10 % of the sum of all turns",
-        ),
-        (
-            "metres",
-            f"{100 * LENGTH_SLACK:g} %; {100 * ROAD_LENGTH_SLACK:g} % of the length of the whole road",
-        ),
-        ("percent", f"{PERCENT_SLACK:g} percentage point"),
         ("a number of turns", "none"),
+        *(
+            (f"{of.get(name, 'a turn or straight')}: {row.asked.format('N')}", row.tolerance)
+            for name, row in FEATURE.items()
+        ),
+        *((f"the road: {row.asked.format('N')}", row.tolerance) for row in ROAD.values() if row.said),
     ]
-    return _rows("Numbers", ("a number of", "tolerance"), rows)
+    return _rows("Numbers", ("an exact number", "tolerance"), rows)
 
 
 def _said(meaning: Meaning) -> str:

@@ -13,8 +13,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.quantities import FEATURE
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import FEATURE, Range
 from roadgpt.check.measures import MeasuredFeature, Measures
 
 

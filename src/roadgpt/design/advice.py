@@ -13,7 +13,7 @@ from roadgpt.brief.map_fit import LARGEST_MAP, ROUND_MAP
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause
 from roadgpt.brief.outline import Outline
-from roadgpt.brief.quantities import ROAD
+from roadgpt.brief.words import ROAD
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.road import World
 

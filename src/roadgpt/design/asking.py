@@ -8,9 +8,8 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Group, Outline, outline
-from roadgpt.brief.quantities import ROAD, WHOLE_SLOPES
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import ROAD, WHOLE_SLOPES, Range
 from roadgpt.design.objections import OF_DEFAULT_ARC
 from roadgpt.road import Design, World
 

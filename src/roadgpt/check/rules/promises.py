@@ -11,8 +11,7 @@ from itertools import pairwise
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.quantities import ROAD, WHOLE_SLOPES
-from roadgpt.brief.words import NO_TURN
+from roadgpt.brief.words import NO_TURN, ROAD, WHOLE_SLOPES
 from roadgpt.check.finding import Finding
 from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints
 from roadgpt.check.measures import LEVEL, Measures, measure
