@@ -170,26 +170,22 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
     )
 
 
-def seen_as(name: str, elements: RoadElements, found: Measures) -> MeasuredFeature | None:
-    """Returns the measured feature of an element; None if it is not measured as a feature of its own.
+def features_of(elements: Sequence[RoadElement], found: Measures) -> tuple[MeasuredFeature | None, ...]:
+    """Returns the measured feature of each element; None if it is not measured as a feature of its own.
 
     The road must have the turns of the elements. If there are several elements between two turns, the
     straight measured there is assigned to the longest one.
     """
-    turns = [element.name for element in elements if element.is_turn]
-    if name in turns:
-        return found.turns[turns.index(name)]
-    number, between = 0, list[RoadElement]()
-    for element in elements:
-        if element.is_turn:
-            if name in [other.name for other in between]:
-                break
-            number, between = number + 1, []
-        elif element.segments:
-            between.append(element)
-    if not between or max(between, key=lambda element: element.length).name != name:
-        return None
-    return next((feature for feature in found.gaps[number] if feature.kind == "straight"), None)
+    out: list[MeasuredFeature | None] = [None] * len(elements)
+    turns = [i for i, element in enumerate(elements) if element.is_turn]
+    for i, turn in zip(turns, found.turns, strict=True):
+        out[i] = turn
+    for (a, b), gap in zip(pairwise([-1, *turns, len(elements)]), found.gaps, strict=True):
+        between = [i for i in range(a + 1, b) if elements[i].segments]
+        if between:
+            longest = max(between, key=lambda i: elements[i].length)
+            out[longest] = next((feature for feature in gap if feature.kind == "straight"), None)
+    return tuple(out)
 
 
 def numbered(elements: RoadElements) -> RoadElements:

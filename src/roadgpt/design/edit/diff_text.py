@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import MeasuredFeature, Measures
 from roadgpt.design.fit import Look
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, seen_as
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, features_of
 from roadgpt.road import Design, Geometry
 
 MOVED = 0.005  # m
@@ -47,18 +47,19 @@ def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
 
 def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterator[str]:
     after = {element.name: element for element in new}
+    seen_as = {one.name: seen for one, seen in zip(new, features_of(new, found), strict=True)}
     names = _names(before)
     for element in before:
         now = after.get(element.name)
         if now is None or (now.kind != element.kind):
             yield _gone(element, names[element.name], now)
         elif now.segments != element.segments:
-            yield from _other(element, now, names[element.name], seen_as(now.name, new, found))
+            yield from _other(element, now, names[element.name], seen_as[now.name])
     numbers = _names(new)
     for element in new:
         if element.name in names or element.name.endswith(" rest"):
             continue
-        seen = seen_as(element.name, new, found)
+        seen = seen_as[element.name]
         if element.kind == "turn" and seen:
             yield f"{numbers[element.name]} is new: {_turn(seen)}"
         elif element.kind == "gap":

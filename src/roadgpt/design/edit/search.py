@@ -16,7 +16,7 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.edit.steps import SEPARATE, EditCandidate, EditStep, Mirror, RoadLength, gap
 from roadgpt.design.fit import Look, Requirements, fit
-from roadgpt.design.road_elements import RoadElement, RoadElements, joined
+from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
@@ -114,7 +114,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in steps:
         after = step.apply(after, world)
-    after = _with_room(after, elements)
+    after = numbered(_with_room(after, elements))
     count = len(joined(after))
     if not 1 <= count <= MAX_SEGMENTS:
         raise UsageError(f"the road would have {count} segments")

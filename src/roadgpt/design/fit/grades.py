@@ -11,7 +11,6 @@ required grade may change, and joints of slopes that did not meet before get par
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
@@ -25,8 +24,7 @@ from roadgpt.design.heights import Windows, climbing
 from roadgpt.design.road_elements import (
     RoadElement,
     RoadElements,
-    elements_as_proposed,
-    seen_as,
+    features_of,
     shows_turns,
     with_inclines,
 )
@@ -129,7 +127,7 @@ def _of_edit(elements: RoadElements, world: World) -> Iterator[_Slope]:
 def _of_proposal(elements: RoadElements, outline: Outline, world: World) -> Iterator[_Slope]:
     """Yields the grades of a proposal; turns go up, down or level as proposed, or as required."""
     limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
-    for element in (part for whole in elements for part in _of_one_way(whole)):
+    for element in elements:
         class_ = CLASSES[way(element.incline)]
         try:
             windows = Windows(outline, world)
@@ -145,16 +143,6 @@ def _of_proposal(elements: RoadElements, outline: Outline, world: World) -> Iter
             bounds = [_loose(segment, asked and aim, limit) for segment in element.segments]
         accepted = aim if asked else class_
         yield _Slope(element, accepted if element.is_turn else None, aim, tuple(bounds))
-
-
-def _of_one_way(element: RoadElement) -> RoadElements:
-    """Returns the element; one between turns without a required grade is cut where its slope changes between
-    up, down and level.
-    """
-    if element.is_turn or (element.asked and element.asked.grade):
-        return (element,)
-    parts = elements_as_proposed(element.segments)
-    return tuple(replace(part, kind="gap", first=element.first + part.first) for part in parts)
 
 
 def _is_short(element: RoadElement) -> bool:
@@ -213,8 +201,7 @@ def _missing(slopes: Sequence[_Slope], found: Measures) -> Array:
     elements = tuple(slope.element for slope in slopes)
     out = np.zeros(elements[-1].members.stop)
     if shows_turns(found, elements):
-        for element, accepted, aim, _ in slopes:
-            seen = seen_as(element.name, elements, found) if accepted else None
+        for (element, accepted, aim, _), seen in zip(slopes, features_of(elements, found), strict=True):
             if accepted and seen and seen.grade not in accepted:
                 by = float(np.clip(seen.grade, aim.lo, aim.hi)) - seen.grade
                 out[list(element.members)] = by + np.copysign(SURPLUS, by)

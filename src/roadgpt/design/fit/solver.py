@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.design.fit.limits import Margins
 from roadgpt.design.layout import Complex, Indices, meeting
 from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
@@ -41,6 +40,25 @@ MOST_WORK = 2e7  # points squared, times steps: after this much no further start
 BROKEN = 0.15  # m: a limit, margins included, may be broken by this much
 CHEAP = 0.05  # cost of a change for each segment, below which no other start is tried
 STARTS = (1.0, 0.8, 0.6, 0.45, 0.3, 0.2)  # shares of all free turns where the search starts
+
+
+class Margins(NamedTuple):
+    """Distances that a repaired road keeps from the limits of the rules."""
+
+    radius: float = 1.045
+    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
+    spline cuts corners.
+    """
+    seen: float = 12.0
+    """Smallest angle of a turn, in degrees."""
+    apart: float = 15.5
+    """Smallest distance between two successive turns to the same side, in metres."""
+    clear: float = 1.1
+    """Distance in metres between two parts of the road, in addition to its width."""
+    edge: float = 0.6
+    """Distance in metres between the road and the border of the map."""
+    promise: float = 0.04
+    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
 
 
 class PlanPolyline(NamedTuple):

@@ -1,24 +1,33 @@
-"""Writes the limits of lengths and turns as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
+"""Finds lengths and turns that meet all requirements. Main function: ``planned``.
 
+Their limits are written as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
 A minimum radius can be written as such a limit: if a segment turns by ``turn`` radians over ``length``
 metres, and its maximum curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak *
 turn).
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
-from math import inf, radians
-from typing import NamedTuple
+from math import ceil, floor, inf, radians
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
-from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.road_elements import RoadElement
+from roadgpt.check.measures import LEAST_TURN, MeasuredFeature
+from roadgpt.design.fit.look import Look
+from roadgpt.design.fit.solver import Aim, Margins, PlanPolyline, least_change, polyline_of
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
+from roadgpt.road.design import MAX_TURN
 
+ROUNDS = 2  # of solving: the second with the transitions that came of the first
+TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
+SHORTEST_TRANSITION = 0.1  # m
+FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter than it is written
 LEAST_TRANSITION = 0.1  # of a segment that turns, for each clothoid: as short as it may be made
 METRES_PER_RADIAN = 30.0  # how heavy a missing radian weighs beside a missing metre
 SHARE_KEPT = 0.2  # of every length and turn: less would not be the segment that was proposed
@@ -28,31 +37,117 @@ WIDTH_KEPT_OFF = 0.2  # of a promised range, at either end, besides the margin o
 ANGLE_MARGIN = 0.4  # degrees, off what was promised
 
 
-class Margins(NamedTuple):
-    """Distances that a repaired road keeps from the limits of the rules."""
-
-    radius: float = 1.045
-    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
-    spline cuts corners.
-    """
-    seen: float = 12.0
-    """Smallest angle of a turn, in degrees."""
-    apart: float = 15.5
-    """Smallest distance between two successive turns to the same side, in metres."""
-    clear: float = 1.1
-    """Distance in metres between two parts of the road, in addition to its width."""
-    edge: float = 0.6
-    """Distance in metres between the road and the border of the map."""
-    promise: float = 0.04
-    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
-
-
 TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
 """Margins of a changed road, most of which stays as it is, and which may lie close to the limits."""
 MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
 
 
-class Rows:
+def planned(first: Look, last: Look, free: NDArray[np.bool_], margins: Margins) -> tuple[Segment, ...] | None:
+    """Returns the segments with lengths and turns that keep all limits, changed as little as possible.
+
+    Args:
+        first: the road as it was proposed.
+        last: the last road that was tried; it says how much the measured values differ from the written ones.
+        free: whether the length and the turn of each segment may change, ``(n,)``.
+        margins: distances to keep from the limits.
+
+    Returns:
+        The segments, or None if there is no such road.
+    """
+    world, outline = first.requirements.world, first.requirements.outline
+    proposed = first.design.segments
+    lengths = np.array([s.distance for s in proposed])
+    turns = np.radians([s.turn_degrees for s in proposed])
+    elements = _as_written(first, last)
+    now: tuple[Segment, ...] | None = None
+    for _ in range(ROUNDS):
+        figure = polyline_of(now or proposed)
+        rows, most = _limits_of(proposed, elements, figure.peak, outline, world, margins)
+        found = least_change(Aim(lengths, turns, free, figure, rows, most, world, margins))
+        if found is None:
+            break
+        now = _written(proposed, found.lengths, found.turns, free, world.limits.min_radius * margins.radius)
+    return now
+
+
+def _as_written(first: Look, last: Look) -> RoadElements:
+    """The elements, with lengths, angles and radii asked for as they must be written to be measured so."""
+    figure = polyline_of(last.design.segments)
+    is_seen = first.requirements.brief is None and last.has_turns
+    seen = last.seen if is_seen else (None,) * len(last.elements)
+    return tuple(
+        replace(element, asked=_shifted(element.asked, now, feature, figure))
+        if element.asked and element.segments
+        else replace(element, asked=None)
+        for element, now, feature in zip(first.elements, last.elements, seen, strict=True)
+    )
+
+
+def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, figure: PlanPolyline) -> Feature:
+    """What must be written so that the ranges of a feature are measured."""
+    degrees, radius, length = asked.degrees, asked.radius, asked.length
+    if seen is None:
+        if length and length.lo > 0:
+            length = Range(length.lo + FADES[bool(now.degrees)], length.hi)
+        return replace(asked, length=length)
+    if length:
+        more = now.length - seen.length
+        length = Range(length.lo + more, length.hi + more)
+    if degrees:
+        more = abs(now.degrees) - seen.degrees
+        most = MAX_TURN * len(now.segments)
+        degrees = Range(degrees.lo + more, min(degrees.hi + more, max(most, abs(now.degrees))))
+    if radius:
+        tightest = min(
+            segment.distance / max(figure.peak[i], 1.0) / radians(abs(segment.turn_degrees))
+            for i, segment in zip(now.members, now.segments, strict=True)
+            if segment.turn_degrees
+        )
+        radius = Range(radius.lo * tightest / seen.radius, radius.hi * tightest / seen.radius)
+    return replace(asked, degrees=degrees, radius=radius, length=length)
+
+
+def _written(
+    proposed: tuple[Segment, ...], lengths: Array, turns: Array, free: NDArray[np.bool_], radius: float
+) -> tuple[Segment, ...]:
+    """Segments with new measures, rounded; radii and transitions grow with them, or give way."""
+    out = []
+    for segment, length, turn, may_change in zip(proposed, lengths, turns, free, strict=True):
+        if not may_change:
+            out.append(segment)
+            continue
+        distance, degrees = (
+            _rounded(float(length), segment.distance),
+            _rounded(float(np.degrees(turn)), segment.turn_degrees),
+        )
+        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
+        if segment.radius and degrees:
+            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
+            fits_in = grown >= radius
+            update["radius"] = (
+                ceil(grown * CENTIMETRE) / CENTIMETRE
+                if fits_in and grown != segment.radius
+                else segment.radius
+                if fits_in
+                else None
+            )
+            if not fits_in:
+                update["transition"] = None
+        transition = update.get("transition", segment.transition)
+        if degrees and not update.get("radius"):
+            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
+            if (transition or min(distance / 4, 12.0)) > most:
+                update["transition"] = floor(most * TENTH) / TENTH
+        out.append(segment.model_copy(update=update))
+    return tuple(out)
+
+
+def _rounded(value: float, before: float) -> float:
+    """To a tenth; what was written, where hardly anything changed."""
+    return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
+
+
+class _Rows:
     """Collects limits as rows of a matrix."""
 
     def __init__(self, count: int) -> None:
@@ -91,7 +186,7 @@ class Rows:
         return np.array(self.rows).reshape(-1, 2 * self.count), np.array(self.most)
 
 
-def limits_of(
+def _limits_of(
     segments: Sequence[Segment],
     elements: Sequence[RoadElement],
     peak: Array,
@@ -109,7 +204,7 @@ def limits_of(
         world: The limits that the rules check, such as the steepest grade.
         margins: The distances to keep from the limits.
     """
-    rows = Rows(len(segments))
+    rows = _Rows(len(segments))
     radius = world.limits.min_radius * margins.radius
     shortest = 1 / (1 - LEAST_TRANSITION)
     for index, segment in enumerate(segments):
@@ -133,7 +228,7 @@ def limits_of(
     return rows.done()
 
 
-def _seen(rows: Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
+def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
     """A turn stays one that is seen, and whole; a slighter bend stays slight."""
     members = list(element.members)
     if not element.degrees:
@@ -150,7 +245,7 @@ def _seen(rows: Rows, element: RoadElement, peak: Array, margins: Margins) -> No
         rows.add({index: 1.0}, {index: -bent * CLEARLY}, 0.0)
 
 
-def _wish(rows: Rows, element: RoadElement, wish: Feature, peak: Array, margins: Margins) -> None:
+def _wish(rows: _Rows, element: RoadElement, wish: Feature, peak: Array, margins: Margins) -> None:
     members = list(element.members)
     length = _drawn_in(wish.length, margins.promise) if wish.length else None
     rows.within(members, length)
@@ -175,7 +270,7 @@ def _drawn_in(span: Range, share: float) -> Range:
     return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)
 
 
-def _separate(rows: Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
+def _separate(rows: _Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
     """Between two turns of one hand lies so much that they are seen as two."""
     turns = [element for element in elements if element.is_turn]
     for one, other in pairwise(turns):

@@ -1,0 +1,131 @@
+"""Builds, checks and measures the road of a design, and says what is wrong with it.
+
+Main function: ``look``.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil
+from typing import NamedTuple
+
+from roadgpt import check
+from roadgpt.brief.model import Brief
+from roadgpt.brief.outline import Outline
+from roadgpt.brief.words import LEAST_STRAIGHT, Range
+from roadgpt.check.extremes import lowest
+from roadgpt.check.matching import fits, turn_complaints
+from roadgpt.check.measures import MeasuredFeature, Measures, measure
+from roadgpt.check.rules import below_floor, inside_map
+from roadgpt.check.rules.promises import complaints
+from roadgpt.design.layout import moved_onto_map
+from roadgpt.design.road_elements import RoadElements, features_of, shows_slopes, shows_turns, with_segments
+from roadgpt.design.writing import ABOVE_GROUND
+from roadgpt.road import Design, Geometry, Road, World, build
+
+CENTIMETRE = 100.0  # per metre: heights are written in centimetres
+
+
+class Requirements(NamedTuple):
+    """The requirements for a road, in addition to those for each of its elements."""
+
+    world: World
+    """The size of the map, and the limits that the rules check."""
+    outline: Outline = Outline(groups=(), turns=Range())
+    """Requirements for the whole road; none by default."""
+    brief: Brief | None = None
+    """The Brief that the rule ``promises`` compares with the road. If it is None, each measured element is
+    compared with its own requirement.
+    """
+    before: Design | None = None
+    """The road before an edit; the parabolas between its slopes are kept. None for a proposal; then each turn
+    must be measured with the slope that was proposed for it.
+    """
+    geometry: Geometry = "arcs"
+
+
+@dataclass(frozen=True)
+class Look:
+    """A design with the road that was built from it, the findings of the rules, and measurements."""
+
+    design: Design
+    """The design, moved inside the map and above the ground if necessary."""
+    elements: RoadElements
+    road: Road
+    findings: tuple[check.Finding, ...]
+    requirements: Requirements
+
+    @cached_property
+    def found(self) -> Measures:
+        """The measured turns, straights and grades."""
+        return measure(self.road.centreline())
+
+    @cached_property
+    def has_turns(self) -> bool:
+        """Whether the measured road has the turns of the elements, in order and to the same sides."""
+        return shows_turns(self.found, self.elements)
+
+    @cached_property
+    def seen(self) -> tuple[MeasuredFeature | None, ...]:
+        """The measured feature of each element, if the road has the turns of the elements."""
+        return features_of(self.elements, self.found)
+
+    @cached_property
+    def objection(self) -> str:
+        """A sentence that says which rule or requirement the road does not meet; empty if it meets all of
+        them.
+        """
+        if self.findings:
+            return self.findings[0].sentence
+        if not self.has_turns:
+            wanted, shown = sum(element.is_turn for element in self.elements), len(self.found.turns)
+            if wanted != shown:
+                return f"{shown} turns would be seen and not {wanted}, as some run into each other"
+            return "a turn would be seen to the wrong side"
+        if self.requirements.before is None and not shows_slopes(self.found, self.elements):
+            return "a turn would be seen on another slope"
+        return "" if self.requirements.brief else self._unmet()
+
+    @property
+    def keeps_all_but_slopes(self) -> bool:
+        """Whether the road breaks no rule, and has all turns, each to the required side, when measured."""
+        return not self.findings and self.has_turns
+
+    def _unmet(self) -> str:
+        """Returns what is asked of an element, or of the whole road, and is measured otherwise."""
+        turns = 0
+        for element, seen in zip(self.elements, self.seen, strict=True):
+            turns += element.is_turn
+            asked = element.asked
+            if asked and not seen and asked.length and asked.length.lo >= LEAST_STRAIGHT:
+                return f"a straight of {element.length:.1f} m would not be seen"
+            if not asked or not seen or fits(seen, asked):
+                continue
+            if element.is_turn:
+                return turn_complaints(turns, seen, asked)[0].sentence
+            wanted = f"asked for {asked.length or 'any'} m at {asked.grade or 'any'} %"
+            return f"the straight would be {seen.length:.1f} m long at {seen.grade:.1f} %, {wanted}"
+        return next(
+            (complaint.sentence for complaint in complaints(self.found, self.requirements.outline)), ""
+        )
+
+
+def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
+    """Returns a Look at a design and its elements, which get its segments.
+
+    The road is moved inside the map, and above the ground, if it is not there and if this is possible.
+    """
+    world, geometry = requirements.world, requirements.geometry
+    elements = with_segments(elements, design.segments)
+    road = world.lay(build(design, geometry))
+    moved = design
+    if inside_map.inspect(road, None, world):
+        # a design that becomes a spline is placed as if it were built of arcs, which lie close by
+        moved = moved_onto_map(design, world) or design
+    if below_floor.inspect(road, None, world):
+        x, y, z = moved.starting_point
+        sag = lowest(road.elevation, road.length)[1] - z
+        height = ceil((world.site.z_floor + ABOVE_GROUND - sag) * CENTIMETRE) / CENTIMETRE
+        moved = moved.model_copy(update={"starting_point": (x, y, height)})
+    if moved != design:
+        road = world.lay(build(moved, geometry))
+    return Look(moved, elements, road, check.inspect(road, requirements.brief, world), requirements)
