@@ -22,7 +22,7 @@ from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.words import Range
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
-from roadgpt.design.fit import Look, Requirements, fit, look
+from roadgpt.design.fit import Requirements, fit
 from roadgpt.design.road_elements import RoadElements, elements_as_proposed
 from roadgpt.design.sequence import both
 from roadgpt.errors import UsageError
@@ -52,24 +52,21 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
     if how == "none":
         return Repaired(design, ())
     elements = elements_as_proposed(design.segments)
-    valid = Requirements(world)
+    ways = [(elements, Requirements(world))]
+    if brief and how == "full":
+        required = outline(brief, world.site.map_size)
+        asked = with_wishes(elements, required)
+        if asked:
+            ways.insert(0, (asked, Requirements(world, required, brief)))
+    frozen = {element.name for element in elements} if how == "place" else frozenset[str]()
     try:
-        after = _fitted(design, elements, brief, valid) if how == "full" else look(design, elements, valid)
+        for own, requirements in ways:  # a road that meets the Brief, else one that is only valid
+            after = fit(design, own, requirements, frozen)
+            if after.keeps_all_but_slopes:
+                break
     except (UsageError, ValueError, np.linalg.LinAlgError):  # no road can be built of such geometry
         return Repaired(design, ())
     return Repaired(after.design, changes_between(design, after.design))
-
-
-def _fitted(design: Design, elements: RoadElements, brief: Brief | None, valid: Requirements) -> Look:
-    """The road that meets its Brief; one that is only valid where it cannot, or has other turns."""
-    if brief:
-        required = outline(brief, valid.world.site.map_size)
-        asked = with_wishes(elements, required)
-        if asked:
-            found = fit(design, asked, valid._replace(outline=required, brief=brief))
-            if found.keeps_all_but_slopes:
-                return found
-    return fit(design, elements, valid)
 
 
 def changes_between(before: Design, after: Design) -> tuple[str, ...]:

@@ -22,7 +22,6 @@ from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measur
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
 
-TENTH = 10.0  # per percent: inclines are written to the tenth
 LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
 
 
@@ -197,18 +196,6 @@ def numbered(elements: RoadElements) -> RoadElements:
 def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadElements:
     """Returns numbered elements with other segments; the number of segments must be the same as before."""
     return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
-
-
-def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
-    """Returns the segments with other inclines in percent, rounded to a tenth.
-
-    A segment whose incline changes by less than rounding stays the same object.
-    """
-    pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
-    return tuple(
-        segment if abs(incline - segment.incline) < 0.05 else segment.model_copy(update={"incline": incline})
-        for segment, incline in pairs
-    )
 
 
 def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:

@@ -19,6 +19,7 @@ from math import floor
 import numpy as np
 
 from roadgpt.brief.element import Element
+from roadgpt.brief.words import Range
 from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
 from roadgpt.geometry.curve import Array
@@ -34,7 +35,7 @@ NEAR = 20.0  # m to either side of a joint, within which the highest speed count
 SPARE, LEAST_SPARE = 1.1, 1.02  # factors on comfortable and least radii, for the rounding of grades
 ROUNDS = 80  # of moving grades, at most
 ROUNDING = 1e-3  # relative tolerance of a radius
-TENTH = 10.0  # per metre: radii are written to the tenth
+TENTH = 10.0  # per metre and per percent: radii and inclines are written to the tenth
 
 
 class Pace:
@@ -128,54 +129,46 @@ def softened(
 
 
 def made_to_fit(
-    grades: Sequence[float],
+    grades: Array,
     lengths: Sequence[float],
-    runs: Sequence[int],
-    bounds: Sequence[tuple[float, float]],
+    inclines: Sequence[float],
+    joining: Collection[int],
+    bounds: Sequence[Range],
     pace: Pace,
     roomier: float = 1.0,
-) -> list[float]:
+) -> Array:
     """Returns grades, changed so that parabolas as large as the rule ``too_abrupt`` requires fit between
     them.
 
+    Neighbours with the same incline form one slope. A segment that only joins others belongs to the slope of
+    the neighbour with the nearer incline, because a short slope of its own would leave parabolas no room.
+
     Args:
-        grades: grade of each segment in percent.
+        grades: grade of each segment in percent, ``(n,)``.
         lengths: length of each segment in metres.
-        runs: a number for each segment; neighbours with the same number form one slope.
-        bounds: least and greatest grade of each segment in percent.
+        inclines: incline of each segment in percent as it was proposed; it decides which form one slope.
+        joining: indices of segments that only join others.
+        bounds: range of the grade of each segment in percent.
         pace: the vertical radii that the expected speeds require.
         roomier: factor on the required radii, to leave more room than the rule requires.
     """
+    runs = [*accumulate((a != b for a, b in pairwise(inclines)), initial=0)]
+    for i in sorted(joining):
+        beside = [j for j in (i - 1, i + 1) if 0 <= j < len(runs) and j not in joining]
+        if beside:
+            runs[i] = runs[min(beside, key=lambda j: abs(inclines[j] - inclines[i]))]
     rows = [[*row] for _, row in groupby(range(len(grades)), key=lambda i: runs[i])]
     own = [sum(lengths[i] for i in row) for row in rows]
-    means = [sum(grades[i] * lengths[i] for i in row) / size for row, size in zip(rows, own, strict=True)]
+    means = [
+        sum(float(grades[i]) * lengths[i] for i in row) / size for row, size in zip(rows, own, strict=True)
+    ]
     if max(means) == min(means):
-        return [*grades]
-    lows = [max(bounds[i][0] for i in row) for row in rows]
-    highs = [max(min(bounds[i][1] for i in row), low) for row, low in zip(rows, lows, strict=True)]
+        return grades
+    lows = [max(bounds[i].lo for i in row) for row in rows]
+    highs = [max(min(bounds[i].hi for i in row), low) for row, low in zip(rows, lows, strict=True)]
     radii = [roomier * pace.eased(s, 0.0) for s in accumulate(own[:-1])]
     found = softened(means, own, radii, lows, highs)
-    return [grade for row, grade in zip(rows, found, strict=True) for _ in row]
-
-
-def runs_of(inclines: Sequence[float], joining: Collection[int]) -> list[int]:
-    """Returns for each segment the number of its slope. Neighbours with the same incline form one slope. A
-    segment that only joins others belongs to the slope of the neighbour with the nearer incline, because a
-    short slope of its own would leave parabolas no room.
-
-    Args:
-        inclines: incline of each segment in percent.
-        joining: indices of segments that only join others.
-    """
-    out, number = [], 0
-    for i, incline in enumerate(inclines):
-        number += i > 0 and incline != inclines[i - 1]
-        out.append(number)
-    for i in sorted(joining):
-        beside = [j for j in (i - 1, i + 1) if 0 <= j < len(out) and j not in joining]
-        if beside:
-            out[i] = out[min(beside, key=lambda j: abs(inclines[j] - inclines[i]))]
-    return out
+    return np.array([grade for row, grade in zip(rows, found, strict=True) for _ in row])
 
 
 def _made_room(
@@ -229,28 +222,53 @@ def joined(
             radius = pace.eased(at, ease)
         elif not changes and (is_open or opened is None):
             radius = None
-        out.append(segment if radius == segment.vertical_radius else _with_radius(segment, radius))
+        if radius != segment.vertical_radius:
+            segment = segment.model_copy(update={"vertical_radius": radius})
+        out.append(segment)
         at += segment.distance
     for parabola in vertical_curves_of(out):
         if parabola.number in own or opened is None:
             built = max(floor(parabola.radius * TENTH + 1e-6) / TENTH, 1 / TENTH)
-            out[parabola.number] = _with_radius(out[parabola.number], built)
+            segment = out[parabola.number]
+            out[parabola.number] = segment.model_copy(update={"vertical_radius": built})
     return tuple(out)
 
 
-def changed_joints(before: Sequence[Segment], after: Sequence[Segment]) -> frozenset[int]:
-    """Returns the indices of segments that begin at a new joint: one between slopes that met nowhere before.
+def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
+    """Returns the segments with other inclines in percent, rounded to a tenth.
+
+    A segment whose incline changes by less than rounding stays the same object.
+    """
+    pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
+    return tuple(
+        segment if abs(incline - segment.incline) < 0.05 else segment.model_copy(update={"incline": incline})
+        for segment, incline in pairs
+    )
+
+
+def with_new_parabolas(
+    segments: tuple[Segment, ...], before: Sequence[Segment], pace: Pace, ease: float, is_widened: bool
+) -> tuple[Segment, ...]:
+    """Returns segments with parabolas at the joints of slopes that met nowhere before a change.
 
     Args:
-        before: the segments of a design before a change.
-        after: the segments after the change.
+        segments: the segments after the change.
+        before: the segments of the road before the change.
+        pace: the vertical radii that the expected speeds require.
+        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
+        is_widened: whether other parabolas may change as well: those at segments that the road had before,
+            and those that are smaller than the rule allows.
     """
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
-    return frozenset(
+    opened = frozenset(
         i
-        for i, (a, b) in enumerate(pairwise(after), 1)
-        if a.incline != b.incline and (a.incline, b.incline, b.vertical_radius) not in known
+        for i, (a, b) in enumerate(pairwise(segments), 1)
+        if a.incline != b.incline
+        and (a.incline, b.incline, b.vertical_radius) not in known
+        and (is_widened or b not in before)
     )
+    segments = joined(segments, pace, ease, opened) if opened else segments
+    return widened(segments, pace) if is_widened else segments
 
 
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
@@ -268,10 +286,6 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
         opened |= more
         out = joined(segments, pace, 0.0, opened)
     return out
-
-
-def _with_radius(segment: Segment, radius: float | None) -> Segment:
-    return segment.model_copy(update={"vertical_radius": radius})
 
 
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:

@@ -6,11 +6,12 @@ from math import ceil
 import numpy as np
 
 from roadgpt.brief.element import Element
+from roadgpt.brief.words import Range
 from roadgpt.check.extremes import lowest
 from roadgpt.design.elements import as_written, cut
 from roadgpt.design.heights import rounded
 from roadgpt.design.layout import MapPose
-from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, joined, made_to_fit, runs_of, too_abrupt, widened
+from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, joined, made_to_fit, too_abrupt, widened
 from roadgpt.road import Design, Segment, World
 from roadgpt.road.design import MAX_INCLINE
 from roadgpt.road.elevation import elevation_of
@@ -34,9 +35,10 @@ def segments_of(elements: Sequence[Element], world: World) -> tuple[Segment, ...
     most = min(100 * world.limits.max_grade, MAX_INCLINE)
     lengths = [element.length for element in written]
     short = {i for i, element in enumerate(written) if not element.turn and lengths[i] < SHORTEST_SLOPE}
-    runs = runs_of(inclines, short)
-    grades = made_to_fit(inclines, lengths, runs, [(-most, most)] * len(written), pace)
-    return widened(joined(_cut(written, grades), pace), pace)
+    grades = made_to_fit(
+        np.array(inclines), lengths, inclines, short, [Range(-most, most)] * len(written), pace
+    )
+    return widened(joined(_cut(written, grades.tolist()), pace), pace)
 
 
 def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:

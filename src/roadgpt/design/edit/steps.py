@@ -16,8 +16,9 @@ from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import Range
 from roadgpt.design.elements import cut, turn_element
-from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.design.sequence import both
+from roadgpt.design.vertical import with_inclines
 from roadgpt.errors import UsageError
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN

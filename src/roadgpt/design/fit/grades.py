@@ -26,22 +26,20 @@ from roadgpt.design.road_elements import (
     RoadElements,
     features_of,
     shows_turns,
-    with_inclines,
 )
 from roadgpt.design.vertical import (
     EASES,
     SHORTEST_SLOPE,
     Pace,
-    changed_joints,
-    joined,
     made_to_fit,
-    runs_of,
     too_abrupt,
     widened,
+    with_inclines,
+    with_new_parabolas,
 )
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import Design, World, build
 from roadgpt.road.elevation import elevation_of
 
 ROUNDS = 24  # of changing inclines
@@ -51,6 +49,7 @@ CLEAR = 0.1  # percentage points off the edge of up, down and level
 INSIDE = 0.2  # percentage points off the edge of a required grade, or a third of its width
 SURPLUS = 0.05  # percentage points more than is missing, for rounding
 CLASSES = {"up": Range(LEVEL), "down": Range(-inf, -LEVEL), "flat": Range(-LEVEL, LEVEL)}
+CLEARLY = {name: room.drawn_in(CLEAR, 0.5) for name, room in CLASSES.items()}
 
 
 class _Slope(NamedTuple):
@@ -61,7 +60,7 @@ class _Slope(NamedTuple):
     """Mean grades that may be measured; None if the element is not measured."""
     aim: Range
     """Mean grades to aim at; they lie inside those that are accepted."""
-    bounds: tuple[Range, ...]
+    bounds: list[Range]
     """Inclines that each segment may have."""
 
 
@@ -80,23 +79,30 @@ def graded(
         world: the limits that the rules check, such as the steepest grade.
         before: the road before an edit; None for a proposal.
     """
-    slopes = tuple(_of_edit(elements, world) if before else _of_proposal(elements, outline, world))
+    slopes = list(_slopes(elements, outline, world, before is not None))
     bounds = [bound for slope in slopes for bound in slope.bounds]
     lows, highs = np.array([bound.lo for bound in bounds]), np.array([bound.hi for bound in bounds])
-    start = _start(design, bounds, outline)
+    lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
+    start = np.clip(inclines, lows, highs)
+    climb = outline.climb.drawn_in(0.3, 0.2) if outline.climb else Range()
+    metres = float(start @ lengths) / 100
+    if metres not in climb:
+        metres = min(max(metres, climb.lo), climb.hi)
+        start = climbing(start, np.array(lengths), bounds, metres)
     road, pace = build(design), Pace.of(design, world)
     points, stations = road.centreline(), road.sample().s
+    short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
     kept: Design | None = None
     for attempt in range(len(PARABOLAS if before else ROOMIER)):
         grades = start
         for _ in range(ROUNDS):
             segments = with_inclines(design.segments, grades)
             if before:
-                segments = _with_new_parabolas(segments, before.segments, pace, *PARABOLAS[attempt])
+                segments = with_new_parabolas(segments, before.segments, pace, *PARABOLAS[attempt])
             else:
                 segments = widened(segments, pace)
                 if too_abrupt(segments, pace):
-                    grades = _with_room(grades, design, slopes, bounds, pace, ROOMIER[attempt])
+                    grades = made_to_fit(grades, lengths, inclines, short, bounds, pace, ROOMIER[attempt])
                     segments = widened(with_inclines(design.segments, grades), pace)
             points[:, 2] = elevation_of(segments, 0.0).height(stations)
             missing = _missing(slopes, measure(points))
@@ -112,86 +118,37 @@ def graded(
     return kept
 
 
-def _of_edit(elements: RoadElements, world: World) -> Iterator[_Slope]:
-    """Yields the grades of an edited road; those without a requirement stay as they are."""
+def _slopes(elements: RoadElements, outline: Outline, world: World, is_edited: bool) -> Iterator[_Slope]:
+    """Yields the grades of each element.
+
+    In an edited road, elements without a required grade keep their inclines. In a proposal, turns go up, down
+    or level as proposed, or as required.
+    """
     limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
     for element in elements:
         asked = element.asked.grade if element.asked else None
-        if asked:
-            bounds = (limit,) * len(element.segments)
-            yield _Slope(element, asked, asked.drawn_in(INSIDE, 1 / 3), bounds)
-        else:
-            yield _Slope(element, None, limit, tuple(Range(s.incline, s.incline) for s in element.segments))
-
-
-def _of_proposal(elements: RoadElements, outline: Outline, world: World) -> Iterator[_Slope]:
-    """Yields the grades of a proposal; turns go up, down or level as proposed, or as required."""
-    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
-    for element in elements:
-        class_ = CLASSES[way(element.incline)]
+        if is_edited:
+            bounds = [limit if asked else Range(s.incline, s.incline) for s in element.segments]
+            yield _Slope(element, asked, asked.drawn_in(INSIDE, 1 / 3) if asked else limit, bounds)
+            continue
+        class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))
         try:
             windows = Windows(outline, world)
             asked = windows.of(element.asked) if element.asked else windows.base
         except DesignError:  # the Brief contradicts itself: then the rules say so
             asked = None
-        aim = overlap(class_.drawn_in(CLEAR, 0.5), asked) or class_
+        aim = overlap(CLEARLY[class_], asked) or CLEARLY[class_]
         if asked and aim.lo > aim.hi:
             aim = asked
-        if _is_short(element):
-            bounds = [limit] * len(element.segments)
-        else:
-            bounds = [_loose(segment, asked and aim, limit) for segment in element.segments]
-        accepted = aim if asked else class_
-        yield _Slope(element, accepted if element.is_turn else None, aim, tuple(bounds))
-
-
-def _is_short(element: RoadElement) -> bool:
-    """Returns whether an element is too short to need a slope of its own."""
-    return not element.is_turn and element.length < SHORTEST_SLOPE
-
-
-def _loose(segment: Segment, required: Range | None, limit: Range) -> Range:
-    """Returns the inclines that a segment may have: those of its own class, and in a required range."""
-    class_ = CLASSES[way(segment.incline)].drawn_in(CLEAR, 0.5)
-    class_ = Range(min(class_.lo, segment.incline), max(class_.hi, segment.incline))
-    rooms = overlap(overlap(class_, limit), required), overlap(required, limit)
-    return next((room for room in rooms if room and room.lo <= room.hi), limit)
-
-
-def _start(design: Design, bounds: Sequence[Range], outline: Outline) -> Array:
-    """Returns the allowed inclines that are nearest to those of the design and have the required climb."""
-    pairs = zip(design.segments, bounds, strict=True)
-    grades = np.array([np.clip(segment.incline, bound.lo, bound.hi) for segment, bound in pairs])
-    lengths = np.array([segment.distance for segment in design.segments])
-    climb = float(grades @ lengths) / 100
-    inner = outline.climb.drawn_in(0.3, 0.2) if outline.climb else None
-    if inner is None or climb in inner:
-        return grades
-    return climbing(grades, lengths, bounds, float(np.clip(climb, inner.lo, inner.hi)))
-
-
-def _with_new_parabolas(
-    segments: tuple[Segment, ...], before: tuple[Segment, ...], pace: Pace, ease: float, is_widened: bool
-) -> tuple[Segment, ...]:
-    """Returns the segments of an edited road with parabolas where slopes meet that did not meet before.
-
-    Unless ``is_widened``, segments that the road had before keep their parabolas, even at such joints.
-    """
-    opened = changed_joints(before, segments)
-    if not is_widened:
-        opened = frozenset(i for i in opened if segments[i] not in before)
-    segments = joined(segments, pace, ease, opened) if opened else segments
-    return widened(segments, pace) if is_widened else segments
-
-
-def _with_room(
-    grades: Array, design: Design, slopes: Sequence[_Slope], bounds: Sequence[Range], pace: Pace, room: float
-) -> Array:
-    """Returns inclines with room for parabolas; straights that are too short to have a slope join others."""
-    short = {i for slope in slopes if _is_short(slope.element) for i in slope.element.members}
-    runs = runs_of([segment.incline for segment in design.segments], short)
-    lengths = [segment.distance for segment in design.segments]
-    return np.array(made_to_fit(grades.tolist(), lengths, runs, [(b.lo, b.hi) for b in bounds], pace, room))
+        bounds = []
+        for segment, own in zip(element.segments, ways, strict=True):
+            room = Range(min(CLEARLY[own].lo, segment.incline), max(CLEARLY[own].hi, segment.incline))
+            rooms = overlap(overlap(room, limit), asked and aim), overlap(limit, asked and aim)
+            bounds.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
+        if not element.is_turn and element.length < SHORTEST_SLOPE:  # it needs no slope of its own
+            bounds = [limit] * len(bounds)
+        accepted = aim if asked else CLASSES[class_]
+        yield _Slope(element, accepted if element.is_turn else None, aim, bounds)
 
 
 def _missing(slopes: Sequence[_Slope], found: Measures) -> Array:

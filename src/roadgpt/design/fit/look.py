@@ -5,7 +5,7 @@ Main function: ``look``.
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil
+from math import ceil, inf
 from typing import NamedTuple
 
 from roadgpt import check
@@ -129,3 +129,32 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
     if moved != design:
         road = world.lay(build(moved, geometry))
     return Look(moved, elements, road, check.inspect(road, requirements.brief, world), requirements)
+
+
+def restored(mended: Look, first: Look) -> Look:
+    """Returns the mended road with all values put back as proposed that need not have changed.
+
+    Args:
+        mended: a road without an objection.
+        first: the road as it was proposed.
+    """
+    trials: list[tuple[float, int, str]] = []
+    pairs = zip(first.design.segments, mended.design.segments, strict=True)
+    for index, (one, other) in enumerate(pairs):
+        for name in ("distance", "turn_degrees", "incline", "transition", "vertical_radius", "radius"):
+            before, after = getattr(one, name), getattr(other, name)
+            if before != after:
+                away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)
+                trials.append((inf if name == "radius" else away, index, name))
+    for _, index, name in sorted(trials):  # the smallest changes first
+        rows = list(mended.design.segments)
+        was, now = first.design.segments[index], rows[index]
+        if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
+            continue  # it belongs to them
+        rows[index] = now.model_copy(update={name: getattr(was, name)})
+        segments = tuple(rows)
+        tried = first.design.model_copy(update={"segments": segments})
+        seen = look(tried, first.elements, first.requirements)
+        if not seen.objection:
+            mended = seen
+    return mended
