@@ -18,7 +18,6 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.coverage import Coverage
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
@@ -206,6 +205,8 @@ def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
 
 def _by_rules(words: str) -> tuple[Brief | None, str]:
     """Returns the Brief if the rules understand all of the words, and what is wrong with them on any map."""
+    from roadgpt.brief.readers.grammar import GrammarReader  # only refused descriptions need it
+
     try:
         brief = GrammarReader().read(words)
         if brief.unused:
