@@ -18,7 +18,9 @@ FULL = ("context_length", "context window", "too long", "maximum context")
 
 
 class Conversation:
-    """The conversation of one campaign with a model, as stored by the server or as a list of messages."""
+    """The conversation of one campaign with a model: its most recent messages and, if the server stores the
+    conversation, its id there.
+    """
 
     def __init__(self) -> None:
         self.name: str | None = None

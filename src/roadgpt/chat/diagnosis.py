@@ -1,4 +1,4 @@
-"""Checks for ``roadgpt doctor`` whether the configured language model can be used."""
+"""Checks whether the configured language model can be used, for ``roadgpt doctor``."""
 
 from importlib.metadata import PackageNotFoundError, version
 

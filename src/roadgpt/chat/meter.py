@@ -99,8 +99,8 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
     Args:
         meter: the meter.
-        occasion: a label for the road that the questions are about; recordings use it to distinguish a
-            question about one road from the same question about another.
+        occasion: a label for what the questions are about, such as "road 3"; recordings use it to
+            distinguish a question about one road from the same question about another.
     """
     before = _now.set(_Now(meter, occasion))
     try:
@@ -110,7 +110,7 @@ def counting(meter: Meter, occasion: str = "") -> Iterator[Meter]:
 
 
 def occasion() -> str:
-    """Returns the label of the road that the current questions are about, as given to ``counting``."""
+    """Returns the label of the current questions, as given to ``counting``; empty if there is none."""
     now = _now.get()
     return now.occasion if now else ""
 

@@ -81,7 +81,7 @@ class Spent(ChatValue):
         )
 
     def since(self, before: "Spent") -> "Spent":
-        """Returns what was spent after ``before``, an earlier value of this total."""
+        """Returns what was spent since this total had the earlier value ``before``."""
         cost = None if self.cost is None or before.cost is None else round(self.cost - before.cost, DECIMALS)
         return Spent(
             calls=self.calls - before.calls,
@@ -172,8 +172,8 @@ class ChatSettings(ChatValue):
         return self.model_copy(update={name: getattr(usual, name) for name in spare})
 
     def came_with(self, file: object) -> Self:
-        """Returns the settings without the folders of recordings, and records that ``file``, not the user,
-        names the server. Use it for settings from a file that somebody else may have written, so that the
+        """Returns the settings without the folders of recordings, and remembers that ``file``, not the user,
+        chose the server. Use it for settings from a file that somebody else may have written, so that the
         user's API key is not sent to that server.
         """
         if self.base_url:

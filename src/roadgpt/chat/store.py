@@ -4,7 +4,7 @@
                            "answers": {occasion: [...]}}
 
 The same question may be asked for several roads, and more than once for one road. So answers are grouped by
-occasion (the number of the road), in the order in which they arrived. An API key is never part of a question
+occasion (such as "road 3"), in the order in which they arrived. An API key is never part of a question
 or an answer.
 """
 
@@ -30,7 +30,7 @@ class ExchangeStore:
         self.folder = Path(folder)
 
     def keep(self, question: dict[str, Any], occasion: str, answer: dict[str, Any], turns: Turns) -> None:
-        """Stores an answer to a question on an occasion. The first answer that a campaign stores for this
+        """Stores an answer to a question under its occasion. The first answer that a campaign stores for this
         question and occasion replaces all answers from earlier campaigns.
 
         Raises:
@@ -49,10 +49,10 @@ class ExchangeStore:
             draft.replace(path)
 
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
-        """Returns the next recorded answer to a question on an occasion; None if no answer is left.
+        """Returns the next recorded answer to a question for an occasion; None if no answer is left.
 
-        If the occasion has no answers, those that were recorded outside a campaign are used. If there are
-        none either, a question that is asked outside a campaign gets the answers of all occasions.
+        If the occasion has no answers, those that were recorded without an occasion are used. If there are
+        none of these, a question without an occasion gets the answers of all occasions, one after another.
         """
         name = name_of(question)
         answers = self._answers(name)

@@ -1,8 +1,8 @@
 """Reads JSON from the text that a model wrote. The JSON is read strictly, but any text around it is ignored.
 
 Code fences, text before and after, and a model's reasoning are skipped. NaN and infinities, keys that occur
-twice with different values, extreme nesting and extreme length are rejected with one sentence. Nothing is
-evaluated.
+twice with different values, extreme nesting and extreme length are rejected, with the reason in a few words.
+Nothing is evaluated.
 """
 
 import json

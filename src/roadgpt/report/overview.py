@@ -68,7 +68,8 @@ def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
 
     After 100 roads it continues in ``overview-2.png`` and so on; only the first 1,000 roads are drawn.
 
-    It reads the files ``test.NNNN.json``, so it also draws folders that the SBFT competition's tools wrote.
+    It reads the files ``test.NNNN.json``, so it also works for folders that the SBFT competition's tools
+    wrote.
 
     Raises:
         UsageError: there is no test in the folder, or one cannot be read.

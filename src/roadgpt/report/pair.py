@@ -1,4 +1,4 @@
-"""Draws two roads in one figure, with their bird's-eye views and heights, as in the thesis' survey."""
+"""Draws two roads in one figure, with bird's-eye views and heights, as in the survey of RoadGPT's thesis."""
 
 import textwrap
 

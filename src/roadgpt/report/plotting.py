@@ -16,9 +16,10 @@ MARGIN = 0.05  # of the road's extent, left free around it
 
 
 def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None = None) -> Axes:
-    """Draws a road from above, to scale, on matplotlib's axes, and returns the axes.
+    """Draws a road from above, to scale, on matplotlib axes, and returns the axes.
 
-    For a Run, also draws the drive, coloured by speed, and the places where the car failed or a rule objects.
+    For a Run, also draws the drive, coloured by speed, and marks where the car failed, where the largest
+    share of it was outside its lane, or where the road breaks a rule.
     Several roads may be drawn on the same axes. Style, title and size of the figure are left to the caller.
 
     Args:

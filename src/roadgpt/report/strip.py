@@ -1,4 +1,4 @@
-"""Draws curvature, grade and, after a drive, speed over the distance, with the limits of the rules."""
+"""Draws curvature, grade and, if there is a drive, speed over the distance, with the limits of the rules."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -31,7 +31,7 @@ RADII = (15, 20, 30, 60)  # m, named on the right
 
 
 def strip(run: Run) -> Figure:
-    """Returns a figure with a panel each for curvature, grade and, after a drive, speed over the distance."""
+    """Returns a figure with panels for curvature, for grade and, if there is a drive, for speed."""
     assert run.road is not None
     panels = [_curvature, _grade] + ([_speed] if run.drive is not None else [])
     header = Header.of(run, WIDTH)

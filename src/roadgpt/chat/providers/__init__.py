@@ -1,1 +1,1 @@
-"""Providers, which are plug-ins: one for servers with OpenAI's protocol, and one for replayed exchanges."""
+"""Two providers (plug-ins): one for servers with OpenAI's protocol, and one for recorded exchanges."""

@@ -70,7 +70,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Renders the view of one camera at any time; several threads may call it at once."""
+    """Renders what one camera sees at a time of the drive; several threads may call ``draw`` at once."""
 
     scene: Scene
     trip: Trip
@@ -98,7 +98,7 @@ class Pane:
 
 @dataclass(frozen=True, eq=False)
 class Film:
-    """A film of one or two roads: the arrangement of its pictures, and the times of its frames in seconds."""
+    """A film of one or two roads: its Panes, in rows, and the times of its frames in seconds."""
 
     rows: tuple[tuple[Pane, ...], ...]
     settings: Settings

@@ -1,4 +1,4 @@
-"""Writes text over the pictures of a film, such as speed, distance to out of bounds, and outcome."""
+"""Writes text over the pictures of a film, such as speed, margin (the distance to failure) and outcome."""
 
 from dataclasses import dataclass
 

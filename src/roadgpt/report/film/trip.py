@@ -93,7 +93,7 @@ class Trip:
         return Pose(**{name: float(np.interp(time, self.time, c)) for name, c in self.columns.items()})
 
     def follower(self, time: float) -> Pose:
-        """Returns the pose by which the camera behind the car is placed: the car's pose without roll, with a
+        """Returns the pose that the camera behind the car follows: the car's pose without roll, with a
         heading and a pitch that lag behind the car's."""
         late = {name: float(np.interp(time, self.time, c)) for name, c in self.followed.items()}
         return self.car(time)._replace(**late, roll=0.0)

@@ -5,7 +5,7 @@ A Page holds a short summary, sections with text, tables and figures, and inform
 
     report.html            the page, without scripts and network access; printable, light and dark
     report.md              the same text and tables
-    tables/NAME.csv .tex   every table, with plain numbers and for LaTeX (booktabs)
+    tables/NAME.csv .tex   every table, as CSV with plain numbers and as LaTeX (booktabs)
 
 Figures are SVG in the page's colours. matplotlib draws ``forest`` (shares with intervals), ``heat`` (a
 matrix, or a map of cells), ``lines`` and ``bars``; ``gallery`` (small maps of roads, each a link) and

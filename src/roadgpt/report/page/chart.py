@@ -1,4 +1,4 @@
-"""Converts charts by matplotlib to SVG with the font and the light and dark colours of a page."""
+"""Converts matplotlib charts to SVG that uses the font and the light and dark colours of a page."""
 
 import io
 import re
@@ -31,7 +31,7 @@ NEEDLESS = (
 
 @cache
 def palette() -> dict[str, str]:
-    """Returns the light colours of ``style.css`` as ``#rrggbb``, by the names of their CSS variables."""
+    """Returns the light colours of ``style.css``: a dictionary from CSS variable to ``#rrggbb``."""
     light, _, _ = CSS.read_text(encoding="utf-8").partition("}")
     return dict(re.findall(r"--([a-z0-9]+): (#[0-9a-f]{6});", light))
 
@@ -74,7 +74,9 @@ def new_chart(
 
 
 def round_ticks(axis: Axis, most: int, is_count: bool = False) -> None:
-    """Divides an axis into at most ``most`` steps of round numbers, or of whole numbers if ``is_count``."""
+    """Sets ticks at round numbers, with no more than ``most`` intervals between them. If ``is_count``, they
+    are whole numbers.
+    """
     axis.set_major_locator(MaxNLocator(most, steps=STEPS, integer=is_count, min_n_ticks=1))
     axis.set_major_formatter(FuncFormatter(lambda value, _: tick_text(value)))
 

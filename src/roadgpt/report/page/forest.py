@@ -1,4 +1,4 @@
-"""Draws forest plots: groups of shares with their intervals, with one row for each series."""
+"""Draws forest plots: groups of shares (0 to 100 %) with confidence intervals, one row for each series."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

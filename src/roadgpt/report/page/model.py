@@ -8,7 +8,7 @@ Raw = str | int | float | None
 
 
 class TableCell(NamedTuple):
-    """One cell of a table, or one piece of a line of text."""
+    """One cell of a table, or one piece of a line of text, such as a link."""
 
     value: Raw
     """The value that is written into CSV files."""
@@ -127,5 +127,5 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
 
 
 def pieces_of(line: Line) -> Sequence[str | TableCell]:
-    """Returns the pieces of a line; a string is a single piece."""
+    """Returns the pieces of a line of text (strings and links); a line that is a string is a single piece."""
     return (line,) if isinstance(line, str) else line
