@@ -3,8 +3,8 @@
     import gymnasium, roadgpt.gym
     env = gymnasium.make("roadgpt/LaneKeeping-v0", prompt="two hairpins")
 
-It needs RoadGPT's optional dependencies: ``roadgpt[gym]``. Gymnasium no longer searches other packages for
-environments, so this package registers its own when it is imported.
+It needs RoadGPT's optional dependencies: ``roadgpt[gym]``. Importing this package registers the
+environment with Gymnasium.
 """
 
 from roadgpt.errors import UsageError

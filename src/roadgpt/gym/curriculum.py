@@ -19,8 +19,8 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
     Args:
         env: a LaneKeeping environment.
         prompts: descriptions, the easiest first.
-        share: share of the last ``episodes`` episodes, 0 to 1, that must reach the goal before the curriculum
-            advances.
+        share: fraction (0 to 1) of the last ``episodes`` episodes in which the agent must reach the goal
+            before the curriculum advances.
         episodes: number of most recent episodes from which the share is computed.
 
     Raises:

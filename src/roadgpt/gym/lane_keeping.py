@@ -45,14 +45,14 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
     Observation ``camera``: an image (height, width, 3) from behind the windscreen.
 
     Reward of a step: metres gained along the lane, minus 0.1 per metre of distance from the middle of the
-    lane, minus a small penalty for rough steering; +10 at the goal, -10 if the car leaves its lane, falls or
-    gets stuck. An episode is ``terminated`` when the car reaches the goal, leaves its lane, falls or gets
-    stuck; it is ``truncated`` when the time runs out.
+    lane, minus a small penalty for rough steering; +10 at the goal, -10 if the car leaves its lane, falls off
+    the road, overturns or gets stuck. The goal and each of these failures set ``terminated``; running
+    out of time sets ``truncated``.
 
     ``info`` has s, t (m, position on the road), outside (share of the car outside its lane), speed (m/s),
     progress (m gained in this step), prompt, and at the end ``ended``: "goal", "out_of_lane", "fell", "stuck"
-    or "timeout". After ``reset`` it also has ``understood``, the description as it was understood. The road
-    itself is ``env.unwrapped.road``.
+    or "timeout". After ``reset`` it also has ``understood``: a sentence with the requirements that were read
+    from the description. The road itself is ``env.unwrapped.road``.
 
     Args:
         prompt: one description, or several; the seed then selects one for each episode.
@@ -145,8 +145,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         raise DesignError(f"no road of '{brief.words}' could be drawn: {said}")
 
     def step(self, action: NDArray[np.float32]) -> tuple[State, float, bool, bool, dict[str, Any]]:
-        """Runs two control steps (40 ms) with an action; numbers beyond ±1 are clipped. After the end of the
-        episode nothing moves, and the reward is 0.
+        """Applies an action for two control steps (40 ms in total); values beyond ±1 are clipped. After the
+        end of the episode nothing moves, and the reward is 0.
 
         Raises:
             UsageError: there is no road yet, or the action is not two finite numbers.

@@ -24,7 +24,7 @@ MOST = 20.0  # limit of each number after the division
 
 
 class Preview:
-    """Table of curvature, grade and lane middle at the stations of one road, for quick lookup."""
+    """Table of a road's curvature, grade, heading and offset of the lane's middle, for quick lookup."""
 
     def __init__(self, road: Road, world: World, step: float = 0.5) -> None:
         """Samples the road every ``step`` metres; beyond its end the road continues straight and level."""
@@ -39,8 +39,8 @@ class Preview:
         self._ahead = np.round(np.array(AHEAD) / step).astype(int)
 
     def numbers(self, row: dict[str, float], world: World) -> Floats:
-        """Returns the observation ``(24,)`` for one step of a drive; ``row`` holds the values of the step by
-        name."""
+        """Returns the observation ``(24,)`` for one step of a drive; ``row`` maps the names of a Drive's
+        columns to their values in this step."""
         last = len(self._bends) - 1
         here = min(max(round(row["s"] / self._step), 0), last)
         ahead = np.minimum(here + self._ahead, last)

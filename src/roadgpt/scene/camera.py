@@ -17,7 +17,8 @@ NARROWEST, WIDEST = math.radians(5), math.radians(150)
 
 
 class Pose(NamedTuple):
-    """The pose of a car, with its steering, speed and braking. The columns of a Drive have the same names.
+    """The pose of a car, with its steering, speed and braking. Except for ``wheel``, the fields have the same
+    names as the columns of a Drive.
 
     Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
     counter-clockwise, pitch positive with the nose up, roll positive with the left side up.
@@ -121,7 +122,7 @@ class Camera:
 
 
 def axes_of(heading: float, pitch: float, roll: float) -> Array:
-    """Returns the unit vectors forward, left and up of a body, as rows of (3, 3)."""
+    """Returns a body's forward, left and up unit vectors as the rows of a (3, 3) array."""
     ch, sh, cp, sp = math.cos(heading), math.sin(heading), math.cos(pitch), math.sin(pitch)
     cr, sr = math.cos(roll), math.sin(roll)
     return np.array(

@@ -1,5 +1,5 @@
-"""The model of the drawn car: a saloon of the size of the simulated car, with rolling and steering wheels and
-brake lights.
+"""The 3D model of the car in images: a saloon of the simulated car's size, with wheels that roll and steer,
+and with brake lights.
 
 The origin of its coordinates is on the ground below the middle of its length; x points forward, y left, z up;
 metres.

@@ -29,6 +29,6 @@ def compiled(function: Function) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Returns a small function that is inlined into the compiled functions that call it."""
+    """Compiles a small function for inlining into the compiled functions that call it."""
     made: Function = NUMBA.njit(nogil=True, error_model="numpy", forceinline=True)(function)
     return made

@@ -16,8 +16,8 @@ COARSEST = 6.0  # halvings after which a tile is uniform
 
 @inlined
 def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: float) -> float:
-    """Returns the value of one resolution level of a noise tile at (u, v), in texels of that level, by
-    bilinear interpolation."""
+    """Returns the bilinearly interpolated value of one resolution level of a noise tile; (u, v) is the
+    position in texels of that level."""
     fu, fv = math.floor(u), math.floor(v)
     du, dv = u - fu, v - fv
     mask = side - 1

@@ -143,9 +143,9 @@ def draw(
             stored depth.
         ids: number of the triangle that each sample shows, same shape as ``depth``; updated together with
             ``depth``.
-        planes: (n, PLANE): plane equations of the numbered triangles; filled by this function.
+        planes: (n, PLANE): plane equations; row k is for triangle k of ``ids``; filled by this function.
         seen: working memory for the points of a patch, (n, 3).
-        seen_kinds: (n,), surface types of the numbered triangles; filled by this function.
+        seen_kinds: (n,): surface types of the triangles in ``planes``; filled by this function.
         count: number of triangles that earlier calls have drawn.
     """
     rows, columns = depth.shape

@@ -172,9 +172,9 @@ def shade(
         tiles: the noise tiles from `textures.noise`.
         eye: the camera, as in `raster.draw`.
         lanes: boundaries of the road's lanes.
-        numbers: data for the shadow: the point on the ground under the car (3 numbers), the car's direction
-            (2), its length, its width, the distance from that point forward to the car's middle, and 1 if
-            there is a car, else 0.
+        numbers: data for the shadow: the point on the ground below the car's centre of gravity (3 numbers),
+            the car's direction (2), its length, its width, how far its middle is ahead of that point, and 1
+            if there is a car, else 0.
         picture: the image in linear light; filled by this function.
     """
     rows, columns = picture.shape[0], picture.shape[1]
@@ -242,8 +242,8 @@ def shade(
 
 @compiled
 def to_screen(picture: NDArray[np.float32], table: NDArray[np.uint8], out: NDArray[Any]) -> None:
-    """Converts linear light to bytes; values above 0.7 are compressed first, so that highlights keep their
-    shades."""
+    """Converts linear light to bytes; values above 0.7 are compressed first, so that highlights do not
+    clip."""
     rows, columns = picture.shape[0], picture.shape[1]
     for row in range(rows):
         for i in range(columns):

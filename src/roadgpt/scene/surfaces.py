@@ -1,4 +1,6 @@
-"""Computes, in compiled code, the linear colours of the sky, and of terrain and road before they are lit."""
+"""Computes linear colours in compiled code: those of the sky, and those of terrain and road before light and
+shadow are applied.
+"""
 
 import math
 from typing import NamedTuple

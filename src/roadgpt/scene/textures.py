@@ -16,8 +16,8 @@ STEPS = 4096  # of the table
 
 @cache
 def noise() -> NDArray[np.float32]:
-    """Returns three noise tiles ``(3, n)`` of mean 0 and standard deviation 1; each row holds the tile and
-    its successively halved versions, down to 1 texel.
+    """Returns three noise tiles ``(3, n)`` of mean 0 and standard deviation 1; each row holds one tile
+    with all its mipmap levels, down to 1 texel.
 
     The three tiles look like the grain of stone, like clouds of all sizes, and like tufts of grass.
     """

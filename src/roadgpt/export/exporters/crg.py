@@ -46,7 +46,8 @@ def document(road: Road, world: World) -> str:
     The heights are those at the right and at the left edge of the surface.
 
     Raises:
-        ExportError: A bend is so tight that the lanes overlap in it, or a number is not finite.
+        ExportError: The radius of a bend is less than the distance from the centre line to an edge of the
+            carriageway, or a number is not finite.
     """
     count = min(MOST, max(1, math.ceil(road.length / STEP)))
     step = road.length / count

@@ -153,7 +153,7 @@ def _player(level: str, scene: LevelRoad) -> Iterator[Item]:
 def rotation(heading: float, grade: float) -> Array:
     """Returns the rotation matrix (3, 3) of a car with this heading and grade, row by row as in level files.
 
-    Its rows are the directions of the car's left, rear and roof: without rotation, BeamNG's cars face -y.
+    Its rows point left, backwards and upwards from the car: unrotated, BeamNG's cars face -y.
     """
     size = np.hypot(1.0, grade)
     ahead = np.array([np.cos(heading), np.sin(heading), grade]) / size

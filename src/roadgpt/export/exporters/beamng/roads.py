@@ -4,11 +4,11 @@ simulator.
     mesh road    solid strip that carries the wheels: nodes x, y, z, width, depth
     decal road   strip that is drawn on the mesh road and that BeamNG's AI follows: nodes x, y, z, width
 
-As in the RoadGPT thesis, both strips follow the same line, and the nodes of the mesh are shifted at random so
-that the two surfaces do not flicker. In addition, the decal is placed a little above the mesh. The shifts
-depend only on the seed. The shoulder is a second, wider mesh just below the first one. It reaches down to the
-ground, which is at the height of the lowest point of the road. A road without shoulder floats above a ground
-at height ``world.site.z_floor``.
+As in the bachelor thesis behind RoadGPT, both follow the same line, the middle of the carriageway, and the
+nodes of the mesh road are shifted slightly at random so that the two surfaces do not flicker. In addition,
+the decal is placed a little above the mesh. The shifts depend only on the seed. The shoulder is a second,
+wider mesh just below the first one. It reaches down to the ground, which is at the height of the lowest point
+of the road. A road without shoulders floats, and the ground is just below ``world.site.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -78,7 +78,7 @@ class Strip:
 
 @dataclass(frozen=True, eq=False)
 class LevelRoad:
-    """The strips of a road from bottom to top, and where the drive begins and ends."""
+    """The mesh roads and decal roads of a road, lowest first, and where the drive begins and ends."""
 
     strips: tuple[Strip, ...]
     start: Array

@@ -1,4 +1,4 @@
-"""Writes elevation and other functions of the station: parabolas and cubics exactly, splines as fitted
+"""Writes elevation, superelevation and lane widths: parabolas and cubics exactly, splines as fitted
 cubics.
 """
 
