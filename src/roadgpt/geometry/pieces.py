@@ -30,8 +30,9 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class PieceCurve:
-    """A plane curve of pieces joined end to end. It starts at ``(x, y)`` with heading ``heading0`` in
-    radians.
+    """A plane curve of lines, arcs and clothoids joined end to end.
+
+    It starts at ``(x, y)`` with heading ``heading0`` in radians.
 
     Raises:
         ValueError: There is no piece, or a piece does not have a positive length.

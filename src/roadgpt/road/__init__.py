@@ -2,7 +2,7 @@
 
 A Design is a human-readable list of segments, written by a designer plug-in. A Road is 3-D geometry. Its
 method ``road.at(s, t)`` returns a point: the station ``s`` is the distance along the centre line, and the
-offset ``t`` is the distance to its left.
+offset ``t`` is the distance from it, positive to the left.
 """
 
 from importlib import import_module

@@ -7,10 +7,10 @@ The curvature of a turning segment changes from an entry value to its own value,
            entry ___/             \___ exit
                 clothoid      clothoid
 
-The entry or exit value is 0 where the neighbouring segment is straight or turns to the other side. Where both
-segments turn to the same side, the value is the smaller of their own curvatures, so that the two segments
-form one longer turn. The prompt in the RoadGPT thesis asks language models to build turns of more than 70
-degrees in this way.
+The entry or exit value is 0 where the neighbouring segment is straight or turns the other way. Where both
+segments turn the same way, the value is the smaller of their own curvatures, so that the two segments form
+one longer turn. The prompt in the RoadGPT thesis asks language models to build turns of more than 70 degrees
+in this way.
 """
 
 import math
@@ -55,7 +55,7 @@ def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
     """Returns the lines, arcs and clothoids of all segments in order.
 
     Every segment keeps its length and its change of heading exactly. It also keeps its radius if the turn
-    fits into this length and at most one of its neighbours turns to the same side.
+    fits into this length and at most one of its neighbours turns the same way.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)

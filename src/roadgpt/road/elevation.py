@@ -40,8 +40,8 @@ def vertical_curves(
 ) -> list[VerticalCurve]:
     """Returns the vertical curves where grades change, in order.
 
-    A curve whose radius is given has the length that this radius requires. Where neighbouring curves would
-    overlap, those with a given radius are shortened.
+    A curve whose radius is given has the length that this radius requires. It is shortened where it would
+    overlap its neighbour or extend beyond the road.
 
     Args:
         distances: Lengths of the segments in metres.

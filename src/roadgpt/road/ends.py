@@ -1,6 +1,7 @@
 """Defines where a drive begins and ends on a road.
 
-Source: the simulations of the RoadGPT thesis and of the SBFT competition, which use the same distances.
+Source of the distances from the ends of the road: the simulations of the RoadGPT thesis and of the SBFT
+competition.
 """
 
 START = 2.5  # m along the road: station of the car's centre of gravity at the start

@@ -1,5 +1,6 @@
-"""Creates the terrain around a road: below the road surface close to the road, with gentle hills farther
-away.
+"""Creates the terrain around a road.
+
+Near the road it lies below the road surface; farther away it has gentle hills.
 """
 
 from dataclasses import dataclass
@@ -40,7 +41,7 @@ class Land:
 
     @classmethod
     def around(cls, road: Road, world: World) -> "Land":
-        """Returns the terrain around a road. The terrain is flat if roads of this World have no shoulder."""
+        """Returns the terrain around a road. The terrain is flat if the road has no shoulder."""
         line = road.centreline(LONGEST_STEP)
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)

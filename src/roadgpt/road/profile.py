@@ -6,8 +6,8 @@
                        |     centre line
                  carriageway
 
-Lanes on the right of the centre line run along the road, lanes on the left run against it. A road with one
-lane in each direction is the default.
+Traffic on the right of the centre line drives along the road, towards larger stations; traffic on the left
+drives against it. A road with one lane in each direction is the default.
 """
 
 from collections.abc import Sequence
@@ -110,7 +110,7 @@ class Profile:
         """Returns a cross-section of equally wide lanes. The tested car drives in the rightmost lane.
 
         Args:
-            forward: Number of lanes along the road, one or more.
+            forward: Number of lanes in the direction of the road, one or more.
             backward: Number of oncoming lanes. With 0 the road is one-way.
             lane_width: Width of every lane.
             shoulder: Width of the shoulder on each side in metres; 0 for none.
@@ -128,7 +128,7 @@ class Profile:
 
     @property
     def count(self) -> tuple[int, int]:
-        """The number of driving lanes along the road, and the number of oncoming lanes."""
+        """The number of driving lanes in the direction of the road, and the number of oncoming lanes."""
         return len(_driving(self.right)), len(_driving(self.left))
 
     @property

@@ -31,7 +31,7 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
 
 
 def profile_from_json(data: Any) -> Profile:
-    """Returns the cross-section whose ``profile_to_json`` gave ``data``.
+    """Restores a cross-section from JSON data as returned by ``profile_to_json``.
 
     Raises:
         UsageError: A field is missing, unknown, of the wrong type or out of range.

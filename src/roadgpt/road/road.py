@@ -237,7 +237,7 @@ class Road:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Returns the road whose ``to_json`` gave ``data``.
+        """Restores a road from JSON data as returned by ``to_json``.
 
         Raises:
             UsageError: A field is missing, is not a number or is not finite, or the road is too long or too

@@ -1,4 +1,4 @@
-r"""Plans a driver's speed along its path, limited by the friction circle, in two sweeps over all stations.
+r"""Plans a car's speed along its path, limited by the friction circle, in two sweeps over all stations.
 
     limit    ____________                    ______________
                          \                  /                 backward sweep: brake in time

@@ -4,7 +4,7 @@ Source: National Highways, CD 109 Highway link design (earlier TD 9/93), section
 km/h, a bend of radius R metres has a superelevation of V^2 / (2.828 R) percent, and at most 7 % outside
 towns. The superelevation is built up over a run-in, which is usually the transition curve. If this curve is
 so short that the edge of the carriageway would climb or fall by more than 1 % relative to the centre line,
-the run-in begins earlier and ends later. Its limit is the middle of the adjoining straight or arc.
+the run-in begins earlier and ends later. It never extends beyond the middle of the adjoining straight or arc.
 """
 
 import math

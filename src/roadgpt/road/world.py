@@ -25,7 +25,7 @@ OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
 
 
 def lanes_in(text: str) -> str:
-    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) without blanks.
+    """Removes the blanks from a text such as "2 + 1" (2 lanes forward, 1 backward), and returns the text.
 
     Raises:
         ValueError: The text has another form; the message says which one is needed.
@@ -226,7 +226,7 @@ class World(BaseModel):
         }
 
     def values(self) -> dict[str, Any]:
-        """Returns the fields of all three parts by their names, in the order of ``FIELDS``."""
+        """Returns a dictionary of the fields of all three parts, in the order of ``FIELDS``."""
         return {name: getattr(getattr(self, part), name) for name, part in FIELDS.items()}
 
     def changed(self, **values: Any) -> "World":

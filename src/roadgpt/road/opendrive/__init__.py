@@ -5,9 +5,9 @@ geometries  evaluates lines, arcs, spirals, poly3 and paramPoly3
 lanes       reads the lane sections; the inner edge of the driving lanes becomes the centre line of the Road
 profile     joins the lanes of all sections, and selects the driven lane
 marks       reads the road marks
-line        computes the plan: unchanged where possible, otherwise clothoids through poses one metre apart
+line        computes the plan curve: unchanged where possible, otherwise clothoids through poses 1 m apart
 joins       finds places where elements do not meet exactly, and bridges them
-heights     reads the elevation without changing it
+heights     reads the elevation, and converts it to the stations of the Road
 cubic_rows  sums and clips piecewise cubic functions of the station, such as lane widths
 reversal    reverses a road whose driving lanes are on the left
 left_out    lists the contents of the file that a Road cannot represent
@@ -74,8 +74,7 @@ class ImportedRoad:
         """Returns ``base`` with the lane width, shoulder, speed limit and friction of this road.
 
         A speed limit or friction that the file does not state is taken from ``base``. If ``road.profile`` is
-        not None, lane width and shoulder are also taken from ``base``, because the road's own cross-section
-        defines them.
+        not None, it defines the lanes and shoulders, and ``base`` keeps its lane width and shoulder.
         """
         told = {"speed_limit": self.speed_limit, "friction": self.friction}
         if self.road.profile is None:
@@ -85,7 +84,7 @@ class ImportedRoad:
 
 
 def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
-    """Returns one road of an OpenDRIVE file. Its centre line is the inner edge of the driven lane.
+    """Returns one road of an OpenDRIVE file. Its centre line is the inner edge of the driving lanes.
 
     Args:
         path: The file.

@@ -1,5 +1,5 @@
-"""Sums and clips piecewise cubic functions of the station, such as lane widths. They are lists of rows; a row
-is a station and the cubic that begins there.
+"""Sums and clips piecewise cubic functions of the station, such as lane widths. Each function is a list of
+rows; a row is a station and the cubic that begins there.
 """
 
 from collections.abc import Sequence

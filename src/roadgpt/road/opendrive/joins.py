@@ -27,7 +27,7 @@ WIDEST = 12.0  # m between two poses; over a larger gap the line cannot be recon
 
 @dataclass(frozen=True)
 class SampledLine:
-    """Poses along the inner edge of the driven lane."""
+    """Poses along the inner edge of the driving lanes, or along the reference line."""
 
     s: Array
     """Station at each pose, as measured in the file, ``(n,)``."""

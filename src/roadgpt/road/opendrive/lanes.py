@@ -1,8 +1,8 @@
 """Reads the lane sections, speed limits and friction of an OpenDRIVE road, and the edge that becomes the
 centre line.
 
-The driven side is the right one, or the left one if there are hardly any driving lanes on the right. The
-inner edge of its innermost driving lane becomes the centre line of the Road.
+The driven side is the right one, unless driving lanes cover less than half as much length there as on the
+left. The inner edge of its innermost driving lane becomes the centre line of the Road.
 """
 
 from collections.abc import Sequence

@@ -1,8 +1,9 @@
-"""Computes the plan curve of a Road from the reference line and the driven lane of an OpenDRIVE file.
+"""Computes the plan curve of a Road from the reference line and the lanes of an OpenDRIVE file.
 
-exact      keeps the reference line, if the lane's edge lies on it and its lines, arcs and spirals meet
+exact      keeps the reference line, if it consists of lines, arcs and spirals that meet
 fitted     joins poses one metre apart by clothoids; leaves out poses near gaps between elements
-rounded    fits a spline, if too many elements do not meet for clothoids to be fitted
+
+If there are too many gaps between elements for clothoids, ``read_opendrive`` fits a spline.
 """
 
 from collections.abc import Iterator
@@ -47,7 +48,7 @@ def exact(line: list[GeometryElement]) -> PieceCurve | None:
 
 
 def lies_on_the_line(lanes: Lanes, length: float) -> bool:
-    """Returns whether the inner edge of the driven lane coincides with the reference line."""
+    """Returns whether the inner edge of the driving lanes coincides with the reference line."""
     s = np.linspace(0.0, length, max(FEWEST, int(length / STEP) + 1))
     s = np.unique(np.r_[s, [each for each in lanes.joints() if 0 <= each <= length]])
     t, slope = lanes.edge(s)
@@ -55,7 +56,7 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 
 
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
-    """Returns poses along the inner edge of the driven lane.
+    """Returns poses along the inner edge of the driving lanes.
 
     The poses are at most about one metre apart, and there is a pose wherever an element or a lane width
     begins.
@@ -65,7 +66,7 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
         lanes: The lanes of the road; None to return poses along the reference line.
 
     Raises:
-        UsageError: The line has a gap, the edge jumps, or the edge folds in a bend.
+        UsageError: The line has a gap, the edge jumps, or the edge comes too close to the centre of a bend.
     """
     joints = np.unique(lanes.joints()) if lanes else np.empty(0)
     parts = [part for each in line for part in _parts(each, joints, lanes)]
@@ -143,9 +144,9 @@ def _strays(element: GeometryElement, count: int) -> bool:
 
 
 def fitted(line: SampledLine) -> tuple[PieceCurve, Array, Array] | None:
-    """Returns a plan of clothoids through the poses; poses near gaps between elements are skipped.
+    """Returns a curve of clothoids through the poses; poses near gaps between elements are skipped.
 
-    Also returns the stations of the remaining poses in the file and on the plan, in metres. Returns None if
+    Also returns the stations of the remaining poses in the file and on the curve, in metres. Returns None if
     clothoids cannot follow the line.
     """
     kept = bridged(line)

@@ -1,7 +1,7 @@
 """Reads the cross-section of a road: lanes and shoulders beside the centre line, and the superelevation.
 
 The centre line is the inner edge of the innermost driving lane. Lanes of successive lane sections are joined
-in order, beginning with the innermost. A lane that has a width of 0 where two sections meet is not joined
+in order, beginning with the innermost. A lane narrower than 0.25 m where two sections meet is not joined
 there. In sections where a joined lane does not exist, its width is 0.
 """
 
@@ -30,7 +30,7 @@ Carry = Callable[[CubicProfile], CubicProfile]
 
 
 class JoinedLane(NamedTuple):
-    """A lane along the whole road, joined from one lane of each lane section in which it exists."""
+    """A lane of the whole road: it consists of one lane from each lane section in which it exists."""
 
     kind: Kind
     width: CubicProfile
