@@ -79,8 +79,8 @@ class Simulator(Protocol):
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
-            SimulatorError: the simulator itself failed. After three such failures in a row, it is not used
-                any more.
+            SimulatorError: the simulator itself failed. A command that drives many roads gives up on it
+                after three such failures in a row.
             SimulationError: the physics became unstable.
         """
         ...

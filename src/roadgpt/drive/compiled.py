@@ -1,7 +1,7 @@
-"""Compiles inner loops to machine code where possible; elsewhere the same functions run as plain Python.
+"""Compiles inner loops to machine code where possible; otherwise the same functions run as plain Python.
 
-The decision is made once for all functions. If numba or llvmlite is missing or does not load, or if MuJoCo's
-functions cannot be called by their addresses, everything runs as plain Python, which is far slower.
+This is decided once, for all functions together. If numba or llvmlite is missing or does not load, or if
+MuJoCo's functions cannot be called by their addresses, everything runs as plain Python, which is far slower.
 ``ROADGPT_NO_NUMBA=1`` forces this. ``roadgpt doctor`` shows whether machine code or plain Python is used.
 """
 

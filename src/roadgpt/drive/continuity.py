@@ -2,7 +2,9 @@
 
 Between two samples, the distance must not exceed what a car can do, plus some slack:
 
-    way <= speed * dt + 1/2 A dt^2 + SLACK        speed: the larger speed of the two samples, at most FASTEST
+    distance <= speed * dt + 1/2 HARDEST dt^2 + SLACK
+
+Here ``speed`` is the larger speed of the two samples, at most FASTEST.
 """
 
 import numpy as np
@@ -10,7 +12,7 @@ import numpy as np
 from roadgpt.drive.drive import Drive
 from roadgpt.errors import SimulationError
 
-HARDEST = 300.0  # m/s^2, A: 30 g, more than a car survives in one piece
+HARDEST = 300.0  # m/s^2: 30 g, more than a car survives in one piece
 SLACK = 0.5  # m, tolerance for samples that were taken at slightly other times than they state
 FASTEST = 200.0  # m/s; the fastest production cars reach 135, a car that falls 100 m reaches 44
 STANDING = 20.0  # m of distance according to the speed, from which the check applies ...

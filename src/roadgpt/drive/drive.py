@@ -178,7 +178,7 @@ class Drive:
 
     @classmethod
     def load(cls, path: Path | str) -> "Drive":
-        """Reads a Drive from an .npz file whose content ``to_bytes`` returned.
+        """Reads a Drive from an .npz file that contains the result of ``to_bytes``.
 
         Raises:
             UsageError: there is no such file, or it does not hold a Drive.

@@ -8,8 +8,8 @@ All errors of a driver are raised as DriverError. A driver that hangs is stopped
   between two instructions. That ends endless loops, but a ``time.sleep(60)`` only after its 60 seconds.
 
 A driver that hangs inside compiled code which never returns to Python cannot be stopped from within its own
-process. Drivers that users name therefore run in a separate process (``roadgpt.drive.isolation``), which can
-be ended.
+process. Users' drivers that are given by a plug-in's name or as PATH.py:CLASS therefore run in a separate
+process (``roadgpt.drive.isolation``), which can be ended.
 """
 
 import contextlib

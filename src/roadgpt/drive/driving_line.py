@@ -2,7 +2,7 @@
 centre line of the road, shifted sideways by a given offset at every station.
 
 Drivers look up the line every 20 ms. The line is therefore computed once per road and stored as plain lists,
-so that a lookup takes one index.
+so that a lookup needs no search.
 """
 
 import math

@@ -91,8 +91,8 @@ def _with_overlap(area: float, box: FloatArray, a: FloatArray, b: FloatArray, sc
 
 @compiled
 def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scratch: FloatArray) -> float:
-    """Returns the share of the convex box's area that is outside the strip; ``scratch`` is working memory of
-    shape (2, 16, 2).
+    """Returns the share of the box's area that is outside the lane; ``scratch`` is working memory of shape
+    (2, 16, 2).
     """
     whole = 0.0
     mid_x = 0.25 * (box[0, 0] + box[1, 0] + box[2, 0] + box[3, 0])

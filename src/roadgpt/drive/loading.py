@@ -21,8 +21,8 @@ def driver_of(spec: str) -> Any:
     """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
     separate process.
 
-    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
-    a plan names it (see ``drive.permission``).
+    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
+    user agrees (see ``drive.permission``).
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.
@@ -46,9 +46,8 @@ def driver_of(spec: str) -> Any:
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
-    A driver's file is run only if the user has named it or agrees; it is not enough that a run, a campaign or
-    a plan names it (see ``drive.permission``). Use ``driver_of`` to get a user's driver in a
-    process of its own.
+    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
+    user agrees (see ``drive.permission``). Use ``driver_of`` to get a user's driver in a process of its own.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

@@ -1,9 +1,9 @@
 r"""Computes how far a car reaches beyond the outer edges of the markings on both sides of its lane.
 
-    left                    right          Positive beyond, negative inside, in metres across the
-|    ¦ ¦      lane           |¦            lane. Measured at the outer edges of the front tyres where
-|    ¦ ¦  <- the car ->      |¦            they stand on the road, or along both sides of the body's
-     ¦ ¦                     |¦            underside, with the car's pitch and roll applied.
+    left                    right          The result is positive beyond an edge and negative inside,
+|    ¦ ¦      lane           |¦            in metres across the lane. It is measured at the outer edges
+|    ¦ ¦  <- the car ->      |¦            of the front tyres where they touch the road, or along both
+     ¦ ¦                     |¦            sides of the body's underside, including pitch and roll.
        ^ outer edge            ^ outer edge
 """
 
@@ -45,7 +45,7 @@ class MarkingMonitor(NamedTuple):
     The shape is (n, 2), with one row for each row of the table in ``sampled``.
     """
     points: FloatArray
-    """Shape (n, 3): metres ahead, to the left and up of the car's centre of gravity."""
+    """Shape (n, 3): metres ahead, to the left and up, from the car's centre of gravity."""
 
     @classmethod
     def for_tyres(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":

@@ -33,8 +33,8 @@ def addresses() -> tuple[int, ...]:
 
 
 def intrinsic_call() -> Any:
-    """Returns a function with which compiled code calls a C function ``void function(model, data)``. Its
-    arguments are the addresses of the C function, of the model and of the data.
+    """Returns a function with which compiled code calls a C function ``void function(model, data)``. The
+    returned function takes the addresses of the C function, of the model and of the data.
 
     Raises:
         ImportError: numba or llvmlite is missing.

@@ -19,7 +19,7 @@ def split_spec(spec: str) -> tuple[str, str]:
 
 
 def permit(spec: str) -> None:
-    """Records that the user has named this driver, so that it may also be run where a stored file names it.
+    """Records that the user has named this driver, so that it may also be run if a stored file names it.
 
     A run that was made on another machine names the driver by a path that does not exist on this machine.
     Drivers with the same file name and the same class therefore count as the same driver, and the file that
@@ -31,8 +31,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use where a stored file names the driver ``spec``: the user's own driver if it
-    has the same file name and class, else ``spec``."""
+    """Returns the driver to use if a stored file names the driver ``spec``: a driver that the user has
+    named and that has the same file name and class, if there is one, else ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))
@@ -42,8 +42,8 @@ def driver_from_file(spec: str, file: object) -> str:
 
 
 def require_permission(spec: str) -> None:
-    """Permits a driver's file to be run. Asks the user first if the driver is named only in a stored file,
-    and not by the user.
+    """Permits a driver's file to be run. If the driver is named only in a stored file, the user is first
+    asked for permission.
 
     Raises:
         UsageError: the driver is named only in a stored file, and the user does not agree or cannot be asked.

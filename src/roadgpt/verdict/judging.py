@@ -47,8 +47,8 @@ def judge(
         road: The road.
         drive: The drive on this road.
         world: The World, which sets the tolerance and the other failure criteria.
-        known: A pair, if known already: the index of the step that decides the verdict, and the cause of
-            failure (None if the car did not fail).
+        known: The index of the step that decides the verdict, and the cause of failure (None if the car did
+            not fail). If ``known`` is None, both are computed.
 
     Raises:
         UsageError: The drive was stopped at a smaller tolerance than ``world.oob_tolerance``.

@@ -2,16 +2,17 @@ r"""Computes the margin of a drive at every step: the distance to failure in met
 
     margin = how far the car could be shifted sideways, with its heading unchanged, before it fails
 
-The car fails if the share of its bounding box outside its lane exceeds the tolerance, or if the box
-extends beyond the outer edge of carriageway and shoulder. Seen across the lane, the area of a rotated box has
-a trapezoidal density, so the position at which the share equals the tolerance is computed exactly. The
-curvature of the lane under the box is taken into account to second order. If lane departures count, the car
-also fails as soon as the outer edge of a front tyre crosses the outer edge of a lane marking.
+The car fails if the share of its bounding box outside its lane exceeds the tolerance. While the car is in its
+lane, the margin is at most the distance from the box to the outer edge of the carriageway and its shoulder.
+Seen across the lane, the area of a rotated box has a trapezoidal density, so the position at which the share
+equals the tolerance is computed exactly. The curvature of the lane under the box is taken into account to
+second order. If lane departures count, the car also fails as soon as the outer edge of a front tyre crosses
+the outer edge of a lane marking.
 
                  ____________
                 /|          |\          density of the box across the lane, at an angle psi to it:
-               / |          | \         half-widths a = L/2 sin psi and b = W/2 cos psi, added
-     _________/__|__________|__\_____
+               / |          | \         two uniform densities convolved, with half-widths
+     _________/__|__________|__\_____   a = L/2 sin psi and b = W/2 cos psi
             -(a+b)     0      a+b
 """
 
@@ -81,7 +82,7 @@ def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     """Returns the margin in metres at every step of a drive, shape ``(n,)``.
 
     It is negative exactly where the car is out of its lane, and 0 where it is in its lane but extends beyond
-    carriageway and shoulder.
+    the carriageway and its shoulder.
     """
     box = lateral_extent(road, drive)
     s, profile = drive["s"], world.profile_of(road)

@@ -59,7 +59,7 @@ class Verdict:
 
     @property
     def severity(self) -> Severity:
-        """The grade of how far outside its lane the car was, independent of whether it passed."""
+        """How far outside its lane the car was, as a grade that does not depend on whether it passed."""
         return severity(self.max_oob)
 
     @property
@@ -75,7 +75,7 @@ class Verdict:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Returns the Verdict whose ``to_json`` gave ``data``.
+        """Converts the result of ``to_json`` back to a Verdict.
 
         Raises:
             UsageError: a field is missing or unknown, or its value is invalid.

@@ -55,8 +55,8 @@ class BeamngLike:
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
         edge_room: distance in metres that the right wheels keep from the right edge of the carriageway where
-            there is no shoulder (a floating mesh road). On a one-way road, the left wheels also keep it from
-            the left edge. With None the driver ignores the edges and may fall off.
+            there is no shoulder (a floating mesh road). On a one-way road, the left wheels keep the same
+            distance from the left edge. With None the driver ignores the edges and may fall off.
         assumed_friction: friction that the driver plans for; None for the friction of the world.
         wheelbase: wheelbase in metres.
     """

@@ -15,13 +15,13 @@ TURN = 2 * math.pi
 
 
 class Reference:
-    """Keeps to the middle of its lane; a road on which it fails can hardly be driven.
+    """Keeps to the middle of its lane; a road on which it fails is probably not drivable.
 
     Steering follows N. R. Kapania, J. C. Gerdes, "Design of a feedback-feedforward steering controller for
     accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015): the
     steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
-    car, with the slip angle taken into account. Speed is planned on the friction circle, with grades, crests
-    and superelevation.
+    car, with the slip angle taken into account. The planned speed respects the friction circle, and takes
+    grades, crests and superelevation into account.
 
     Args:
         risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
@@ -32,8 +32,8 @@ class Reference:
             at 0.3 g.
         slip: slip angle of the rear axle per lateral acceleration, in rad per m/s^2.
         gain: steering angle per lateral error at the point ahead, in rad per metre.
-        ahead: distance in metres to the point ahead when the car stands; at speed it is ``ahead + headway *
-            speed``.
+        ahead: distance in metres to the point ahead while the car is at rest; at speed it is ``ahead +
+            headway * speed``.
         headway: increase of the distance ``ahead`` with speed, in metres per m/s.
         lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
             delay.

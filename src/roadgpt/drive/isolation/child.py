@@ -1,8 +1,8 @@
 """Main loop of a driver's own process: creates the driver, passes views to it, and undoes the driver's
 changes to the process.
 
-There is no time limit in this process: if a driver takes too long, RoadGPT's process ends the whole process.
-The driver may therefore use alarms, signals and threads as it likes.
+Nothing in this process interrupts a slow driver: if it takes too long, RoadGPT ends this process. The driver
+may therefore use alarms, signals and threads as it likes.
 """
 
 import faulthandler

@@ -61,8 +61,8 @@ class DriverProcess:
             given: arguments for this method.
 
         Returns:
-            The answer, as a dictionary. After an error in that process, its keys are ``said``, ``is_users``
-            and ``trace``.
+            The answer, as a dictionary. After an error in that process, its keys are ``said`` (the message),
+            ``is_users`` (whether to raise a UsageError) and ``trace`` (the traceback).
 
         Raises:
             GoneError: the process ended, or was ended because it did not answer within ``seconds``.
@@ -82,7 +82,7 @@ class DriverProcess:
         return answer
 
     def forget(self) -> None:
-        """Makes the process discard its driver, and does not wait for this."""
+        """Tells the process to discard its driver, without waiting for it."""
         with suppress(OSError):
             protocol.send(self._down, pickle.dumps(("forget",)))
 

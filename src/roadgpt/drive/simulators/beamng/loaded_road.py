@@ -239,7 +239,7 @@ class LoadedRoad:
         """Returns the camera's image, shape (height, width, 3), uint8; None if there is no camera.
 
         Raises:
-            SimulationError: BeamNG draws no image.
+            SimulationError: BeamNG's camera returns no image.
         """
         if self.camera is None:
             return None

@@ -2,8 +2,8 @@
 developed without a licence for BeamNG.
 
 The result of each check is a sentence with figures. The checks answer the questions that BeamNG's
-documentation leaves open: whether the AI finds roads of prefabs, whether decals lie correctly on slopes, how
-much repeated runs differ, and whether RoadGPT's level folders load.
+documentation leaves open: whether the AI finds roads that are loaded from prefabs, whether decals lie
+correctly on slopes, how much repeated runs differ, and whether RoadGPT's level folders load.
 """
 
 import json
@@ -49,7 +49,7 @@ class Check:
 
 
 def bent(z: float, incline: float) -> Road:
-    """Returns a test road of 190 m: a straight, one bend to each side, and another straight."""
+    """Returns a test road of 190 m: a straight, a left bend, a right bend, and another straight."""
     left = Segment(distance=40, direction="left", turn_degrees=60, incline=incline)
     right = Segment(distance=50, direction="right", turn_degrees=-60, incline=incline)
     straight = Segment(distance=50, direction="straight", incline=incline)
@@ -57,7 +57,7 @@ def bent(z: float, incline: float) -> Road:
 
 
 class Selftest:
-    """Runs the checks in their order, and saves their images."""
+    """Runs the checks in order, and saves their images."""
 
     def __init__(self, settings: BeamngSettings, folder: Path, repeats: int) -> None:
         """Prepares the checks; images are saved in the folder."""

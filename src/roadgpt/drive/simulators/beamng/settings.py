@@ -1,5 +1,5 @@
-"""Reads the settings of BeamNG from environment variables. RoadGPT also stores its command-line options
-there, so that worker processes get the same settings.
+"""Reads the settings of BeamNG from environment variables. RoadGPT also stores the command-line
+options for BeamNG there, so that worker processes get the same settings.
 
 The variable of a field is ``ROADGPT_BEAMNG_`` plus its name in capitals, such as ROADGPT_BEAMNG_PORT.
 """
@@ -18,7 +18,7 @@ PORT = 25252  # BeamNG's default since 0.34
 
 
 class BeamngSettings(BaseModel):
-    """All settings of BeamNG; the defaults are those of RoadGPT and the SBFT competition."""
+    """All settings of BeamNG, with their defaults."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 

@@ -42,8 +42,8 @@ class BeamngSimulator:
     def simulate(
         self, road: "Road", world: "World", driver: "Driver", seed: int, keep_driving: bool = False
     ) -> Drive:
-        """Implements `roadgpt.drive.Simulator.simulate`; the seed is passed to the driver, and also moves the
-        road by millimetres."""
+        """Implements `roadgpt.drive.Simulator.simulate`; the seed is passed to the driver, and also
+        determines the random shifts (up to 1 cm) of the road's mesh."""
         session = session_of(self.settings)
         for tried in range(TRIES):
             try:

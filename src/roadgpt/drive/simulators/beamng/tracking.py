@@ -25,8 +25,8 @@ SIZES = (1.0, 12.0), (0.5, 4.0)  # m, length and width that a car can have
 
 
 class CarGeometry(NamedTuple):
-    """The geometry of a car, measured once while the car stands; positions are in metres ahead, to the left
-    and up of its centre of gravity."""
+    """The geometry of a car, measured once while the car is at rest; positions are in metres ahead, to the
+    left and up, from its centre of gravity."""
 
     node: tuple[float, float, float]
     """Position of the reference node; BeamNG reports the position of this node as the car's position."""
@@ -47,7 +47,7 @@ class CarGeometry(NamedTuple):
         corners: Mapping[str, Sequence[float]],
         ground: FloatArray,
     ) -> "CarGeometry":
-        """Returns the geometry of a standing car.
+        """Returns the geometry of a car that is at rest.
 
         Args:
             state: the car's state as BeamNG reports it.
@@ -169,7 +169,7 @@ def car_sample(
     since: CarSample | None,
     time: float,
 ) -> CarSample:
-    """Converts the car's state as BeamNG reports it to a CarSample; ``since`` is the previous sample."""
+    """Returns a CarSample, computed from the state that BeamNG reports; ``since`` is the previous sample."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame

@@ -14,12 +14,12 @@ call: Any = call_at if COMPILES else lambda function, model, data: function(mode
 
 @functools.cache
 def functions() -> tuple[Any, ...]:
-    """Returns MuJoCo's two half steps and its kinematics function, as arguments for the function ``call``."""
+    """Returns MuJoCo's two half steps and its kinematics function, in the form that ``call`` expects."""
     # MuJoCo would log warnings to a file in the current folder; our simulator reports what failed.
     mujoco.set_mju_user_warning(lambda _: None)
     return addresses() if COMPILES else tuple(getattr(mujoco, name) for name in FUNCTIONS)
 
 
 def handles(model: Any, data: Any) -> tuple[Any, Any]:
-    """Returns a MuJoCo model and its data as arguments for the function ``call``."""
+    """Returns a MuJoCo model and its data in the form that ``call`` expects."""
     return (model._address, data._address) if COMPILES else (model, data)

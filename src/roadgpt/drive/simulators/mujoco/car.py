@@ -1,8 +1,8 @@
 """Defines the parameters of the car: masses, axles, tyres, engine, brakes and stability systems.
 
 The default is a saloon with the size, drive and acceleration of BeamNG's ETK 800 (AWD, about 220 kW). Its
-numbers are typical values, tuned until the manoeuvres in ``tests/drive/test_simulator_manoeuvres.py`` lie in
-the published ranges; they were not measured on an actual car.
+numbers are typical values, tuned until the results of the manoeuvres in
+``tests/drive/test_simulator_manoeuvres.py`` lie in published ranges; they were not measured on an actual car.
 """
 
 import math

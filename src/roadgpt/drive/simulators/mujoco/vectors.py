@@ -43,7 +43,7 @@ def velocity_at(mj: Any, body: int, point: Vector) -> Vector:
 @inlined
 def add_force(qfrc: FloatArray, force: Vector, arm: Vector) -> None:
     """Adds a force in N, and its moment about the body's centre, to the generalised forces; ``arm`` is the
-    way in m from that centre to the point of attack. The moment is in world axes."""
+    vector in m from that centre to the point of application. The moment is in world axes."""
     moment = cross(arm, force)
     for k in range(3):
         qfrc[k] += force[k]
