@@ -8,7 +8,7 @@ from typing import NamedTuple
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, exactly, span
-from roadgpt.brief.normal import SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
+from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.words import (
     KINDS,
     LEAST_RADIUS,
@@ -295,7 +295,7 @@ def _slope_within(brief: Brief, clause: Clause) -> None:
     if whole is None:
         return
     name = clause.kind.replace("_", "-")
-    if clause.kind in ("crest", "dip"):
+    if clause.kind in BUMPS:
         raise BriefError(f"a {name} climbs and falls; leave out that the whole road is {_said(whole)}")
     if slope is None:
         return

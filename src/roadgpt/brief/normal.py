@@ -24,6 +24,7 @@ from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, S
 from roadgpt.brief.words import KINDS
 
 STRAIGHT: frozenset[Kind] = frozenset({"straight", "crest", "dip"})
+BUMPS: frozenset[Kind] = frozenset({"crest", "dip"})
 SINGLE: frozenset[Kind] = frozenset({"turn", "hairpin", "switchback", "u_turn"})
 SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", "zigzag"})
 """The kinds of turns whose sharpness is not fixed by their kind."""
@@ -295,7 +296,7 @@ def _shaped(whole: Brief, clause: Clause) -> Clause:
 
 def _with_one_slope(whole: Brief, clauses: list[Clause]) -> Brief:
     said = {(clause.slope, clause.incline) for clause in clauses}
-    rises_and_falls = any(clause.kind in ("crest", "dip") for clause in clauses)
+    rises_and_falls = any(clause.kind in BUMPS for clause in clauses)
     if whole.slope or whole.hills or whole.starts or whole.ends or len(said) != 1 or rises_and_falls:
         return whole
     slope, incline = said.pop()

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
-from roadgpt.brief.normal import turns_of
+from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
 from roadgpt.brief.words import (
     FEATURE,
     KINDS,
@@ -168,7 +168,7 @@ def _widened(found: Outline) -> Outline:
 
 def _groups(clause: Clause, roomy: bool) -> list[Group]:
     """Returns the groups of a clause; a crest or a dip becomes two straights."""
-    if clause.kind in ("crest", "dip"):
+    if clause.kind in BUMPS:
         slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
         return [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
     if clause.kind == "straight":
@@ -263,7 +263,7 @@ def _turn_count(brief: Brief, groups: Sequence[Group]) -> Range:
         return overlap(Range(sum(g.lo for g in turning), most), wished) or NO_LIMIT
     if brief.turns:
         return wished
-    ends_turn = any(c and c.kind not in ("straight", "crest", "dip") for c in (brief.starts, brief.ends))
+    ends_turn = clauses_turn([c for c in (brief.starts, brief.ends) if c])
     sides = [_count(side) for side in (brief.left, brief.right) if side]
     if sides or ends_turn or brief.hard:
         return Range(max(sum(max(side.lo, 0) for side in sides), 1 if ends_turn or brief.hard else 0))

@@ -5,6 +5,7 @@ from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES
 
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
+"""The kinds whose name covers all their turns, so that a count is the number of turns."""
 
 
 def sentence(brief: Brief) -> str:

@@ -4,11 +4,11 @@ In these parts the rule ``too_abrupt`` allows vertical accelerations up to gravi
 """
 
 from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import BUMPS
 from roadgpt.brief.outline import outline
 from roadgpt.check.measures import Measures, measure
 from roadgpt.road import Road
 
-BUMPS = ("crest", "dip")
 CURVE = 30.0  # m by which a parabola may reach from its straight into the turns at its ends
 
 

@@ -1,7 +1,7 @@
 """Describes a finished road as a Brief, the data structure for descriptions."""
 
 from roadgpt.brief.model import Brief, Clause, exactly
-from roadgpt.check.measures import LEVEL, MeasuredFeature, Measures, measure
+from roadgpt.check.measures import LEVEL, MeasuredFeature, measure
 from roadgpt.road import Road
 
 
@@ -15,11 +15,7 @@ def describe(road: Road) -> Brief:
     Raises:
         UsageError: The road has no two different points.
     """
-    return described(measure(road.centreline()))
-
-
-def described(found: Measures) -> Brief:
-    """Does the same as ``describe``, but takes the measurements of a road instead of the road."""
+    found = measure(road.centreline())
     return Brief(
         clauses=tuple(_clause(feature) for feature in found.features),
         turns=None if found.turns else exactly(0),

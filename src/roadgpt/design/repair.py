@@ -29,7 +29,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Design, Segment, World
 
 How = Literal["none", "place", "full"]
-MOST_WAYS = 2000  # of letting straights answer wishes that are looked at
+MOST_WAYS = 2000  # of choosing straights for requirements that are compared
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 
 
@@ -55,7 +55,7 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
     ways = [(elements, Requirements(world))]
     if brief and how == "full":
         required = outline(brief, world.site.map_size)
-        asked = with_wishes(elements, required)
+        asked = with_requirements(elements, required)
         if asked:
             ways.insert(0, (asked, Requirements(world, required, brief)))
     frozen = {element.name for element in elements} if how == "place" else frozenset[str]()
@@ -113,7 +113,11 @@ def _metres(value: float | None) -> str:
     return "open" if value is None else f"{value:g} m"
 
 
-def with_wishes(elements: RoadElements, required: Outline) -> RoadElements | None:
+Item = tuple[int, Feature]
+"""The index of an element, and a requirement that it has to meet."""
+
+
+def with_requirements(elements: RoadElements, required: Outline) -> RoadElements | None:
     """Returns the elements of a proposal, each with the requirement of the Outline that it has to meet.
 
     The elements are matched with the Outline so that as few of them as possible have to change. Returns None
@@ -121,18 +125,12 @@ def with_wishes(elements: RoadElements, required: Outline) -> RoadElements | Non
     """
     turns = [i for i, element in enumerate(elements) if element.is_turn]
     sides = [elements[i].side for i in turns]
-    if any(
-        number not in span
-        for number, span in (
-            (len(turns), required.turns),
-            (sides.count("left"), required.left),
-            (sides.count("right"), required.right),
-        )
-    ):
+    left, right = sides.count("left"), sides.count("right")
+    if len(turns) not in required.turns or left not in required.left or right not in required.right:
         return None
     marks = [-1, *turns, len(elements)]
 
-    def of_turns(group: Group, first: int, number: int) -> Match[Wish]:
+    def of_turns(group: Group, first: int, number: int) -> Match[Item]:
         own = sides[first : first + number]
         musts = sides_of(group, own)
         if any(must not in (None, side) for must, side in zip(musts, own, strict=True)):
@@ -140,7 +138,7 @@ def with_wishes(elements: RoadElements, required: Outline) -> RoadElements | Non
         features = [replace(group.feature, side=must) for must in musts]
         return _matched(elements, list(zip(turns[first:], features, strict=False)))
 
-    def of_gap(turn: int, wanted: Sequence[Feature]) -> Match[Wish]:
+    def of_gap(turn: int, wanted: Sequence[Feature]) -> Match[Item]:
         straights = [i for i in range(marks[turn] + 1, marks[turn + 1]) if not elements[i].degrees]
         if wanted and not straights:
             return Match(inf)
@@ -151,37 +149,33 @@ def with_wishes(elements: RoadElements, required: Outline) -> RoadElements | Non
     if match.wrong == inf or ends is None:
         return None
     asked: dict[int, Feature] = {}
-    for index, wish in (*match.items, *((i, required.each_turn) for i in turns), *ends):
-        asked[index] = both(asked[index], wish) if index in asked else wish
+    for index, feature in (*match.items, *((i, required.each_turn) for i in turns), *ends):
+        asked[index] = both(asked[index], feature) if index in asked else feature
     return tuple(replace(element, asked=asked.get(i)) for i, element in enumerate(elements))
 
 
-Wish = tuple[int, Feature]
-"""The index of an element, and a requirement that it has to meet."""
-
-
-def _matched(elements: RoadElements, wishes: Sequence[Wish]) -> Match[Wish]:
-    """Returns these wishes with the number of those that the elements do not meet as they were proposed; the
-    radius, which often is not proposed, is not compared.
+def _matched(elements: RoadElements, items: Sequence[Item]) -> Match[Item]:
+    """Counts the requirements that the elements do not meet as they were proposed. The radius is not
+    compared, since it often is not proposed.
     """
-    wrong = len(wishes) - len({index for index, _ in wishes})
-    for index, wish in wishes:
+    wrong = len(items) - len({index for index, _ in items})
+    for index, feature in items:
         one = elements[index]
         kind: Literal["turn", "straight"] = "turn" if one.is_turn else "straight"
         degrees, grade = abs(one.degrees), one.incline
         seen = MeasuredFeature(kind, 0.0, one.length, one.side, degrees, inf, grade, grade)
-        wrong += not fits(seen, replace(wish, radius=None))
-    return Match(wrong, tuple(wishes))
+        wrong += not fits(seen, replace(feature, radius=None))
+    return Match(wrong, tuple(items))
 
 
 def _answering(elements: RoadElements, straights: Sequence[int], wanted: Sequence[Feature]) -> Sequence[int]:
-    """Which straights answer the wishes, in order: those whose slopes are nearest to what was asked."""
+    """Returns the straights that have to meet these requirements: those whose slopes are nearest to them."""
     if len(wanted) >= len(straights):
         return [straights[min(i, len(straights) - 1)] for i in range(len(wanted))]
     ways = combinations(straights, len(wanted))
 
     def away(way: Sequence[int]) -> tuple[float, int]:
-        slopes = [_beyond(elements[i].incline, wish.grade) for i, wish in zip(way, wanted, strict=True)]
+        slopes = [_beyond(elements[i].incline, feature.grade) for i, feature in zip(way, wanted, strict=True)]
         return sum(slopes), -sum(len(elements[i].segments) for i in way)
 
     return min(islice(ways, MOST_WAYS), key=away)
@@ -191,17 +185,17 @@ def _beyond(incline: float, asked: Range | None) -> float:
     return max(asked.lo - incline, incline - asked.hi, 0.0) if asked else 0.0
 
 
-def _ends(elements: RoadElements, turns: Sequence[int], required: Outline) -> list[Wish] | None:
+def _ends(elements: RoadElements, turns: Sequence[int], required: Outline) -> list[Item] | None:
     """Returns what the road must start and end with; None if the proposal does otherwise."""
-    out: list[Wish] = []
-    for wish, end in ((required.starts, 0), (required.ends, -1)):
-        if wish is None:
+    out: list[Item] = []
+    for feature, end in ((required.starts, 0), (required.ends, -1)):
+        if feature is None:
             continue
-        among = turns if wish.kind == "turn" else range(len(elements))
+        among = turns if feature.kind == "turn" else range(len(elements))
         if not among:
             return None
         element = elements[among[end]]
-        if bool(element.degrees) != (wish.kind == "turn") or wish.side not in (None, element.side):
+        if bool(element.degrees) != (feature.kind == "turn") or feature.side not in (None, element.side):
             return None
-        out.append((among[end], wish))
+        out.append((among[end], feature))
     return out

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.normal import normal
+from roadgpt.brief.normal import BUMPS, normal
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
@@ -103,7 +103,7 @@ def _parts(wanted: Brief, got: Brief) -> Iterable[str]:
 
 
 def _slopes(brief: Brief) -> tuple[object, ...]:
-    along = tuple((c.slope, c.incline) for c in brief.clauses if c.slope or c.kind in ("crest", "dip"))
+    along = tuple((c.slope, c.incline) for c in brief.clauses if c.slope or c.kind in BUMPS)
     return (along, brief.slope, brief.incline, brief.steepest, brief.climb, brief.hills)
 
 

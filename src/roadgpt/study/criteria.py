@@ -11,12 +11,12 @@ A criterion that the description does not mention is left out. A road with a wro
 neither the criterion ``order`` nor requirements on the incline of single turns.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
 from roadgpt.brief.outline import Feature, Group, Outline
-from roadgpt.brief.words import Range
+from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
 from roadgpt.study.truth import FREE, SHORTEST
@@ -40,7 +40,12 @@ FIELDS: Mapping[Criterion, tuple[str, ...]] = {
 }
 """The fields of an Outline that set requirements for the whole road or for every turn, by criterion."""
 
-Part = Callable[[Feature], Feature]
+FEATURE_FIELDS: Mapping[Criterion, tuple[str, ...]] = {
+    "incline": ("grade",),
+    "order": ("side",),
+    "extent": ("degrees", "radius", "length"),
+}
+"""The fields of a Feature that set requirements for one turn or straight, by criterion."""
 
 
 def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
@@ -62,13 +67,13 @@ def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
 
 def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     """Returns the criteria of single turns and straights. Each is checked with all others left open."""
-    parts: dict[Criterion, Part] = {"incline": _incline, "order": _order, "extent": _extent}
     out: dict[Criterion, bool] = {}
-    for criterion, part in parts.items():
-        wanted = _merged(tuple(replace(group, feature=part(group.feature)) for group in asked.groups))
+    for criterion, fields in FEATURE_FIELDS.items():
+        own = (replace(group, feature=_part(group.feature, fields)) for group in asked.groups)
+        wanted = _merged(tuple(own))
         if criterion != "order":
             wanted = tuple(replace(group, alternating=False) for group in wanted)
-        first, last = (each and part(each) for each in (asked.starts, asked.ends))
+        first, last = (each and _part(each, fields) for each in (asked.starts, asked.ends))
         ends = replace(FREE, starts=first, ends=last)
         says = [_says(criterion, group) for group in wanted]
         ends_say = [each for each in (first, last) if each and (criterion == "order" or _is_specified(each))]
@@ -78,22 +83,17 @@ def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     return out
 
 
-def _incline(feature: Feature) -> Feature:
-    return Feature(feature.kind, feature.name, grade=feature.grade)
-
-
-def _order(feature: Feature) -> Feature:
-    return Feature(feature.kind, feature.name, side=feature.side)
-
-
-def _extent(feature: Feature) -> Feature:
-    length = feature.length if feature.kind == "turn" or feature.length != Range(10.0) else None
-    degrees = feature.degrees if feature.kind == "turn" else None
-    return Feature(feature.kind, feature.name, degrees=degrees, radius=feature.radius, length=length)
+def _part(feature: Feature, fields: tuple[str, ...]) -> Feature:
+    """Returns a feature with these requirements only, without those that every straight has to meet."""
+    own = {name: getattr(feature, name) for name in fields}
+    if feature.kind == "straight":
+        usual = KINDS["straight"]
+        own = {name: asked for name, asked in own.items() if asked != getattr(usual, name, None)}
+    return Feature(feature.kind, feature.name, **own)
 
 
 def _is_specified(feature: Feature) -> bool:
-    return any((feature.side, feature.degrees, feature.radius, feature.length, feature.grade))
+    return feature != Feature(feature.kind, feature.name)
 
 
 def _says(criterion: Criterion, group: Group) -> bool:

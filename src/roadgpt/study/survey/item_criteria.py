@@ -1,15 +1,14 @@
 """Finds the criteria by which people rate a road, and computes scores of the road for the same criteria."""
 
 from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.normal import BUMPS, STRAIGHT
+from roadgpt.brief.sentence import WAVY
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 from roadgpt.study.road_record import kept_of
 from roadgpt.study.similarity import likeness, similarity
 from roadgpt.study.survey.questions import CRITERIA, OVERALL
 
-STRAIGHTS = frozenset({"straight", "crest", "dip"})
-HAVE_NO_NUMBER = frozenset({"serpentine", "zigzag", "slalom", "winding"})
-RISES = frozenset({"crest", "dip"})
 MATCH = {OVERALL: "general"} | {CRITERIA[name]: name for name in ("turns", "incline", "order")}
 """For each criterion of a road and its description, the measured criterion of ``study.criteria``."""
 ALIKE = MATCH | {CRITERIA["order"]: "sequence", CRITERIA["length"]: "length"}
@@ -28,7 +27,7 @@ def criteria_of(brief: Brief | None) -> tuple[str, ...]:
     # "at least one turn" says nothing, since every road has one
     amounts = [(each.lo, each.hi) for each in (brief.turns, brief.left, brief.right) if each]
     slopes = (brief.slope, brief.incline, brief.steepest, brief.climb, brief.hills)
-    rises = [each for each in clauses if each.slope or each.incline or each.kind in RISES]
+    rises = [each for each in clauses if each.slope or each.incline or each.kind in BUMPS]
     mentioned = {
         "turns": any(amount != (1, None) for amount in amounts) or any(map(_has_a_number, clauses)),
         "incline": any(slopes) or rises,
@@ -39,9 +38,9 @@ def criteria_of(brief: Brief | None) -> tuple[str, ...]:
 
 def _has_a_number(clause: Clause) -> bool:
     """Returns whether a clause says how many turns there are."""
-    if clause.kind in STRAIGHTS:
+    if clause.kind in STRAIGHT:
         return False
-    return clause.kind not in HAVE_NO_NUMBER or clause.count.lo != 1 or clause.count.hi != 1
+    return clause.kind not in WAVY or clause.count.lo != 1 or clause.count.hi != 1
 
 
 def match_scores(run: Run, prompt: str) -> dict[str, float]:
