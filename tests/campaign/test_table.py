@@ -23,7 +23,7 @@ def slowly(record: Record) -> str:
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
     table.writerow([*COLUMNS, *features])
-    for cell, one in record.results_by_cell():
+    for cell, one in ((name, one) for name in record.names() for one in record.results(name)):
         asked = (one.batch, one.proposal.origin, seed_of_driver(one.number, one.proposal))
         came = (one.outcome, one.cause, one.side, one.length, one.margin, one.max_oob, one.beyond, one.at_s)
         known = [one.features.get(name) for name in features]

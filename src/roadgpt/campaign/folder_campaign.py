@@ -125,10 +125,6 @@ class Campaign(RunFolder):
         """Numbers of the finished roads."""
         return tuple(sorted(self.tests))
 
-    def earlier_runs(self) -> Iterator[Run]:
-        """Yields the Runs that an earlier session made, read from disk."""
-        return (read_run(run_folder(self.folder, index)) for index in self.kept)
-
     def __iter__(self) -> Iterator[Run]:
         """Yields the Runs that are still to be made, one by one; raises what ``all_runs`` raises."""
         return self._runs(with_earlier=False)

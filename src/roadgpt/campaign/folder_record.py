@@ -1,6 +1,7 @@
 """Opens the tests in a folder for reading, whether they are those of a campaign or of a folder of runs."""
 
 import sqlite3
+import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -70,43 +71,29 @@ class FolderRecord(FolderStore):
         roads = card.roads if card else max(len(self._places), 1)
         runs = RunFolder(folder, request or Request(), brief, roads)
         super().__init__(folder, {}, [runs.cell("")])
-        self._is_finished = card is None or card.is_finished
+        if card is None or card.is_finished:
+            self.finish()
 
     def _execute(self, sql: str, values: Sequence[Any]) -> sqlite3.Cursor:
         if not self._is_entered:
             self._is_entered = True
-            self._enter("", {number: finished_run(self.run("", number)) for number in self._places})
+            ended = {number: finished_run(self.run("", number)) for number in self._places}
+            self._enter("", ended)
+            self._db.execute("UPDATE tests SET ended = NULL")  # the files do not hold it
+            now, took = time.time(), sum(one.seconds.total for one in ended.values())
+            is_over = not is_locked(self.folder)
+            self._db.execute("INSERT INTO sittings VALUES (?, ?, 1, ?, 0, 0)", (now - took, now, is_over))
         return super()._execute(sql, values)
-
-    def meta(self, name: str) -> str:
-        """Returns "yes" if ``name`` is "finished" and the folder is finished; else an empty text."""
-        return "yes" if name == "finished" and self._is_finished else ""
 
     def total(self) -> int | None:
         """Returns the number of roads that were asked for."""
         return self.cell("").budget.tests
 
-    def is_running(self) -> bool:
-        """Returns whether a process is making runs in the folder."""
-        return is_locked(self.folder)
-
-    def seconds(self) -> float:
-        """Returns the sum of the times that the tests took, in seconds."""
-        return float(self.query("SELECT coalesce(sum(design_s + drive_s), 0) FROM tests")[0][0])
-
-    def drivers(self) -> set[str]:
-        """Returns the names of the drivers of all tests."""
-        if (self.folder / CARD).is_file():
-            return super().drivers()
-        return {self.run("", number).request.setup.driver for number in self._places}
-
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
         """Returns the names of tests that have ended; see ``Record.tests``."""
-        return (
-            [NumberedTest("", number) for number in self._places]
-            if which is None
-            else super().tests(cell, which)
-        )
+        if which is not None:
+            return super().tests(cell, which)
+        return [NumberedTest("", number) for number in self._places]
 
     def check_ended(self, cell: str, number: int) -> None:
         """Raises UsageError if there is no such run."""

@@ -62,6 +62,10 @@ class FolderStore(Store):
             return super().how_to_continue
         return f"continue with the same command and --out {self.folder}"
 
+    def close(self) -> None:
+        """Closes the tables."""
+        self._db.close()
+
     def names(self) -> list[str]:
         """Returns the names of all cells."""
         return [*self._cells]

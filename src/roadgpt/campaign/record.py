@@ -1,7 +1,6 @@
 """Reads a campaign's store, even while another process is working on the campaign."""
 
 import sqlite3
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,7 +21,6 @@ if TYPE_CHECKING:
 STORE = "campaign.sqlite"
 FORMAT = 1
 PATIENCE = 30.0  # s for another process
-FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
 WHICH = {
     None: ("1", ""),
     "failures": ("outcome = 'FAIL'", ""),
@@ -216,13 +214,6 @@ class Record:
             where: a condition in SQL on the columns of ``tests`` and ``details``.
             values: the values of the condition's placeholders.
         """
-        for _, result in self.results_by_cell(cell, where, values):
-            yield result
-
-    def results_by_cell(
-        self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
-    ) -> Iterator[tuple[str, Result]]:
-        """Yields the same tests as ``results``, each as the name of its cell and its result."""
         chosen, names = ("tests.cell = ? AND", [cell]) if cell is not None else ("", [])
         sql = (
             f"SELECT {RESULT} FROM tests JOIN details USING (cell, number) "  # noqa: S608 - our own words
@@ -290,19 +281,6 @@ class Record:
         ((low, high),) = self.query("SELECT min(number), max(number) FROM tests WHERE cell = ?", (cell,))
         there = "it has no tests yet" if low is None else f"its tests are {low} to {high}"
         raise UsageError(f"{self.folder} holds no result of test {number} of {cell}; {there}")
-
-    def drivers(self) -> set[str]:
-        """Returns the names of the drivers of all tests."""
-        return {cell.request.setup.driver for cell in self.cells()}
-
-    def is_running(self) -> bool:
-        """Returns whether a process is running the tests."""
-        ((seen,),) = self.query("SELECT coalesce(max(seen * (1 - is_over)), 0) FROM sittings")
-        return not self.meta("finished") and time.time() - float(seen) < FRESH
-
-    def seconds(self) -> float:
-        """Returns the working time in seconds, summed over all sessions."""
-        return float(self.query("SELECT coalesce(sum(seen - begun), 0) FROM sittings")[0][0])
 
     def batches(self, cell: str) -> list[Batch]:
         """Returns the batches of a cell that have been requested, in order."""

@@ -18,9 +18,7 @@ MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond",
 """The columns of the table ``tests`` that hold fields of a Result, of the same names."""
 SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
-RESULT = ", ".join(
-    ("tests.cell, tests.number, batch, seed, given", *MEASURED, "origin, design, description, features")
-)
+RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
 """The columns of a result in the joined tables ``tests`` and ``details``."""
 
 
@@ -70,18 +68,16 @@ def _stored(value: str | float | None) -> str | float | None:
     return None if math.isnan(value) else float(value)
 
 
-def result_of_row(row: tuple[Any, ...]) -> tuple[str, Result]:
-    """Converts a row with the columns ``RESULT`` to the name of the cell and the result."""
-    cell, number, batch, seed, given, *measured, origin, text, description, features = row
+def result_of_row(row: tuple[Any, ...]) -> Result:
+    """Converts a row with the columns ``RESULT`` to a result."""
+    number, batch, seed, given, *measured, origin, text, description, features = row
     values = _features_of(features)
     if not (isinstance(description, str) and isinstance(origin, str)):
         raise TypeError("a description is a text")
     design = design_of(text)
     proposal = Proposal(design if given else None, seed, origin)
     named = dict(zip(MEASURED, measured, strict=True))
-    return cell, Result(
-        number, batch, proposal, description=description, design=design, features=values, **named
-    )
+    return Result(number, batch, proposal, description=description, design=design, features=values, **named)
 
 
 def _features_of(text: str) -> dict[str, float]:

@@ -11,6 +11,7 @@ from roadgpt.campaign.cell_status import CellStatus, cell_statuses
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.record import Record
 
+FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
 LATELY = 60.0  # s over which the speed of the moment is taken
 
 
@@ -77,12 +78,16 @@ def status_of(folder: Path) -> Status:
         outcomes: Counter[str] = Counter()
         for cell in cells:
             outcomes.update(cell.outcomes)
-        seconds, is_running = record.seconds(), record.is_running()
+        ((seconds, seen),) = record.query(
+            "SELECT coalesce(sum(seen - begun), 0), coalesce(max(seen * (1 - is_over)), 0) FROM sittings"
+        )
+        is_finished = bool(record.meta("finished"))
+        is_running = not is_finished and time.time() - seen < FRESH
         leases = record.query("SELECT cell, number, worker FROM leases ORDER BY worker")
         tokens, cost = record.spent()
         return Status(
             folder=str(folder),
-            is_finished=bool(record.meta("finished")),
+            is_finished=is_finished,
             is_running=is_running,
             total=record.total(),
             outcomes=dict(outcomes),
@@ -96,9 +101,9 @@ def status_of(folder: Path) -> Status:
 
 
 def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
-    ((begun,),) = record.query("SELECT max(begun) FROM sittings")
-    if not is_running or begun is None:
+    if not is_running:
         return done / seconds if seconds else 0.0
+    ((begun,),) = record.query("SELECT max(begun) FROM sittings")
     since = max(begun, time.time() - LATELY)
     return _ended_since(record, float(since)) / max(time.time() - float(since), 1.0)
 

@@ -73,7 +73,7 @@ def drivers_of(folder: Path) -> set[str]:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     with open_record(folder) as record:
-        return record.drivers()
+        return {cell.request.setup.driver for cell in record.cells()}
 
 
 def _spread(count: int, most: int | None) -> Sequence[int]:

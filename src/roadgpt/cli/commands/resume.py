@@ -47,8 +47,9 @@ def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale
     from roadgpt.drive.permission import check_named_driver
 
     with open_record(folder) as record:
-        chat = next((cell.request.setup.chat for cell in record.cells() if cell.request.setup.chat), None)
-        drivers, is_of_runs = record.drivers(), record.cells()[0].in_sequence
+        cells = record.cells()
+    chat = next((cell.request.setup.chat for cell in cells if cell.request.setup.chat), None)
+    drivers = {cell.request.setup.driver for cell in cells}
     check_named_driver(driver, drivers, folder)
     if base_url is not None:
         trust_server(base_url, chat.base_url if chat else None, folder)
@@ -56,7 +57,7 @@ def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale
     if limits and chat is None:
         raise UsageError(f"--max-tokens and --max-cost limit a language model, and {folder} asks none")
     changed = chat.model_copy(update=limits) if limits and chat else None
-    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if is_of_runs else None)
+    work_to_the_end(folder, rest, changed, _as_before(folder, axes) if cells[0].in_sequence else None)
 
 
 def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
