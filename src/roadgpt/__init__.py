@@ -45,7 +45,7 @@ _ROOMS = {
     "perform": "run",
     "prove": "run",
     "draw": "report",
-    "plot": "report",
+    "plot": "report.plotting",
     "compare": "study",
 }
 

@@ -140,24 +140,19 @@ def read_plan(path: Path) -> PlanFile:
 def _plan(table: PlanTable, folder: Path) -> Plan:
     """Returns the plan of a file; relative paths in it begin at the folder."""
     reader, colon, weights = table.reader.partition(":")
-    return Plan(
-        prompts=table.prompts or ("",),
-        designers=table.designers,
-        drivers=tuple(absolute_spec(driver, folder) for driver in table.drivers),
-        simulators=table.simulators,
-        generators=table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
-        seeds=table.seeds,
-        goal=table.goal,
-        settings=table.settings,
-        budget=Budget(tests=table.tests, seconds=table.seconds),
-        reader=f"{reader}:{folder / weights}" if colon else reader,
-        rules=table.rules,
-        geometry=table.geometry,
-        keep_driving=table.keep_driving,
-        drives=table.drive,
-        world=table.world.world(),
-        patience=table.test_seconds,
-    )
+    named_alike = {name: getattr(table, name) for name in PlanTable.model_fields if name in Plan.model_fields}
+    read = {
+        "prompts": table.prompts or ("",),
+        "drivers": tuple(absolute_spec(driver, folder) for driver in table.drivers),
+        "generators": table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
+        "budget": Budget(tests=table.tests, seconds=table.seconds),
+        "reader": f"{reader}:{folder / weights}" if colon else reader,
+        "drives": table.drive,
+        "world": table.world.world(),
+        "patience": table.test_seconds,
+        "chat": None,
+    }
+    return Plan(**named_alike | read)
 
 
 def _sentence(error: ValidationError, within: tuple[str, ...]) -> str:

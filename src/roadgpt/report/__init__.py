@@ -17,7 +17,6 @@ from roadgpt.report.birds_eye import Scale, birds_eye
 from roadgpt.report.canvas import FORMATS, PNG, Format, in_our_style, save_all
 from roadgpt.report.height import height_profile
 from roadgpt.report.overview import overview
-from roadgpt.report.plotting import plot
 from roadgpt.report.strip import strip
 from roadgpt.run import Run
 
@@ -31,7 +30,6 @@ __all__ = [
     "drawing",
     "height_profile",
     "overview",
-    "plot",
     "strip",
 ]
 

@@ -10,10 +10,10 @@ suites with counts, cases with ``name``, ``classname``, ``time`` and ``file``, a
 cases. Source: the documentation of the common format, https://github.com/testmoapp/junitxml.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import NamedTuple
 
 from roadgpt.errors import RoadGPTError, explained
 from roadgpt.export.markup import DECLARATION, escaped
@@ -22,6 +22,7 @@ from roadgpt.run.atomic import write_lines
 Properties = Mapping[str, str | float | int | None]
 
 MARKS = {"FAIL": "failure", "INVALID": "skipped", "ERROR": "error"}
+COUNTED = {"FAIL": "failures", "ERROR": "errors", "INVALID": "skipped"}
 
 
 @dataclass(frozen=True)
@@ -51,22 +52,6 @@ class Suite:
     """A function that returns all cases. It is called twice: to count the cases, and to write them."""
 
 
-class _Counts(NamedTuple):
-    tests: int = 0
-    failures: int = 0
-    errors: int = 0
-    skipped: int = 0
-    seconds: float = 0.0
-
-    def plus(self, other: "_Counts") -> "_Counts":
-        return _Counts._make(one + more for one, more in zip(self, other, strict=True))
-
-    def attributes(self) -> str:
-        counts = self._asdict()
-        seconds = counts.pop("seconds")
-        return "".join(f' {name}="{value}"' for name, value in counts.items()) + f' time="{seconds:.3f}"'
-
-
 def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> Path:
     """Writes the suites into one file and returns its path; the file appears only when it is complete.
 
@@ -74,32 +59,34 @@ def write_junit(path: Path, suites: Iterable[Suite], name: str = "roadgpt") -> P
         RoadGPTError: the file cannot be written.
     """
     listed = [(suite, _counted(suite)) for suite in suites]
-    every = _Counts()
-    for _, counts in listed:
-        every = every.plus(counts)
     with explained(RoadGPTError, f"cannot write {path}", "name another file with --junit"):
-        write_lines(path, _document(listed, name, every))
+        write_lines(path, _document(listed, name))
     return path
 
 
-def _document(listed: Sequence[tuple[Suite, _Counts]], name: str, every: _Counts) -> Iterator[str]:
-    yield f'{DECLARATION}\n<testsuites name="{escaped(name)}"{every.attributes()}>\n'
+def _document(listed: Sequence[tuple[Suite, Counter[str]]], name: str) -> Iterator[str]:
+    every = sum((counts for _, counts in listed), Counter[str]())
+    yield f'{DECLARATION}\n<testsuites name="{escaped(name)}"{_attributes(every)}>\n'
     for suite, counts in listed:
         yield from _suite(suite, counts)
     yield "</testsuites>\n"
 
 
-def _counted(suite: Suite) -> _Counts:
-    counts = _Counts()
+def _counted(suite: Suite) -> Counter[str]:
+    """Returns the number of cases by the names of attributes, and the milliseconds that they took."""
+    counts: Counter[str] = Counter()
     for case in suite.cases():
-        mark = MARKS.get(case.outcome)
-        one = (1, mark == "failure", mark == "error", mark == "skipped", case.seconds)
-        counts = counts.plus(_Counts(*one))
+        counts.update({"tests": 1, COUNTED.get(case.outcome, ""): 1, "ms": round(1000 * case.seconds)})
     return counts
 
 
-def _suite(suite: Suite, counts: _Counts) -> Iterator[str]:
-    yield f'  <testsuite name="{escaped(suite.name)}"{counts.attributes()}>\n'
+def _attributes(counts: Counter[str]) -> str:
+    numbers = "".join(f' {name}="{counts[name]}"' for name in ("tests", *COUNTED.values()))
+    return f'{numbers} time="{counts["ms"] / 1000:.3f}"'
+
+
+def _suite(suite: Suite, counts: Counter[str]) -> Iterator[str]:
+    yield f'  <testsuite name="{escaped(suite.name)}"{_attributes(counts)}>\n'
     yield from _properties(suite.properties, "    ")
     for case in suite.cases():
         yield from _case(case, suite.name)
