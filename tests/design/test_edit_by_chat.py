@@ -10,7 +10,7 @@ from fake_chat import FakeChat
 from roadgpt import check
 from roadgpt.chat import BudgetError, ChatSettings, UnparsableError
 from roadgpt.check.measures import measure
-from roadgpt.design.edit.chatting import edited_by_chat
+from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 
@@ -31,7 +31,10 @@ def answer(touched: list[int], more: dict[int, dict[str, Any]] | None = None, le
 
 
 def edited(chat: FakeChat, words: str = WORDS, **settings: Any) -> tuple[Design, tuple[str, ...]]:
-    return edited_by_chat(chat, ChatSettings(**settings), OLD, words, WORLD, "arcs")
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr("roadgpt.design.edit.open_chat", lambda _: chat)
+        after = edit(OLD, words, WORLD, designer="chat", chat=ChatSettings(**settings))
+    return after.design, after.changes
 
 
 SHARPER = {5: {"turn_degrees": 65.0, "distance": 33.0}}

@@ -9,7 +9,7 @@ A road that cannot be repaired is at least placed on the map if possible; ``chec
 wrong with it. Main function: ``repair``.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations, islice
 from math import inf
@@ -22,15 +22,15 @@ from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.words import Range
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
+from roadgpt.design.differences import changes_between
 from roadgpt.design.fit import Requirements, fit
 from roadgpt.design.road_elements import RoadElements, elements_as_proposed
 from roadgpt.design.sequence import both
 from roadgpt.errors import UsageError
-from roadgpt.road import Design, Segment, World
+from roadgpt.road import Design, World
 
 How = Literal["none", "place", "full"]
 MOST_WAYS = 2000  # of choosing straights for requirements that are compared
-ALL_LISTED = 60  # changed segments; of more, only the number is given
 
 
 class Repaired(NamedTuple):
@@ -67,50 +67,6 @@ def repair(design: Design, brief: Brief | None, world: World, how: How = "none")
     except (UsageError, ValueError, np.linalg.LinAlgError):  # no road can be built of such geometry
         return Repaired(design, ())
     return Repaired(after.design, changes_between(design, after.design))
-
-
-def changes_between(before: Design, after: Design) -> tuple[str, ...]:
-    """Returns one sentence each for a changed start, a changed heading and each changed segment.
-
-    Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
-    their number.
-    """
-    out = list(_placing(before, after))
-    pairs = zip(before.segments, after.segments, strict=True)
-    told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
-    if len(told) > ALL_LISTED:
-        return (*out, f"{len(told)} segments changed")
-    return (*out, *told)
-
-
-def _placing(before: Design, after: Design) -> Iterator[str]:
-    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
-    if (x, y) != (x1, y1):
-        yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
-    if z != z1:
-        yield f"start raised from {z:g} to {z1:g} m" if z1 > z else f"start lowered from {z:g} to {z1:g} m"
-    turned = (after.theta - before.theta + 180) % 360 - 180
-    if abs(turned) > 1e-9:
-        yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
-
-
-def _segment(number: int, before: Segment, after: Segment) -> str:
-    said = []
-    if after.distance != before.distance:
-        said.append(f"distance {before.distance:g} -> {after.distance:g} m")
-    if after.turn_degrees != before.turn_degrees:
-        said.append(f"turn {before.turn_degrees:g} -> {after.turn_degrees:g} degrees")
-    if after.incline != before.incline:
-        said.append(f"grade {before.incline:g} -> {after.incline:g} %")
-    for name in ("radius", "transition", "vertical_radius"):
-        one, other = getattr(before, name), getattr(after, name)
-        if one != other:
-            said.append(f"{name.replace('_', ' ')} {_metres(one)} -> {_metres(other)}")
-    return f"segment {number}: {', '.join(said)}" if said else ""
-
-
-def _metres(value: float | None) -> str:
-    return "open" if value is None else f"{value:g} m"
 
 
 Item = tuple[int, Feature]

@@ -10,7 +10,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import Chat, ChatSettings, configured, open_chat
 from roadgpt.design.asking import request, rules
 from roadgpt.design.dialogue import DesignTask, Outcome, stepwise, whole
-from roadgpt.design.repair import changes_between
+from roadgpt.design.differences import changes_between
 from roadgpt.design.report import DesignReport
 from roadgpt.design.variety import ENOUGH, Shapes, nearest, shape_of
 from roadgpt.road import Design, World, build

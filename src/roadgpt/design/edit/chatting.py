@@ -7,7 +7,8 @@ answered for them.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
+from dataclasses import replace
 
 from pydantic import BaseModel, Field
 
@@ -17,10 +18,7 @@ from roadgpt.check.measures import Measures
 from roadgpt.design.answer import AnswerSegment, Number
 from roadgpt.design.asking import rules
 from roadgpt.design.designers.chat import RULES
-from roadgpt.design.edit.diff_text import between
-from roadgpt.design.edit.pointing import pointed
-from roadgpt.design.edit.reading import read_request
-from roadgpt.design.fit import Requirements, look
+from roadgpt.design.fit import Look, Requirements, look
 from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road
 from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Design, Geometry, Segment, World, read_design
@@ -53,21 +51,44 @@ class EditedRoad(BaseModel):
 
 
 def edited_by_chat(
-    chat: Chat, settings: ChatSettings, design: Design, words: str, world: World, geometry: Geometry
-) -> tuple[Design, tuple[str, ...]]:
-    """Returns the Design as a language model changed it, and sentences that describe the differences.
+    chat: Chat,
+    settings: ChatSettings,
+    design: Design,
+    words: str,
+    elements: RoadElements,
+    found: Measures,
+    spoken_of: Collection[str] | None,
+    world: World,
+    geometry: Geometry,
+) -> Look:
+    """Returns the road as a language model changed it.
+
+    Args:
+        chat: the language model.
+        settings: its settings.
+        design: the road before the edit.
+        words: the change request.
+        elements: the elements of that road.
+        found: the measurements of that road.
+        spoken_of: names of the elements that the model may change at most; None if rules cannot tell, then
+            it may change those that it names itself.
+        world: size of the map, and limits that the rules check, such as the steepest grade.
+        geometry: the kind of geometry that roads are built with.
+
+    Returns:
+        A Look at the road. Its elements are those measured on it if their names are the same as before;
+        otherwise it has none.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.
         ChatError: the model could not be asked.
     """
-    elements, found = elements_on_road(design, geometry)
     opening = [
         Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
-        Message(role="user", text=_question(design, words, elements, found)),
+        Message(role="user", text=_question(design, words, elements, found.length)),
     ]
     messages, wrong, problem = opening, "", None
-    allowed = _spoken_of(words, elements)
+    allowed = _members(elements, spoken_of)
     for _ in range(settings.rounds):
         said, problem = "", None
         try:
@@ -79,7 +100,9 @@ def edited_by_chat(
             if new == design:
                 wrong = "nothing about it has changed"
             if not wrong:
-                return road.design, between(design, road.design, geometry)
+                seen, _ = elements_on_road(road.design, geometry)
+                is_same = [element.name for element in seen] == [element.name for element in elements]
+                return replace(road, elements=seen if is_same else ())
         except UnparsableError as error:
             wrong, said, problem = f"it could not be read: {error}", error.text, error
         except UsageError as error:
@@ -96,7 +119,7 @@ def edited_by_chat(
     )
 
 
-def _question(design: Design, words: str, elements: RoadElements, found: Measures) -> str:
+def _question(design: Design, words: str, elements: RoadElements, length: float) -> str:
     lines = [
         f"segment {number}: {json.dumps(segment.model_dump(exclude_none=True))}"
         for number, segment in enumerate(design.segments, 1)
@@ -105,7 +128,7 @@ def _question(design: Design, words: str, elements: RoadElements, found: Measure
     return "\n".join(
         [
             f"The road starts at ({x:g}, {y:g}, {z:g}) with theta {design.theta:g}; "
-            f"it is {found.length:.0f} m long.",
+            f"it is {length:.0f} m long.",
             *lines,
             "What is seen along it:",
             *_seen(elements),
@@ -130,26 +153,11 @@ def _seen(elements: Sequence[RoadElement]) -> list[str]:
     return out
 
 
-def _spoken_of(words: str, elements: RoadElements) -> set[int] | None:
-    """Numbers of the segments that the request speaks of; None where rules cannot tell."""
-    try:
-        request = read_request(words)
-        meant: list[RoadElement] = []
-        for change in request.changes:
-            if change.what == "mirror":
-                meant += elements
-            elif change.target is not None and not change.target.indefinite:
-                meant += pointed(change.target, elements, change.what)
-    except EditError:
+def _members(elements: RoadElements, spoken_of: Collection[str] | None) -> set[int] | None:
+    """Numbers of the segments of the elements of these names; None where rules cannot tell."""
+    if spoken_of is None:
         return None
-    if request.unused:
-        return None
-    names, out, first = {element.name for element in meant}, set[int](), 1
-    for element in elements:
-        if element.name in names:
-            out |= set(range(first, first + len(element.segments)))
-        first += len(element.segments)
-    return out
+    return {i + 1 for element in elements if element.name in spoken_of for i in element.members}
 
 
 def _kept(design: Design, answer: EditedRoad, allowed: set[int] | None) -> Design:

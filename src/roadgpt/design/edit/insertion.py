@@ -9,7 +9,7 @@ from math import radians
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
-from roadgpt.design.edit.pointing import pointed
+from roadgpt.design.edit.pointing import PlacedChange
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import (
     FREE_STRAIGHT,
@@ -53,12 +53,12 @@ SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent that are aimed at
 
 
 def insertion_candidates(
-    change: Change, elements: RoadElements, world: World, number: int
+    placed: PlacedChange, elements: RoadElements, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
     """Returns all candidates that add what the change asks for.
 
     Args:
-        change: what to add, and where.
+        placed: what to add, and the elements that say where.
         elements: the elements of the road before the edit.
         world: the limits that the rules check, such as the steepest grade.
         number: number of this change within its request; it is used to name new elements.
@@ -66,7 +66,8 @@ def insertion_candidates(
     Raises:
         EditError: the place does not exist, or no turn can have the requested values.
     """
-    before, splits = _place(change, elements)
+    change = placed.change
+    before, splits = _place(placed, elements)
     if change.target is not None and change.target.noun == "straight":
         return _straight_ways(change, elements, before, splits, number)
     shape = _shape(change, world)
@@ -78,9 +79,9 @@ def insertion_candidates(
     )
 
 
-def _place(change: Change, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
+def _place(placed: PlacedChange, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
     """The element to stand before (empty: none), and gaps that may be split instead, with their segment."""
-    place = change.place
+    place, mark, stop = placed.change.place, placed.marks, placed.stop
     how = place.how if place else "end"
     if how == "end":
         return "", [("", 0)]
@@ -89,8 +90,6 @@ def _place(change: Change, elements: RoadElements) -> tuple[str, list[tuple[str,
     if how == "middle" or place is None or place.target is None:
         gap, index = _middle(elements)
         return gap.name, [(gap.name, index)]
-    noun = place.target.noun or "turn"
-    mark = pointed(replace(place.target, noun=noun), elements, "length")
     if how == "on":
         if mark[0].kind == "turn":
             raise EditError("a turn cannot be added within a turn; say: after the second turn")
@@ -101,20 +100,17 @@ def _place(change: Change, elements: RoadElements) -> tuple[str, list[tuple[str,
     after = elements[at + 1].name if at + 1 < len(elements) else ""
     if how == "between":
         splits: list[tuple[str, int]] = []
-        if place.other is not None:
-            stop = elements.index(
-                pointed(replace(place.other, noun=place.other.noun or "turn"), elements, "length")[0]
-            )
-            if stop < at:
+        if stop is not None:
+            end = elements.index(stop)
+            if end < at:
                 raise EditError(
                     "the two places stand the other way round on the road; name the first one first"
                 )
-            if stop == at:
+            if end == at:
                 raise EditError("between a turn and itself is no place; name two turns")
-            if place.other.words == place.target.words and any(
-                b.kind == "turn" for b in elements[at + 1 : stop]
-            ):
-                raise EditError(f"between '{place.other.words}' are several places; name two turns")
+            is_same = place.other is not None and place.other.words == place.target.words
+            if is_same and any(b.kind == "turn" for b in elements[at + 1 : end]):
+                raise EditError(f"between '{place.target.words}' are several places; name two turns")
         gap = elements[at + 1] if at + 1 < len(elements) else elements[at]
         for index in range(1, len(gap.segments)):
             left = sum(s.distance for s in gap.segments[:index])

@@ -2,16 +2,57 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.request import Place, Target, What
+from roadgpt.design.edit.request import Change, Place, Target, What
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
+
+
+class PlacedChange(NamedTuple):
+    """A requested change, and the elements of the road that it refers to."""
+
+    change: Change
+    elements: RoadElements
+    """The elements to change, in driving order; none for an addition."""
+    marks: RoadElements = ()
+    """The elements after, before or on which something is added."""
+    stop: RoadElement | None = None
+    """The element at the end of a place between two elements."""
+
+
+def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedChange, ...]:
+    """Returns the changes with the elements that they refer to.
+
+    Args:
+        changes: the changes, as they were read from the request.
+        elements: the elements of the road before the edit.
+
+    Raises:
+        EditError: no element matches, or several match although the request means one.
+    """
+    out = []
+    for change in changes:
+        place = change.place
+        if change.what == "mirror":
+            out.append(PlacedChange(change, elements))
+        elif change.what != "add":
+            assert change.target is not None
+            out.append(PlacedChange(change, tuple(pointed(change.target, elements, change.what))))
+        elif place is None or place.target is None or place.how in ("start", "end", "middle"):
+            out.append(PlacedChange(change, ()))
+        else:
+            marks = tuple(pointed(_named(place.target), elements, "length"))
+            other = place.other if place.how == "between" else None
+            stop = pointed(_named(other), elements, "length")[0] if other else None
+            out.append(PlacedChange(change, (), marks, stop))
+    return tuple(out)
 
 
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:

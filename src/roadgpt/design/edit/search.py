@@ -1,23 +1,29 @@
 """Makes all changes of a request at once. Main function: ``made``.
 
-The steps of the changes are applied to the elements of the road. Then ``design.fit`` changes the elements
-that the request names until the road is valid and its measurements are as requested; all other elements are
-frozen. If that fails, the other elements of a road of arcs may change as well. The start stays the same,
-unless the road would leave the map: then the road is shifted or rotated.
+Each change has one or more candidates. They are combined, and the preferred ones are tried first. The steps
+of the candidates are applied to the elements of the road. Then ``design.fit`` changes the elements that the
+request names until the road is valid and its measurements are as requested; all other elements are frozen. If
+that fails, the other elements of a road of arcs may change as well. The start stays the same, unless the road
+would leave the map: then the road is shifted or rotated.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import islice, pairwise, product
+from itertools import islice, product
 from math import atan2, cos, degrees, hypot, radians, sin
+from typing import NamedTuple
 
-from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
-from roadgpt.design.edit.steps import SEPARATE, EditCandidate, EditStep, Mirror, RoadLength, gap
+from roadgpt.check.measures import Measures
+from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
+from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
+from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.request import Change, What
+from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
-from roadgpt.errors import UsageError
+from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
@@ -28,26 +34,97 @@ HUNDREDTH = 100.0
 SEEN_STRAIGHT = Feature("straight", "straight", length=Range(LEAST_STRAIGHT + 0.3))
 
 
+class Made(NamedTuple):
+    """The road with all changes of a request."""
+
+    road: Look
+    draft: Design
+    """The design before elements were changed that the request does not name; else that of the road."""
+    idle: tuple[Change, ...]
+    """The changes that the road had already."""
+
+
 def made(
+    design: Design,
+    elements: RoadElements,
+    found: Measures,
+    changes: Sequence[PlacedChange],
+    world: World,
+    geometry: Geometry,
+) -> Made:
+    """Returns the road with all changes.
+
+    Args:
+        design: The road before the edit.
+        elements: The elements of that road.
+        found: The measurements of that road.
+        changes: The changes, each with the elements that it refers to.
+        world: Size of the map, and limits that the rules check, such as the steepest grade.
+        geometry: The kind of geometry that roads are built with.
+
+    Raises:
+        EditError: Nothing is to be changed, or no valid road has the requested changes.
+    """
+    ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
+    rows = [(placed.change, row) for placed, row in zip(changes, ways, strict=True) if row]
+    idle = tuple(placed.change for placed, row in zip(changes, ways, strict=True) if not row)
+    if not rows:
+        raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
+    road, objection, draft = _fitted(design, elements, _agreed(rows), world, geometry)
+    if road is None:
+        said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
+        raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+    is_mirrored = any(change.what == "mirror" for change, _ in rows)
+    if road.design.segments == design.segments and not is_mirrored:
+        raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
+    return Made(road, draft, idle)
+
+
+def _ways(
+    placed: PlacedChange, elements: RoadElements, found: Measures, world: World, number: int
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates of one change, the preferred one first; none if the road is so already."""
+    match placed.change.what:
+        case "mirror":
+            if not any(element.is_turn for element in elements):
+                raise EditError("the road has no turn, so its mirror image is the same")
+            return ((Mirror(),),)
+        case "add":
+            return insertion_candidates(placed, elements, world, number)
+        case "remove":
+            return removal_candidates(placed.elements, elements)
+        case "alternate":
+            return alternating_candidates(placed.elements, world)
+        case _:
+            return change_candidates(placed.change, placed.elements, found, world)
+
+
+def _agreed(rows: Sequence[tuple[Change, Sequence[EditCandidate]]]) -> list[Sequence[EditCandidate]]:
+    """The ways of all; where one says the angle of a turn and another its radius, each keeps to its own."""
+    said: dict[What, set[str]] = {"angle": set(), "radius": set()}
+    for change, ways in rows:
+        if change.what in said and (change.to or change.by or change.times):
+            said[change.what] |= {step.element.name for step in ways[0] if isinstance(step, Adjust)}
+    both = said["angle"] & said["radius"]
+
+    def own(step: EditStep, what: What) -> EditStep:
+        if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
+            return step
+        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
+
+    return [[tuple(own(step, change.what) for step in way) for way in ways] for change, ways in rows]
+
+
+def _fitted(
     design: Design,
     elements: RoadElements,
     changes: Sequence[Sequence[EditCandidate]],
     world: World,
     geometry: Geometry,
 ) -> tuple[Look | None, str, Design]:
-    """Returns the road with all changes, an objection, and a design.
+    """Returns the road with all changes, and the design before other elements had to change too.
 
-    If no valid road was found, the road is None, the objection says what was wrong with the first road that
-    was tried, and the design is the one before the edit. Otherwise the objection is empty, and the design is
-    that of the road. If elements that the request does not name had to change too, it is the design before
-    these additional changes.
-
-    Args:
-        design: The road before the edit.
-        elements: The elements of that road.
-        changes: The candidates of every change, the preferred one first.
-        world: Size of the map, and limits that the rules check, such as the steepest grade.
-        geometry: The kind of geometry that roads are built with.
+    If there is none, the road is None, and the sentence says what was wrong with the first road tried.
     """
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):
@@ -114,36 +191,11 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in steps:
         after = step.apply(after, world)
-    after = numbered(_with_room(after, elements))
+    after = numbered(with_room(after, elements))
     count = len(joined(after))
     if not 1 <= count <= MAX_SEGMENTS:
         raise UsageError(f"the road would have {count} segments")
     return after
-
-
-def _with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """The elements with straights between new neighbours of one hand, so that two turns are seen.
-
-    Turns that were neighbours before, on the same sides, are two already.
-    """
-    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
-    out: list[RoadElement] = []
-    last: RoadElement | None = None
-    metres = 0.0
-    for element in elements:
-        if element.kind == "turn":
-            is_new = last is not None and last.side == element.side and _pair(last, element) not in known
-            if is_new and metres < SEPARATE - 2:
-                out.append(gap(f"room before {element.name}", round(SEPARATE - metres, 1), element.incline))
-            last, metres = element, 0.0
-        else:
-            metres += element.length
-        out.append(element)
-    return tuple(out)
-
-
-def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
-    return one.name, one.side, other.name, other.side
 
 
 def _started(

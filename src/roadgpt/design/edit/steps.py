@@ -7,12 +7,13 @@ would break a rule, or if its measurements differ from the desired values.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import ceil, floor, radians
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from roadgpt.brief.model import OTHER_SIDE
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import Range
 from roadgpt.design.elements import cut, turn_element
@@ -350,3 +351,28 @@ class Insert:
             replace(element, name=f"{element.name} rest", seen=None),
         )
         return (first, *self.elements, second.with_segments(segments[at:]))
+
+
+def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
+    """Returns the elements with straights between new neighbours of one hand, so that two turns are seen.
+
+    Turns that were neighbours before, on the same sides, are two already.
+    """
+    known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
+    out: list[RoadElement] = []
+    last: RoadElement | None = None
+    metres = 0.0
+    for element in elements:
+        if element.kind == "turn":
+            is_new = last is not None and last.side == element.side and _pair(last, element) not in known
+            if is_new and metres < SEPARATE - 2:
+                out.append(gap(f"room before {element.name}", round(SEPARATE - metres, 1), element.incline))
+            last, metres = element, 0.0
+        else:
+            metres += element.length
+        out.append(element)
+    return tuple(out)
+
+
+def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
+    return one.name, one.side, other.name, other.side

@@ -15,7 +15,7 @@ from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.check.extremes import lowest
 from roadgpt.check.matching import fits, turn_complaints
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
-from roadgpt.check.rules import below_floor, inside_map
+from roadgpt.check.rules.below_floor import ROUNDING
 from roadgpt.check.rules.promises import complaints
 from roadgpt.design.layout import moved_onto_map
 from roadgpt.design.road_elements import RoadElements, features_of, shows_slopes, shows_turns, with_segments
@@ -118,17 +118,19 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
     elements = with_segments(elements, design.segments)
     road = world.lay(build(design, geometry))
     moved = design
-    if inside_map.inspect(road, None, world):
+    findings = check.inspect(road, requirements.brief, world)
+    if any(finding.rule == "inside_map" or finding.stops for finding in findings):
         # a design that becomes a spline is placed as if it were built of arcs, which lie close by
         moved = moved_onto_map(design, world) or design
-    if below_floor.inspect(road, None, world):
+    _, low = lowest(road.elevation, road.length)
+    if low < world.site.z_floor - ROUNDING:
         x, y, z = moved.starting_point
-        sag = lowest(road.elevation, road.length)[1] - z
-        height = ceil((world.site.z_floor + ABOVE_GROUND - sag) * CENTIMETRE) / CENTIMETRE
+        height = ceil((world.site.z_floor + ABOVE_GROUND + z - low) * CENTIMETRE) / CENTIMETRE
         moved = moved.model_copy(update={"starting_point": (x, y, height)})
     if moved != design:
         road = world.lay(build(moved, geometry))
-    return Look(moved, elements, road, check.inspect(road, requirements.brief, world), requirements)
+        findings = check.inspect(road, requirements.brief, world)
+    return Look(moved, elements, road, findings, requirements)
 
 
 def restored(mended: Look, first: Look) -> Look:

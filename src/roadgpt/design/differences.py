@@ -1,12 +1,17 @@
-"""Describes in sentences what an edit changed, from measurements of the road before and after the edit."""
+"""Describes in sentences how two designs differ.
+
+``changes_between`` compares them segment by segment, and ``sentences`` turn by turn, from measurements of the
+road before and after an edit.
+"""
 
 from collections.abc import Iterator, Sequence
 
 from roadgpt.check.measures import MeasuredFeature, Measures
 from roadgpt.design.fit import Look
-from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, features_of
-from roadgpt.road import Design, Geometry
+from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
+from roadgpt.road import Design, Segment
 
+ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
 FADING = 12.0  # m that a straight gains at most from turns that fade into it
 AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
@@ -21,22 +26,18 @@ def sentences(
         before: The road before the edit.
         elements: The elements of that road.
         found: The measurements of that road.
-        after: The road after the edit.
+        after: The road after the edit. Its elements have the names that they had before; if it has none, only
+            the measured turns are compared.
         besides: Sentences about changes that were made only to keep the road valid.
     """
     besides = [said for said in besides if not said.startswith(AGAIN)]
     if besides:
         besides = [f"to keep it valid: {'; '.join(besides)}"]
-    things, whole = _things(elements, after.elements, after.found), _whole(found, after.found)
-    return (*things, *whole, *_placing(before, after.design), *besides)
-
-
-def between(before: Design, after: Design, geometry: Geometry) -> tuple[str, ...]:
-    """Returns sentences that compare two designs, turn by turn if both have the same elements."""
-    (elements, found), (new, measured) = elements_on_road(before, geometry), elements_on_road(after, geometry)
-    same = [element.name for element in elements] == [element.name for element in new]
-    things = tuple(_things(elements, new, measured)) if same else _counted(found, measured)
-    return (*things, *_whole(found, measured), *_placing(before, after))
+    if after.elements:
+        things = tuple(_things(elements, after.elements, after.found))
+    else:
+        things = _counted(found, after.found)
+    return (*things, *_whole(found, after.found), *_placing(before, after.design), *besides)
 
 
 def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
@@ -140,3 +141,47 @@ def _placing(before: Design, after: Design) -> Iterator[str]:
         yield f"the start was {'raised' if z1 > z else 'lowered'} from {z:g} to {z1:g} m"
     if abs(turned) > 1e-6:
         yield f"the road was turned by {turned:+.4g} degrees"
+
+
+def changes_between(before: Design, after: Design) -> tuple[str, ...]:
+    """Returns one sentence each for a changed start, a changed heading and each changed segment.
+
+    Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
+    their number.
+    """
+    out = list(_moved(before, after))
+    pairs = zip(before.segments, after.segments, strict=True)
+    told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
+    if len(told) > ALL_LISTED:
+        return (*out, f"{len(told)} segments changed")
+    return (*out, *told)
+
+
+def _moved(before: Design, after: Design) -> Iterator[str]:
+    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
+    if (x, y) != (x1, y1):
+        yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
+    if z != z1:
+        yield f"start raised from {z:g} to {z1:g} m" if z1 > z else f"start lowered from {z:g} to {z1:g} m"
+    turned = (after.theta - before.theta + 180) % 360 - 180
+    if abs(turned) > 1e-9:
+        yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
+
+
+def _segment(number: int, before: Segment, after: Segment) -> str:
+    said = []
+    if after.distance != before.distance:
+        said.append(f"distance {before.distance:g} -> {after.distance:g} m")
+    if after.turn_degrees != before.turn_degrees:
+        said.append(f"turn {before.turn_degrees:g} -> {after.turn_degrees:g} degrees")
+    if after.incline != before.incline:
+        said.append(f"grade {before.incline:g} -> {after.incline:g} %")
+    for name in ("radius", "transition", "vertical_radius"):
+        one, other = getattr(before, name), getattr(after, name)
+        if one != other:
+            said.append(f"{name.replace('_', ' ')} {_metres(one)} -> {_metres(other)}")
+    return f"segment {number}: {', '.join(said)}" if said else ""
+
+
+def _metres(value: float | None) -> str:
+    return "open" if value is None else f"{value:g} m"
