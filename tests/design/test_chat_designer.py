@@ -230,6 +230,24 @@ def test_demands_have_no_odd_words(words: str) -> None:
     assert not {"inf", "None", "nan", "-inf"} & {*text.replace(":", " ").split()}
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("an S-bend", "in this order: 2 S-bend turns: "),
+        ("a serpentine road", "in this order: 4 or more serpentine turns: "),
+        ("two hairpins", "in this order: 2 hairpins: "),
+        ("a hairpin to the left", "in this order: 1 hairpin: to the left, "),
+        ("a straight road", "in this order: 1 straight: 10 or more m long"),
+        ("a road that gains 20 m", "a climb of 17 to 23 m"),
+        ("a road with 3 turns; at most 2 right turns in all", "0 to 2 right turns"),
+        ("a flat road", "the whole road is level (mean slope -1 to 1 %)"),
+    ],
+)
+def test_demands_in_words(words: str, told: str) -> None:
+    demanded = demands(outline(read(words), WORLD.site.map_size))
+    assert any(line.startswith(told) for line in demanded), demanded
+
+
 @pytest.mark.parametrize("name", ["chat_rules.txt", "thesis_rules.txt"])
 def test_the_rules_are_filled_in_for_every_world(name: str) -> None:
     text = rules(name, World(site=Site(map_size=400), limits=Limits(max_grade=0.1)))

@@ -10,6 +10,7 @@ from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.words import (
+    COUNTS,
     KINDS,
     LEAST_RADIUS,
     LEAST_STRAIGHT,
@@ -95,7 +96,7 @@ def is_possible(
 
 def _counts(brief: Brief) -> None:
     counted = [(clause.count, f"{_noun(clause)}s") for clause in brief.clauses]
-    whole = [(brief.turns, "turns"), (brief.left, "left turns"), (brief.right, "right turns")]
+    whole = [(getattr(brief, name), f"{noun}s") for name, noun in COUNTS.items()]
     for amount, nouns in (*counted, *whole):
         for number in (amount.lo, amount.hi) if amount else ():
             if number is not None and (number < 0 or number != int(number)):

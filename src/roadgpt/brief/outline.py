@@ -35,6 +35,8 @@ USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns 
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
+OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
+"""The names of features that consist of several turns, such as 'S-bend'."""
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
 
@@ -73,6 +75,16 @@ class Group:
     hi: int | None = 1
     alternating: bool = False
     """True if the sides alternate; ``feature.side`` is then the side of the first."""
+
+    @property
+    def counted(self) -> str:
+        """The number and kind of the features, such as '2 or more hairpins' or '4 serpentine turns'."""
+        noun = self.feature.name + (" turn" if self.feature.name in OF_SEVERAL else "")
+        return f"{Range(self.lo, inf if self.hi is None else self.hi)} {noun}{'' if self.hi == 1 else 's'}"
+
+    def __str__(self) -> str:
+        sides = ["alternating sides"] if self.alternating else []
+        return self.counted + self.feature.limits(*sides)
 
 
 @dataclass(frozen=True, slots=True)

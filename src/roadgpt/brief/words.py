@@ -219,6 +219,9 @@ FEATURE = {
 }
 """The quantities of one turn or straight, by their names in a Feature and in a MeasuredFeature."""
 
+COUNTS = {"turns": "turn", "left": "left turn", "right": "right turn"}
+"""The nouns of the numbers of turns, by their names in the Brief and in the Outline."""
+
 WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
 """What the whole road does; it stands after 'the whole road' and 'a road that'."""
 

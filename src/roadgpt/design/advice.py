@@ -81,23 +81,17 @@ def too_fast(world: World, slower: float | None) -> str:
 
 def _wishes_of(outline: Outline) -> str:
     """Returns the requirements as the start of a sentence that continues with 'not fit'."""
-    parts = [
-        _counted(group.lo, group.feature.name) for group in outline.groups if group.feature.kind == "turn"
-    ]
+    parts = [group.counted for group in outline.groups if group.feature.kind == "turn"]
     if not parts and 1 < outline.turns.lo < inf:
-        parts = [_counted(int(outline.turns.lo), "turn")]
+        parts = [f"{outline.turns} turns"]
     long = outline.length and outline.length.lo > 0
     parts += [ROAD["length"].asked.format(outline.length)] if long else []
     parts += [ROAD["climb"].asked.format(outline.climb)] if outline.climb else []
     if not parts:
         parts = ["the straights that were asked for" if outline.groups else "a road of this kind"]
-    single = len(parts) == 1 and (parts[0].startswith(("1 ", "a ")))
+    single = len(parts) == 1 and parts[0].startswith(("1 ", "a ")) and not parts[0].endswith("s")
     listed = ", ".join(parts[:-1]) + (" and " if len(parts) > 1 else "") + parts[-1]
     return f"{listed} {'does' if single else 'do'}"
-
-
-def _counted(number: int, what: str) -> str:
-    return f"{number} {what}" + ("s" if number != 1 else "")
 
 
 def _roomier(world: World, boxes: Sequence[float]) -> float:

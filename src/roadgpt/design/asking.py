@@ -2,14 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 from importlib.resources import files
-from math import inf, radians
+from math import radians
 
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Group, Outline, outline
+from roadgpt.brief.outline import Outline, outline
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import ROAD, WHOLE_SLOPES, Range
+from roadgpt.brief.words import COUNTS, ROAD, WHOLE_SLOPES, Range
 from roadgpt.design.objections import OF_DEFAULT_ARC
 from roadgpt.road import Design, World
 
@@ -91,11 +91,10 @@ def drawn_start(world: World, seed: int) -> tuple[float, float, float]:
 
 def demands(asked: Outline) -> list[str]:
     """Returns the requirements of a road in driving order, one line each."""
-    out = [f"in this order: {_group(group)}" for group in asked.groups]
-    if not any(group.feature.kind == "turn" for group in asked.groups):
-        out.append(f"{asked.turns} turns" if asked.turns != Range() else "")
-    sides = {"left": asked.left, "right": asked.right}
-    out += [f"{span} {side} turns" for side, span in sides.items() if span != Range()]
+    out = [f"in this order: {group}" for group in asked.groups]
+    names_turns = any(group.feature.kind == "turn" for group in asked.groups)
+    counts = {name: getattr(asked, name) for name in COUNTS if name != "turns" or not names_turns}
+    out += [f"{span} {COUNTS[name]}s" for name, span in counts.items() if span != Range()]
     out.append("turns alternate between left and right" if asked.alternating else "")
     each = asked.each_turn.limits()
     out.append(f"every turn{each}" if each else "")
@@ -105,13 +104,6 @@ def demands(asked: Outline) -> list[str]:
     for end, feature in (("starts", asked.starts), ("ends", asked.ends)):
         out.append(f"it {end} with a {feature.name}{feature.limits()}" if feature else "")
     return [line for line in out if line]
-
-
-def _group(group: Group) -> str:
-    """Returns a group as text: '3 turns', '2 or more hairpins: to the left', '1 straight'."""
-    span = Range(group.lo, inf if group.hi is None else group.hi)
-    sides = ["alternating sides"] if group.alternating else []
-    return f"{span} {group.feature.name}{'' if group.hi == 1 else 's'}{group.feature.limits(*sides)}"
 
 
 def _told(design: Design) -> str:

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline, outline
-from roadgpt.brief.words import NO_TURN, ROAD, WHOLE_SLOPES
+from roadgpt.brief.words import COUNTS, NO_TURN, ROAD, WHOLE_SLOPES, Range
 from roadgpt.check.finding import Finding
 from roadgpt.check.matching import Complaint, fits, sequence_complaints, turn_complaints
 from roadgpt.check.measures import LEVEL, Measures, measure
@@ -52,15 +52,12 @@ def _finding(road: Road, complaint: Complaint) -> Finding:
 
 def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
     number = len(found.turns)
-    counts = (
-        (number, asked.turns, "turn"),
-        (found.count("left"), asked.left, "left turn"),
-        (found.count("right"), asked.right, "right turn"),
-    )
-    for has, span, what in counts:
+    counts = {"turns": number, "left": found.count("left"), "right": found.count("right")}
+    for name, has in counts.items():
+        span: Range = getattr(asked, name)
         if has not in span:
             plural = "" if span.lo == span.hi == 1 else "s"
-            yield Complaint(f"asked for {span} {what}{plural}, has {has}")
+            yield Complaint(f"asked for {span} {COUNTS[name]}{plural}, has {has}")
     if number in asked.turns and asked.turns.hi == 0 and found.turning not in NO_TURN:
         yield Complaint(f"asked for a straight road, turns {found.turning:.1f} degrees in all")
     for second, (one, other) in enumerate(pairwise(found.turns), 2):
