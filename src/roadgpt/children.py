@@ -94,7 +94,7 @@ def _end_all(number: int, frame: object) -> None:
 
 def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int | None:
     """Ends a process and its child processes. Returns the exit status of the process; None if it has not
-    ended in time.
+    ended within ``patience`` seconds.
     """
     kill(process)
     with suppress(subprocess.TimeoutExpired):

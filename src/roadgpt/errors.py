@@ -43,7 +43,7 @@ class SimulatorError(SimulationError):
 
 
 class GivenUpError(RoadGPTError):
-    """A simulator failed several times in a row and is not used any more."""
+    """RoadGPT gave up on a simulator that failed several times in a row."""
 
     exit_status = 5
 

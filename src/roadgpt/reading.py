@@ -1,7 +1,8 @@
 """Reads files from untrusted sources: only regular files, and only up to a size limit.
 
-Pipes and devices are refused, because reading them could wait for ever or never end. Files that are too large
-are refused before they fill the memory. Files written by campaigns and runs are read in the same way.
+Pipes and devices are refused, because reading from them could block for ever or yield endless data. Files
+that are too large are refused before they fill the memory. Files written by campaigns and runs are read in
+the same way.
 """
 
 import json

@@ -55,8 +55,7 @@ def look() -> None:
     """Checks whether the program should stop; long computations call it between their steps.
 
     Raises:
-        KeyboardInterrupt: A signal was received, and this function has not raised the exception for it
-            before.
+        KeyboardInterrupt: A signal was received; raised only in the main thread, and once per signal.
     """
     if _State.number and not _State.is_raised and threading.current_thread() is threading.main_thread():
         _State.is_raised = True

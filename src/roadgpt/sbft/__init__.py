@@ -1,8 +1,8 @@
-"""Runs generators of the SBFT tool competition in RoadGPT, and RoadGPT in the competition. Main function:
-``compete``.
+"""Runs test generators of the SBFT tool competition with RoadGPT, and RoadGPT as a generator in the
+competition. Main function: ``compete``.
 
 ``compete`` runs the competition's generators with RoadGPT's simulators: it starts a generator in a process of
-its own, passes it an executor with the same classes and methods as the competition's, and drives the roads
+its own, passes it an executor with the same class name and methods as the competition's, and drives the roads
 that the generator submits. In the other direction, the class ``RoadGPTTestGenerator`` runs RoadGPT in the
 competition's pipeline. The package ``sdc`` implements a tool for the SDC competition on test selection.
 

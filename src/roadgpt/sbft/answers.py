@@ -1,9 +1,9 @@
-"""Serves test generators that run in other Python interpreters: computes results, and designs roads. Each
-request and each answer is one line of JSON.
+"""Serves test generators that run in other Python interpreters: does the competition's computations for
+them, and designs roads. Each request and each answer is one line of JSON.
 
-The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If RoadGPT
-is installed in the generator's own interpreter, ``answer`` is called there instead, and no process is
-started.
+The client, ``names/roadgpt_client.py``, starts this module as ``python -m roadgpt.sbft.answers``. If
+``compete`` runs the generator in RoadGPT's own interpreter (no ``--python``), ``answer`` is called directly
+instead, and no process is started.
 """
 
 import sys
@@ -72,8 +72,8 @@ def left_lane(points: Any, records: Any, before: float, after: float) -> Message
 
 
 def spread(segments: Any) -> tuple[float, float]:
-    """Returns the mean and the standard deviation of sparseness, the competition's measure of how different
-    the roads at the failures are.
+    """Returns the mean and the standard deviation of sparseness, the competition's measure of how much the
+    road segments around the failures differ.
 
     Args:
         segments: points ``(n, 2)`` of the road around each failure, in the order of the tests.

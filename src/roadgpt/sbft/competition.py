@@ -197,7 +197,8 @@ def compete(
     out: Path | None = None,
     draw: Draw | None = None,
 ) -> Competition:
-    """Runs a test generator in the simulator; it starts when you iterate over the returned Competition.
+    """Runs a test generator and drives its roads. The generator starts when you iterate over the returned
+    Competition.
 
     Args:
         experiment: the generator and its budget.
@@ -207,7 +208,8 @@ def compete(
         seed: the driver's seed.
         out: an empty or new folder for the results. If None, a new folder is made under ``results``, with the
             name that the competition would give it.
-        draw: draws pictures of every test, as ``report.drawing()`` does; None: no pictures.
+        draw: an object that draws pictures of every test, such as ``report.drawing()`` returns; None: no
+            pictures.
 
     Raises:
         UsageError: the experiment has no budget, or a plug-in or the folder cannot be used.

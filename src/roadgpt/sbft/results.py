@@ -34,7 +34,7 @@ def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, t
     """Creates the folder for results; by default, it has the name that the competition would give it.
 
     Returns:
-        The folder, and all folders that were created for it, the innermost first.
+        Two values: the folder, and the folders on its path that did not exist before, the innermost first.
 
     Raises:
         UsageError: the folder is not empty, or cannot be created.
@@ -69,7 +69,7 @@ class Results(RunFolder):
         return test
 
     def describe(self, experiment: Experiment) -> None:
-        """Writes the settings, and tables of results in which all counts are 0."""
+        """Writes the settings, and result tables with all counts at 0; called before the first test."""
         self.write_tables()
         self.write_card(is_finished=False)
         setup, told = self.request.setup, experiment.model_dump()

@@ -17,7 +17,7 @@ ROADGPT_READER) or by a subclass:
         description = "three hairpins"
         seed = 7
 
-Licence: Apache-2.0, as RoadGPT's.
+Licence: Apache-2.0, the same as RoadGPT's.
 """
 
 from __future__ import annotations

@@ -121,7 +121,7 @@ class RiskModel:
 
         First selects the riskiest 5 % of all tests. Then adds tests in order of risk, until the selection is
         expected to contain three failures, or until the next test is no more likely to fail than the average
-        test. If no outcomes are known, 10 % of all tests are selected.
+        test. ``LINE_ONLY``, which uses no outcomes, selects 10 % of all tests.
         """
         scores = self.scores(features)
         first = order(scores)

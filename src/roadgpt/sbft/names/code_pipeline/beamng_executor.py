@@ -19,8 +19,8 @@ KMH = 3.6
 
 
 class BeamngExecutor(AbstractTestExecutor):
-    """Sends tests to ``roadgpt compete sbft``. A deep copy of the executor uses the same connection, but
-    counts its tests separately.
+    """Sends tests to ``roadgpt compete sbft``. A deep copy of the executor shares its connection and its
+    budget's count of tests, but counts outcomes separately.
     """
 
     def __init__(

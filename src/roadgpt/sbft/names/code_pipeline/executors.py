@@ -50,7 +50,7 @@ for _name in ("__lt__", "__le__", "__gt__", "__ge__", "__sub__", "__rsub__"):
 
 
 class SharedCounter:
-    """A counter of tests that all copies of a budget share."""
+    """A test counter that all copies of a budget share."""
 
     tests = 0
 
@@ -194,8 +194,8 @@ class AbstractTestExecutor(ABC):
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns whether the test is valid, and the message of the first rule that it breaks. Validation
-        uses time of the budget, but does not count as a test."""
+        """Returns whether the test is valid, and the message of the first rule that it breaks. The
+        time for validation counts against the budget, but validation does not count as a test."""
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
@@ -240,8 +240,8 @@ class AbstractTestExecutor(ABC):
 
 
 class MockExecutor(AbstractTestExecutor):
-    """Raises an error when used: the competition's mock executor invents outcomes, and RoadGPT has real
-    ones."""
+    """Cannot be used: RoadGPT drives the tests, whereas the competition's mock executor invents their
+    outcomes."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         """Cannot be called.

@@ -15,8 +15,8 @@ def register_exit_fun(
     signals: Any = (signal.SIGTERM,),
     logfun: Any = lambda said: print(said, file=sys.stderr),
 ) -> Any:
-    """Registers a function that is called once, when the generator ends or receives one of the signals. It
-    can also be used as a decorator."""
+    """Registers a function that is called once, when the generator ends or receives one of ``signals`` (by
+    default, SIGTERM). It can also be used as a decorator."""
     if fun is None:
         return lambda wrapped: register_exit_fun(wrapped, signals, logfun)
     if not callable(fun):

@@ -111,7 +111,7 @@ class TestValidator:
         return self.is_valid_polygon(the_test)
 
     def is_minimum_length(self, the_test: Any) -> bool:
-        """Returns whether the road has at least the competition's minimum length."""
+        """Returns whether the road is longer than the competition's minimum length."""
         return bool(the_test.get_road_length(interpolate_road_points=True) > self.min_road_length)
 
     def is_too_sharp(self, the_test: Any, TSHD_RADIUS: float = 47) -> bool:

@@ -1,7 +1,7 @@
 """RoadGPT's code that runs in a generator's process; it uses only the standard library and the syntax of
 Python 3.8.
 
-The generator's interpreter may lack the libraries that RoadGPT needs. So whatever needs more than the
-standard library is requested from RoadGPT. RoadGPT runs in the generator's interpreter if it is installed
-there, else in its own interpreter.
+The generator's interpreter may lack the libraries that RoadGPT needs. So every computation that needs
+more than the standard library is requested from RoadGPT. RoadGPT runs in the interpreter that the environment
+variable ROADGPT_PYTHON names, or, if it is not set, in the generator's interpreter.
 """

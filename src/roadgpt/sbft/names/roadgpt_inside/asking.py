@@ -1,7 +1,8 @@
-"""Asks RoadGPT to do whatever needs more than the standard library.
+"""Asks RoadGPT for every computation that needs more than the standard library.
 
-If RoadGPT is installed in this interpreter, it is called directly; else it is started in its own interpreter,
-whose path is in the environment variable ROADGPT_PYTHON. A forked process starts its own RoadGPT process.
+If the environment variable ROADGPT_PYTHON names an interpreter, RoadGPT is started in that interpreter; else
+RoadGPT must be installed in this interpreter, and is called directly. A forked process starts its own RoadGPT
+process.
 """
 
 from __future__ import annotations

@@ -13,8 +13,8 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """The nodes of a road's centre line and its edge points. The edge points of a node lie to its left and
-    right, at right angles to the direction of the next node."""
+    """The nodes of a road's centre line, and the points on the road's edges: two for each node, to its left
+    and right, at right angles to the line to the next node (at the last node, to the previous one)."""
 
     def __init__(self) -> None:
         """Makes a road without nodes."""
