@@ -5,10 +5,10 @@
     order     the directions (left or right) of the turns, the positions of the straights, the first and the
               last element
     extent    angles, radii and lengths
-    general   all of the description at once
+    general   all requirements of the description together
 
 A criterion that the description does not mention is left out. A road with a wrong number of turns meets
-neither the criterion ``order`` nor requirements on the incline of single turns.
+neither the criterion ``order`` nor requirements on the incline or the extent of individual turns.
 """
 
 from collections.abc import Mapping
@@ -66,7 +66,7 @@ def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
 
 
 def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns the criteria of single turns and straights. Each is checked with all others left open."""
+    """Returns the criteria of individual turns and straights. Each is checked with all others left open."""
     out: dict[Criterion, bool] = {}
     for criterion, fields in FEATURE_FIELDS.items():
         own = (replace(group, feature=_part(group.feature, fields)) for group in asked.groups)

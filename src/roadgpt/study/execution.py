@@ -41,7 +41,7 @@ def work(
 
     Args:
         plan: the study.
-        folder: the study's folder, which exists.
+        folder: the study's folder, which must exist.
         workers: number of worker processes; 1: the roads are made in this process. Parts whose designer or
             reader asks a language model are always made in this process, one after another.
         draw: function that draws pictures of a run into its folder; None: no pictures.

@@ -82,7 +82,7 @@ def open_folder(plan: StudyPlan, folder: Path) -> None:
     """Creates a study's folder, or checks that an existing folder holds the same study, and writes
     ``study.json``.
 
-    A study that is resumed may have more roads and more designers.
+    When a study is resumed, the new plan may have more roads and more designers than the old one.
 
     Raises:
         UsageError: the folder contains another study or other files, or it cannot be created.

@@ -1,4 +1,4 @@
-"""Writes the report of a study, or of a folder of ``roadgpt run``, from the files in its folder."""
+"""Writes the report of a study, or of runs made by ``roadgpt run``, from the files in their folder."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -158,7 +158,7 @@ def _different(parts: Sequence[StudyPartRecord]) -> str:
 
 
 def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) -> Path:
-    """Writes the report of a folder of ``roadgpt run`` into it and returns the path of the HTML page.
+    """Writes the report of runs made by ``roadgpt run`` into their folder; returns the path of the HTML page.
 
     Args:
         folder: the folder of runs.

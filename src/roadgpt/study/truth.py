@@ -97,11 +97,11 @@ class Truth(Frozen):
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
     def outline(self, *keys: str) -> Outline:
-        """Returns the requirements of these keys, or of all keys if none is named, as an Outline.
+        """Returns the requirements of the keys in ``keys``, by default of ``given()``, as an Outline.
 
         The key ``sequence`` names all turns of the road, so it also sets their number. An Outline with
-        exactly 0 turns requires a straight road. A truth with 0 turns does not, because SLACK widens the
-        range; its key ``turning`` limits how much the road bends.
+        exactly 0 turns requires a straight road. A truth with 0 turns also accepts slight bends, because
+        SLACK widens its range beyond 0; its key ``turning`` limits how much the road bends.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:

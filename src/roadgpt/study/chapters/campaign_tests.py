@@ -25,7 +25,7 @@ MARGINS = (-2.0, 2.0, 0.1)  # m: from, to, width of a bar; what lies beyond is i
 def failures(
     folder: Path, record: Record, cells: Sequence[CellStatus], drives_on: bool = False
 ) -> list[Block]:
-    """Returns a chart of failures over the number of tests, a table of causes, and a table of single
+    """Returns a chart of failures over the number of tests, a table of causes, and a table of individual
     failures.
 
     The last table lists the worst failures. If a drive ends as soon as the car leaves its lane, no failure is
@@ -129,8 +129,8 @@ def _causes(record: Record, drives_on: bool) -> Table:
 
 
 def margins(record: Record, drives_on: bool = False) -> Figure:
-    """Returns a histogram of the margins (smallest distances to out of bounds) of all tests, in metres. A
-    margin is negative if the car failed."""
+    """Returns a histogram of the margins of all tests, in metres. A margin is the smallest sideways shift
+    that would have made the car fail; it is negative if the car left its lane or fell."""
     low, high, width = MARGINS
     n = round((high - low) / width)
     found: Mapping[int, int] = dict(
@@ -154,8 +154,8 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Returns feature maps of a sample of tests, spread evenly over the campaign; empty if the tests have no
-    features."""
+    """Returns feature maps of all tests, or of every n-th test if there are more than 100,000; empty if the
+    tests have no features."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     part = f" of every {every:,}th test" if every > 1 else ""

@@ -1,5 +1,5 @@
 """Makes the list of information that is needed to reproduce a report: command, seed, versions, hashes of
-the reader's network."""
+the weights of the neural network that reads descriptions."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256

@@ -22,7 +22,7 @@ class Count(NamedTuple):
 
 
 class Source(NamedTuple):
-    """The counts of one designer, or of the thesis, for each prompt in the order of the table."""
+    """The counts of one designer, or of the thesis: one Count for each prompt, a row in ``table``."""
 
     name: str
     counts: tuple[Count, ...]

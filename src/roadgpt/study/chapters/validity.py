@@ -46,7 +46,7 @@ KINDS = (STRICT, SOUND, SBFT)
 
 
 def of_thesis(parts: Parts) -> list[StudyPartRecord]:
-    """Returns the study parts whose prompts are in the thesis' table."""
+    """Returns the study parts with prompts for which the thesis gives results (``baseline.THESIS``)."""
     return [part for part in parts if part.words in THESIS]
 
 

@@ -30,7 +30,7 @@ def load_answers(
         folder: the survey's folder.
         number: number of simulated raters; None: the answers of people are returned.
         seed: seed of the simulated raters.
-        agreement: how often simulated raters agree, 0 to 1; see ``synthetic``.
+        agreement: probability that a simulated rater gives the true answer, 0 to 1; see ``synthetic``.
 
     Raises:
         UsageError: there is no survey, or nobody has answered yet.

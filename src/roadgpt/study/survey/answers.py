@@ -36,7 +36,8 @@ class AnswerRow(NamedTuple):
 
 @dataclass(frozen=True)
 class Answers:
-    """All answers to a survey, and the numbers of raters who were invited, agreed and withdrew."""
+    """All answers to a survey, and the numbers of raters who were invited, who take part (``agreed``), and
+    who withdrew."""
 
     survey: Survey
     source: Source
@@ -73,7 +74,7 @@ class Answers:
 
 
 def answers_in(store: AnswerStore, survey: Survey) -> Answers:
-    """Returns the answers of all people who agreed and did not withdraw."""
+    """Returns the answers of all people who agreed to take part and did not withdraw."""
     raters = store.raters()
     given = {rater.digest: store.answers_of(rater) for rater in raters if rater.state == "agreed"}
     states = [rater.state for rater in raters]

@@ -1,7 +1,7 @@
-"""Answers requests about one survey, as a Starlette application.
+"""Handles the HTTP requests to one survey, as a Starlette application.
 
 /static/NAME                                    the style sheet and the script
-/join/SHARED                                    adds a rater who agrees, if the survey is open to all
+/join/SHARED                                    adds a rater who agrees to take part, if anyone may join
 /r/TOKEN                                        consent, or the first page with an unanswered question
 /r/TOKEN/N             GET, POST a form         page N of this rater
 /r/TOKEN/answer        POST JSON                saves one answer and confirms it when it is on the disk

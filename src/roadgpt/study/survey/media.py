@@ -1,8 +1,8 @@
 """Makes the pictures, films and 3-D views that raters see; they contain no verdict and no measurements.
 
 The plots of all roads of a survey have the same axes, as in RoadGPT's thesis, so that roads can be compared
-by size. If all roads fit, the axes are those of the thesis: x and y from 0 to 220 m, 200 m along the road,
-and 20 m of height.
+by size. If all roads fit, the axes are those of the thesis: x and y from 0 to 220 m in the bird's-eye view,
+and 200 m along the road by 20 m of height in the height plot.
 """
 
 from collections.abc import Sequence
@@ -50,8 +50,7 @@ class Axes:
 
     @classmethod
     def of(cls, roads: Sequence[Road]) -> "Axes":
-        """Returns the thesis' axes if every road fits, otherwise the smallest axes on which every road
-        fits."""
+        """Returns the thesis' axes or, where some road does not fit on them, axes on which all roads fit."""
         lines = [road.at(stations_of(road)) for road in roads]
         points = np.concatenate(lines)[:, :2]
         frame = THESIS

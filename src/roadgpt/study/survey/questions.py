@@ -106,11 +106,11 @@ ABOUT = tuple(
 def rating_questions(item: str, part: Rated, criteria: tuple[str, ...]) -> tuple[Question, ...]:
     """Returns the questions about a road and its description, or about two roads.
 
-    The first question is about the roads in general, one question follows for each criterion, and the last
-    one asks for remarks.
+    The first question asks for an overall rating, one question follows for each criterion, and the last one
+    asks for remarks.
 
     Args:
-        item: id of the road or of the two roads in the survey.
+        item: id of the road, or of the pair of roads, in the survey.
         part: "alignment" for a road and its description, "similarity" for two roads.
         criteria: the names of the criteria that raters read.
     """
@@ -154,8 +154,8 @@ END = Question(
 
 
 def clean(text: str) -> str:
-    """Returns text with plain spaces and line ends "\n", without control characters, surrogates and outer
-    spaces."""
+    """Returns text with plain spaces, and with line feeds as line ends. Control characters (except tabs),
+    surrogates, and white space at both ends are removed."""
     text = text.replace("\r\n", "\n").replace("\r", "\n").encode("utf-8", "ignore").decode()
     return "".join(map(_letter, text)).strip()
 

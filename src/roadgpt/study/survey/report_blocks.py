@@ -55,7 +55,8 @@ def summary(answers: Answers, match: RatingTally, alike: RatingTally) -> list[st
 
 
 def raters(answers: Answers) -> Table:
-    """Returns a table with the numbers of raters who were invited, agreed, withdrew and were analysed."""
+    """Returns a table with the numbers of raters who were invited, who take part, who withdrew, and whose
+    answers are analysed."""
     numbers = {
         "links given or taken": answers.invited,
         "agreed to take part": answers.agreed,
@@ -156,8 +157,8 @@ def agreements(tallies: Sequence[RatingTally]) -> Table:
 
 
 def measurements(tallies: Sequence[RatingTally]) -> list[Block]:
-    """Returns tables that compare the mean scores given by people with measured scores, with their rank
-    correlations."""
+    """Returns, for each part of the survey, the rank correlation between people's mean scores and the
+    measured scores, and a table of both scores."""
     blocks: list[Block] = []
     heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
     for found in tallies:

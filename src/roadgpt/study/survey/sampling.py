@@ -24,8 +24,9 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
         asks: who conducts the survey.
         contact: where raters can send questions.
         seed: seed of the random selection; the same seed selects the same roads.
-        pairs: number of descriptions for which raters also compare two roads with each other. These are two
-            additional roads if the description has at least three valid roads.
+        pairs: number of descriptions for which raters also compare two roads with each other. The road
+            that is compared with the description is one of these two only if there are fewer than three valid
+            roads.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.
@@ -55,7 +56,7 @@ def _campaigns(study: Path) -> list[Path]:
 
 
 def _drawn(campaign: Path, seed: int, most: int) -> list[tuple[str, Run]]:
-    """Draws runs of valid roads that were made from words, without repetition; driven ones come first."""
+    """Selects different runs at random: valid roads that were made from words, driven roads first."""
     indices = np.random.default_rng(seed).permutation(finished(campaign))
     valid, driven = list[tuple[str, Run]](), list[tuple[str, Run]]()
     for index in indices:

@@ -43,7 +43,7 @@ class LimitedConnection(H11Protocol):
             self._watch()
 
     def data_received(self, data: bytes) -> None:
-        """Receives a piece of a request."""
+        """Receives some bytes of a request."""
         super().data_received(data)
         self._watch()
 

@@ -2,7 +2,7 @@
 
 The tables are:
 raters   the SHA-256 digest of each rater's token (the token itself is not stored), the rater's state, the
-         day on which the rater agreed, and whether the rater joined by the shared link
+         day on which the rater agreed to take part, and whether the rater joined by the shared link
 doors    the token of the shared link, if the survey has one
 answers  rater, question and value of each answer
 """
@@ -126,7 +126,7 @@ class AnswerStore:
         return [Rater(*row) for row in rows]
 
     def agree(self, rater: Rater) -> None:
-        """Records that a rater agrees today; does nothing for a rater who agreed before or withdrew."""
+        """Records that a rater agrees to take part; does nothing if the rater agreed before or withdrew."""
         with self._writing() as file:
             file.execute(
                 "UPDATE raters SET state = 'agreed', agreed_on = ? WHERE digest = ? AND state = 'invited'",
@@ -184,7 +184,7 @@ class AnswerStore:
 
 
 def new_token() -> str:
-    """Returns a random token of characters that are allowed in addresses."""
+    """Returns a random token of characters that are allowed in URLs."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
