@@ -1,4 +1,4 @@
-"""Chooses which candidate roads to drive, from the margins and map cells that a surrogate model predicts.
+"""Chooses which candidate roads to drive, based on margins and map cells that a surrogate model predicts.
 
 The search's goal decides how valuable a candidate is:
 
@@ -95,9 +95,9 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Chooses candidates while there are no predictions yet.
+    """Chooses candidates before the surrogate has learned from enough drives.
 
-    Chooses candidates with diverse features from the half of the candidates that looks hardest.
+    They come from the half that looks hardest, and their features are diverse.
 
     Args:
         candidates: the roads to choose from.

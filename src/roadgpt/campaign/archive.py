@@ -1,6 +1,6 @@
 """The archive of a search: a map of road features that holds the best test so far in each of its cells.
 
-The best test is the one whose car came nearest to failing. The cells are a grid along the chosen features
+The best test is the one with the smallest margin. The cells are a grid along the chosen features
 (MAP-Elites, Mouret and Clune 2015) or, where a grid over many features would be mostly empty, the
 neighbourhoods of evenly spread centroids (CVT-MAP-Elites, Vassiliades, Chatzilygeroudis and Mouret 2018).
 Cells and centroids equal those of pyribs' GridArchive and CVTArchive; the tests compare them.

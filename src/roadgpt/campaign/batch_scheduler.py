@@ -134,8 +134,8 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of those earlier batches from whose roads every draft in this batch must
-        differ.
+        """Returns the numbers of earlier batches. Every draft in this batch must differ from all their
+        roads.
         """
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:

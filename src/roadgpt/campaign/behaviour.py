@@ -3,7 +3,7 @@
 ``run.features`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
 This module adds features of the road's geometry; all but the first come from ``check.measures``:
 
-    DIR_COV_360   share of 36 directions, 10 degrees each, in which the road runs at some point
+    DIR_COV_360   share of the 36 sectors of 10 degrees that contain a heading of the road
     RADIUS        smallest radius, m
     TURNED        sum of the angles of all turns, degrees
     TURNS         number of turns
@@ -85,8 +85,8 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def turns_asked(brief: Brief | None) -> int:
-    """Returns the number of turns that get features of their own: the number that the Brief states, or 0 if
-    it states no exact number or more than six.
+    """Returns the number of turns that get features of their own: the number that the Brief states if
+    it is exact and at most six, else 0.
     """
     asked = outline(brief).turns if brief else None
     return int(asked.lo) if asked and 0 < asked.lo == asked.hi <= MOST_TURNS else 0

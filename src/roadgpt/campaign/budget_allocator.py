@@ -21,7 +21,7 @@ class BudgetAllocator:
         return self._limits != Allowance()
 
     def share(self, tests: int) -> Allowance:
-        """Returns the allowance of each of the next ``tests`` tests.
+        """Returns the allowance of one test if ``tests`` tests are about to start.
 
         Together these tests get half of the remaining tokens and money; the other half is left for later
         tests.
@@ -43,9 +43,7 @@ class BudgetAllocator:
             self._given[key] = allowance
 
     def back(self, key: int, spent: Spent | None) -> None:
-        """Releases the allowance of a test that has ended, and subtracts what the test spent from the
-        limits.
-        """
+        """Releases the allowance of a test that has ended, and counts the tokens and money it spent."""
         self._given.pop(key, None)
         if spent is not None:
             self._spent[0] += spent.usage.total

@@ -1,9 +1,9 @@
 """Extremely randomised trees for regression (Geurts, Ernst and Wehenkel 2006), implemented with numpy only.
 
-Every tree learns from all samples. Each node draws one threshold per feature, uniformly between the smallest
-and the largest value in its samples, and splits at the threshold that gives the smallest sum of squared
-errors. All nodes of one depth, of all trees, are split together. The algorithm is that of scikit-learn's
-``ExtraTreesRegressor``; the tests compare the two.
+Every tree learns from all samples. At each node, one threshold per feature is chosen at random, uniformly
+between the smallest and the largest value in the node's samples; the node splits at the threshold that gives
+the smallest sum of squared errors. All nodes of one depth, of all trees, are split together. The algorithm is
+that of scikit-learn's ``ExtraTreesRegressor``; the tests compare the two.
 """
 
 from typing import NamedTuple

@@ -32,7 +32,7 @@ def work_in(
     workers: int = 0,
     with_earlier: bool = False,
 ) -> Generator[tuple[str, FinishedRun], None, None]:
-    """Runs the missing tests of folders of runs, lazily: each test runs while the caller iterates.
+    """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates.
 
     If no road can be designed for a folder, its ``failure`` gives the reason, and the folder stays without
     tests.
@@ -40,7 +40,7 @@ def work_in(
     Args:
         home: the folder that messages refer to, and in which workers write their log.
         folders: the folders, by name.
-        draw: draws pictures into the folders; None: no pictures.
+        draw: draws pictures and saves them in the folders; None: no pictures.
         meter: counts the use of language models, if the tests run in this process; None: a new one.
         workers: number of worker processes; 0: the tests run in this process. The content of the files is the
             same for any number.
@@ -105,8 +105,8 @@ def _worked(
 
 @dataclass(repr=False, eq=False)
 class Campaign(RunFolder):
-    """The Runs of one description. Iterating over it makes the missing Runs; each Run is on disk when it
-    is yielded.
+    """The Runs of one description. Iterating over the Campaign makes the missing Runs; each Run is on disk
+    when it is yielded.
     """
 
     draw: Draw | None = None
@@ -162,7 +162,7 @@ def campaign(
     draw: Draw | None = None,
     meter: Meter | None = None,
 ) -> Campaign:
-    """Makes many Runs of one description, and writes each Run into one folder as soon as it is finished.
+    """Makes many Runs of one description in one folder; each Run is written as soon as it is finished.
 
     The roads are made while you iterate over the returned Campaign. Iterate over ``.all_runs()`` instead to
     receive also the Runs that an earlier session made. ``.folder`` is the campaign's folder. If a driver or a

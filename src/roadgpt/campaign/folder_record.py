@@ -1,4 +1,4 @@
-"""Opens the tests in a folder for reading, whether they are those of a campaign or of a folder of runs."""
+"""Opens tests for reading: those of a campaign, of a folder of runs, or of a single run."""
 
 import sqlite3
 import time

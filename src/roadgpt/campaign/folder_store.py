@@ -1,7 +1,7 @@
 """The store of campaigns whose tests are written into folders of runs: one folder for each cell.
 
 The folders are the only record of the tests, and each can be copied on its own. The tables of
-``campaign.store`` are built from the folders in memory, so that the same code schedules, resumes and counts
+``campaign.store`` are built in memory from the folders, so that the same code schedules, resumes and counts
 both kinds of campaigns.
 """
 

@@ -157,7 +157,7 @@ def work(
         executor: name of an installed executor.
         address: address of the workers, for executors that connect to other machines.
         chat: the settings of the language model with changed limits; None: the stored settings.
-        draw: draws pictures into a folder of runs; None: no pictures.
+        draw: draws pictures and saves them in a folder of runs; None: no pictures.
 
     Yields:
         The progress, after every group of results.

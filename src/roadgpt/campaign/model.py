@@ -104,8 +104,8 @@ class Result:
 
 @dataclass(frozen=True)
 class Cell:
-    """One combination of a plan's prompts, designers, drivers and so on, with all settings that are the
-    same for its tests.
+    """One combination of a plan's prompts, designers, drivers and so on, with all settings that its
+    tests share.
     """
 
     name: str

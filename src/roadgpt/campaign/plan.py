@@ -58,7 +58,7 @@ class Plan(Frozen):
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
     def came_with(self, file: object) -> "Plan":
-        """Returns the Plan, marked as read from a file that another person may have written.
+        """Returns the Plan, and records that it came from a file that another person may have written.
 
         If a driver's file or a server is named only in that file, RoadGPT asks the user before using it.
         """

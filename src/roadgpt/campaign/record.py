@@ -260,8 +260,8 @@ class Record:
 
         Args:
             cell: name of the cell; empty: all cells.
-            which: None: all tests, in order; "failures": those that failed; "worst": all that were driven,
-                beginning with the failure with the smallest margin.
+            which: None: all tests, in order; "failures": those that failed; "worst": those that failed
+                and then those that passed, each by increasing margin.
         """
         condition, order = WHICH[which]
         sql = (

@@ -1,4 +1,4 @@
-"""Returns the drive and the Run of one test of a campaign, from the store or by driving it again."""
+"""Returns the drive or the Run of one test: either as stored or by driving its road again."""
 
 from dataclasses import replace
 from pathlib import Path

@@ -28,7 +28,7 @@ def design_text(design: Design | None) -> str | None:
 
 
 def design_of(text: str | None) -> Design | None:
-    """Returns the design that ``design_text`` wrote."""
+    """Restores a design from JSON text as returned by ``design_text``."""
     return None if text is None else Design.model_validate_json(text)
 
 
@@ -44,7 +44,7 @@ def proposal_rows(
 
 
 def result_values(result: Result) -> tuple[Any, ...]:
-    """Returns the values of the columns ``MEASURED`` of a test that has ended."""
+    """Returns a result's values for the columns listed in ``MEASURED``."""
     return tuple(_stored(getattr(result, name)) for name in MEASURED)
 
 
@@ -101,6 +101,6 @@ def cell_text(cell: Cell) -> str:
 
 
 def cell_of_text(text: str, file: object) -> Cell:
-    """Returns the cell that ``cell_text`` wrote into a store."""
+    """Restores a cell from JSON text as returned by ``cell_text``."""
     cell = _cells().validate_python(json_of(text))
     return replace(cell, request=cell.request.came_with(file))

@@ -77,7 +77,7 @@ def finished_run(run: Run) -> FinishedRun:
 
 
 def writing(folder: Path) -> AbstractContextManager[None]:
-    """Returns a context manager that reports an error in writing to a folder as one clear sentence."""
+    """Returns a context manager that turns a failure to write to a folder into one clear error message."""
     advice = "make room there and continue with the same command and --out"
     return explained(RoadGPTError, f"cannot write into {folder}", advice)
 
@@ -134,7 +134,7 @@ class RunFolder:
         return len(self.tests) >= self.roads
 
     def take_up(self) -> Card:
-        """Reads tests in the folder that this object does not know yet; ignores Runs that cannot be read.
+        """Reads the folder's finished tests that are not in ``tests`` yet; ignores Runs that cannot be read.
 
         Raises:
             UsageError: the folder holds Runs of another request, or more than were requested.
@@ -245,7 +245,10 @@ class RunFolder:
                 self.take_away(LOCK)
 
     def take_away(self, *names: str) -> None:
-        """Removes the folder's own files and those of the given names, then each folder that is empty."""
+        """Removes ``campaign.json``, the tables and the files in ``names``.
+
+        Then removes ``runs/`` and the folders that were created for this session, if they are empty.
+        """
         every = (CARD, DESCRIPTION, *TABLES, *names)
         take_away((self.folder / name for name in every), (self.folder / RUNS, *self.made))
 

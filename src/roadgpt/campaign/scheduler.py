@@ -65,7 +65,7 @@ def _lost(out: _Out, why: str) -> FinishedTest:
 
 
 class Scheduler:
-    """Runs one session of a campaign: distributes tests to the workers, and is the only one to write the
+    """Runs one session of a campaign: distributes tests to the workers, and writes the results to the
     store.
     """
 

@@ -40,7 +40,7 @@ class Selection:
     """Number of the test; None: all tests."""
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns the Selection of one test of this folder, with the text by which a user would name that
+        """Returns the Selection of one test in this folder; ``said`` becomes the argument that names the
         test.
         """
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
@@ -62,8 +62,8 @@ class Selection:
 
 
 def selection_of(text: str) -> Selection | None:
-    """Returns the Selection for the text of a command's argument; None if the text is anything else, such as
-    the path of a single run or of a road file.
+    """Returns the Selection for the text of a command's argument; None if the text names something else, such
+    as a single run or a road file.
 
     Raises:
         UsageError: the text names a test or a cell that does not exist.

@@ -126,7 +126,7 @@ def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], me
 
 
 def error_run(task: Task, cell: Cell, sentence: str, trace: str = "") -> Run:
-    """Returns the Run of a test that ended without a road or a drive; a sentence states the reason."""
+    """Returns the Run of a test that ended without a road or a drive; ``sentence`` states the reason."""
     number, proposal = task.number, task.proposal
     seed = seed_of_driver(number, proposal)
     return Run(cell.request, number, seed, "ERROR", sentence, design=proposal.design, trace=trace)

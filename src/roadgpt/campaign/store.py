@@ -17,8 +17,8 @@ it.
 column ``ended`` and all columns after it depend on the clock.
 
 The file uses WAL and synchronous=NORMAL: committed transactions survive if the process is killed. A power cut
-may undo the last transactions, but never only a part of one. Their tests then count as not done and are run
-again with the same results, since a batch depends only on the results of earlier batches.
+may undo the last transactions, each as a whole. Their tests then count as not done and are run again with the
+same results, since a batch depends only on the results of earlier batches.
 """
 
 import json
@@ -259,7 +259,7 @@ class Store(Record):
         Args:
             ended: finished tests, each with the name of its cell.
             trace: number and name of the file with the drives of these tests.
-            leases: running tests: cell, number, worker, and the latest time at which each must have ended.
+            leases: running tests: cell, number, worker, and the time by which each must have ended.
             seconds: working time of each cell since the last group was stored, in seconds.
         """
         now = time.time()

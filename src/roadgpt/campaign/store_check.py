@@ -70,7 +70,7 @@ def damaged(path: Path, why: object) -> UsageError:
 
 @contextmanager
 def reading_store(path: Path) -> Iterator[None]:
-    """Turns errors raised by code that uses a store's content into one clear message."""
+    """Raises one clear error if code in a ``with`` block fails because a store's content is damaged."""
     try:
         yield
     except sqlite3.Error as error:

@@ -3,8 +3,9 @@
 The best predictor of recorded outcomes is the curvature of the middle of the driven lane, averaged over some
 metres; with lanes of 4 m it is k / (1 + 2k), where k is the curvature of the centre line. The first 25 m are
 left out, since the car starts from rest, and the last 8 m, since the test ends 8 m before the end of the
-road. The features are the largest such curvature to either side over windows of several lengths, how fast
-that curvature changes, the length of the straight before the tightest place, slopes, and crests.
+road. The features include the largest averages of this curvature in left and in right bends over windows of
+several lengths, how fast the curvature changes, the length of the straight before the tightest bend, slopes,
+and crests.
 """
 
 from collections.abc import Sequence
