@@ -66,8 +66,8 @@ def perform(
     earlier: Sequence[Design] = (),
     meter: Meter | None = None,
 ) -> Run:
-    """Makes a Run from words: reads them, designs until the road breaks no rule, drives it, and judges the
-    drive.
+    """Makes a Run from words: reads them, designs a road in one or more drafts, drives it if it breaks no
+    rule, and judges the drive.
 
     Args:
         words: a description, or the Brief that was read from it.

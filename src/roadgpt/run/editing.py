@@ -34,7 +34,7 @@ class Original:
 
 
 def original_in(path: str, world: World, setup: Setup) -> Original:
-    """Returns the Design in a file as the original of a change.
+    """Reads the Design in a file, and returns it as the Original that is to be changed.
 
     Args:
         path: the file.
@@ -53,7 +53,7 @@ def original_in(path: str, world: World, setup: Setup) -> Original:
 
 
 def original_of(run: Run, path: str) -> Original:
-    """Returns the Design of a Run as the original of a change; ``path`` is the path of the Run.
+    """Returns the Design of a Run as the Original that is to be changed; ``path`` is the path of the Run.
 
     Raises:
         UsageError: the Run has no Design.

@@ -7,9 +7,9 @@
     brake, brake_input, throttle, throttle_input     0 to 1
     wheelspeed       m/s
     vel_kmh          whole km/h
-    is_oob           more than the tolerated share of the car's box is outside its lane, or, if lane
-                     departures count, a front tyre is beyond a marking
-    oob_counter      how often it has left the lane so far
+    is_oob           more than the tolerated share of the car's box is outside its lane, or, if
+                     ``lane_departure`` is set, a front tyre is beyond a marking
+    oob_counter      how often the car has left its lane so far
     max_oob_percentage    0 to 1: largest share of the car's box outside its lane, since it last left the lane
     oob_distance     m: half the lane's width minus the car's distance from the middle of the lane;
                      negative outside

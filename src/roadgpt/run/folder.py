@@ -37,14 +37,14 @@ RUNS = "runs"
 
 
 class Draw(Protocol):
-    """Draws pictures into folders of runs; ``report.drawing`` returns an implementation."""
+    """Draws pictures and saves them in folders of runs; ``report.drawing`` returns an implementation."""
 
     def of_run(self, run: Run, folder: Path) -> object:
-        """Draws the pictures of a Run into its folder."""
+        """Draws the pictures of a Run and saves them in its folder."""
         ...
 
     def of_campaign(self, folder: Path) -> object:
-        """Draws a picture that shows all roads of a campaign into its folder."""
+        """Draws a picture of all roads of a campaign and saves it in the campaign's folder."""
         ...
 
 
@@ -59,7 +59,7 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
     Args:
         run: the Run.
         campaign: the folder of the campaign.
-        draw: draws pictures into the folder; None for no pictures.
+        draw: draws pictures and saves them in the folder; None for no pictures.
         test: the content of the file ``test.NNNN.json``; None for the content that ``sbft_json.test_text``
             returns.
     """

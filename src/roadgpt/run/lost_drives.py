@@ -30,7 +30,7 @@ class LostDrives(Generic[Key]):
 
     @staticmethod
     def given_up(reason: str, again: str) -> GivenUpError:
-        """Returns the error to raise when the simulator is no longer used.
+        """Returns the error to raise when RoadGPT gives up on the simulator.
 
         Args:
             reason: the simulator's error message for the last drive.

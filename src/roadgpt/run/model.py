@@ -38,8 +38,8 @@ class Setup(Frozen):
     """
 
     def came_with(self, file: object) -> Self:
-        """Returns the Setup, marked as read from a file of unknown origin. The driver and the language
-        model's server then need the user's permission.
+        """Returns the Setup, and records that it came from a file of unknown origin. A driver in a Python
+        file and the language model's server are then used only with the user's permission.
 
         See ``roadgpt.provenance``. A driver needs no permission if the user has also named its file.
         """
@@ -65,7 +65,10 @@ class Request(Frozen):
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
     def came_with(self, file: object) -> Self:
-        """Returns the Request, marked as read from a file of unknown origin; see ``Setup.came_with``."""
+        """Returns the Request, and records that it came from a file of unknown origin.
+
+        See ``Setup.came_with``.
+        """
         return self.model_copy(update={"setup": self.setup.came_with(file)})
 
 

@@ -4,7 +4,7 @@ Each failure is represented by the road from 30 m before to 30 m after the place
 as a sequence of steps (change of direction, length). The difference between two failures is the weighted
 Levenshtein distance between their sequences: deleting or inserting a step costs 1, and substituting a step
 costs (da / (1 + da) + dl / (1 + dl)) / 2, where da (degrees) and dl (metres) are the differences between the
-two steps. It costs nothing if da < 0.3 and dl < 0.2.
+two steps. Substitution costs nothing if da < 0.3 and dl < 0.2.
 
 Source: the competition's tests_evaluation.py (2024), and the code it calls. Its peculiarities are kept, so
 that the competition's tools give the same figures for RoadGPT's files:

@@ -125,8 +125,8 @@ def write_settings(
 
     Args:
         request: the Request whose simulator and world are written.
-        theirs: values for the competition's other columns, by column name; a column without a value stays
-            empty.
+        theirs: values for the competition's columns that ``request`` does not give, by column name; a column
+            without a value stays empty.
         ours: values for RoadGPT's own columns, by column name; they are written before the fields of the
             world.
         folder: where the file is written.
