@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "roadgpt"
 HALLWAY = {"errors", "plugins", "provenance", "reading", "children", "stopping"}
 MOST_LINES = 400
+MOST_LINES_OF_A_FUNCTION = 60
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "mujoco", "pydantic", "shapely", "rich")
 
 
@@ -114,6 +115,17 @@ def test_a_file_is_short_finished_and_well_named(path: Path) -> None:
     assert not {"utils", "util", "common", "helpers", "misc"} & {
         *path.relative_to(SOURCE).with_suffix("").parts
     }
+
+
+@pytest.mark.parametrize("path", sources(), ids=lambda path: str(path.relative_to(SOURCE)))
+def test_a_function_is_short(path: Path) -> None:
+    long = [
+        f"{node.name} in line {node.lineno}"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and (node.end_lineno or 0) - node.lineno >= MOST_LINES_OF_A_FUNCTION
+    ]
+    assert not long
 
 
 # the competition's own names, and the one file that competes where RoadGPT is not installed

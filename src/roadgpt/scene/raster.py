@@ -122,6 +122,53 @@ def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) ->
     )
 
 
+@inlined
+def _to_camera(
+    points: Array, first: int, end: int, eye: Array, reach_x: float, reach_y: float, seen: Array,
+    codes: NDArray[np.uint8],
+) -> None:  # fmt: skip
+    """Writes the points of a patch in camera coordinates, and the borders of the image that each lies
+    beyond."""
+    for n in range(first, end):
+        dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
+        m = n - first
+        for k in range(3):
+            seen[m, k] = dx * eye[3 + 3 * k] + dy * eye[4 + 3 * k] + dz * eye[5 + 3 * k]
+        codes[m] = _beyond(seen[m, 0], seen[m, 1], seen[m, 2], reach_x, reach_y)
+
+
+@inlined
+def _cross_products(three: Array, across: Array) -> float:
+    """Computes the cross products of the corners, two and two; returns the determinant of the corners, which
+    is negative where the triangle is seen from its front."""
+    a, b, c = three[0], three[1], three[2]
+    for k in range(3):
+        j, m = (k + 1) % 3, (k + 2) % 3
+        across[0, k] = b[j] * c[m] - b[m] * c[j]
+        across[1, k] = c[j] * a[m] - c[m] * a[j]
+        across[2, k] = a[j] * b[m] - a[m] * b[j]
+    volume: float = a[0] * across[0, 0] + a[1] * across[0, 1] + a[2] * across[0, 2]
+    return volume
+
+
+@inlined
+def _plane_equations(
+    attributes: Array, triangles: NDArray[np.int64], t: int, across: Array, volume: float, focal: float,
+    middle_x: float, middle_y: float, plane: Array,
+) -> None:  # fmt: skip
+    """Computes the numbers g of the depth and of the three attributes of a triangle, for rays given by pixel
+    coordinates."""
+    for k in range(4):
+        for j in range(3):
+            g = 0.0
+            for m in range(3):
+                g += (1.0 if k == 0 else attributes[triangles[t, m], k - 1]) * across[m, j]
+            plane[3 * k + j] = g / volume
+        plane[3 * k] /= focal
+        plane[3 * k + 1] /= focal
+        plane[3 * k + 2] -= plane[3 * k] * middle_x + plane[3 * k + 1] * middle_y
+
+
 @compiled
 def draw(
     points: Array, attributes: Array, triangles: NDArray[np.int64], kinds: NDArray[np.int64],
@@ -157,42 +204,22 @@ def draw(
         if _is_outside(spheres[patch], eye, reach_x, reach_y):
             continue
         first = ranges[patch, 0]
-        for n in range(first, ranges[patch, 1]):
-            dx, dy, dz = points[n, 0] - eye[0], points[n, 1] - eye[1], points[n, 2] - eye[2]
-            for k in range(3):
-                seen[n - first, k] = dx * eye[3 + 3 * k] + dy * eye[4 + 3 * k] + dz * eye[5 + 3 * k]
-            m = n - first
-            codes[m] = _beyond(seen[m, 0], seen[m, 1], seen[m, 2], reach_x, reach_y)
+        _to_camera(points, first, ranges[patch, 1], eye, reach_x, reach_y, seen, codes)
         for t in range(ranges[patch, 2], ranges[patch, 3]):
             i0, i1, i2 = triangles[t, 0] - first, triangles[t, 1] - first, triangles[t, 2] - first
             if codes[i0] & codes[i1] & codes[i2]:  # all beyond the same border
                 continue
             for j in range(3):
                 three[0, j], three[1, j], three[2, j] = seen[i0, j], seen[i1, j], seen[i2, j]
-            a, b, c = three[0], three[1], three[2]
-            for k in range(3):  # products across of the corners, two and two
-                j, m = (k + 1) % 3, (k + 2) % 3
-                across[0, k] = b[j] * c[m] - b[m] * c[j]
-                across[1, k] = c[j] * a[m] - c[m] * a[j]
-                across[2, k] = a[j] * b[m] - a[m] * b[j]
-            volume = a[0] * across[0, 0] + a[1] * across[0, 1] + a[2] * across[0, 2]
+            volume = _cross_products(three, across)
             if volume > -1e-9:  # seen from behind, or edge on
                 continue
             corners = _outline(three, focal, middle_x, middle_y, px, py)
             if not _holds_samples(px, py, corners, rows, columns):
                 continue
-            for k in range(4):
-                for j in range(3):
-                    g = 0.0
-                    for m in range(3):
-                        g += (1.0 if k == 0 else attributes[triangles[t, m], k - 1]) * across[m, j]
-                    planes[count, 3 * k + j] = g / volume
-                planes[count, 3 * k] /= focal
-                planes[count, 3 * k + 1] /= focal
-                planes[count, 3 * k + 2] -= (
-                    planes[count, 3 * k] * middle_x + planes[count, 3 * k + 1] * middle_y
-                )
+            plane = planes[count]
+            _plane_equations(attributes, triangles, t, across, volume, focal, middle_x, middle_y, plane)
             seen_kinds[count] = kinds[t]
-            _fill(px, py, corners, planes[count, 0], planes[count, 1], planes[count, 2], count, depth, ids)
+            _fill(px, py, corners, plane[0], plane[1], plane[2], count, depth, ids)
             count += 1
     return count

@@ -24,7 +24,7 @@ THINNEST = 0.008  # m: smallest pixel width for which markings are computed
 HAZE = 1000.0  # m
 AMBER = 0.69, 0.80  # m, of a post's reflector
 DARK = 0.62, 0.86  # m, of its dark band
-BLOCK = 4  # pixels
+BLOCK = 4  # pixels side by side that share haze and resolution, which change slowly
 LEAN = 0.6  # shift of the grass pattern with the height: else steep embankments would stretch it
 ALIKE = 0.08  # relative difference of depths within one surface
 RIDGES = 0.12  # upward part of a direction, below which the sky is drawn pixel by pixel
@@ -130,6 +130,13 @@ def _thing(n: int, px: float, py: float, w: float, planes: Array, kind: int, pal
 
 
 @inlined
+def _is_whole(ids: NDArray[np.int32], row: int, i: int) -> bool:
+    """Returns whether all samples of a pixel see the same triangle."""
+    n0, n1, n2, n3 = ids[4 * row, i], ids[4 * row + 1, i], ids[4 * row + 2, i], ids[4 * row + 3, i]
+    return bool(n0 == n1 and n0 == n2 and n0 == n3)
+
+
+@inlined
 def _gather(
     ids: NDArray[np.int32], depth: NDArray[np.float32], kinds: NDArray[np.int64], row: int, i: int,
     shares: NDArray[np.int64],
@@ -150,6 +157,41 @@ def _gather(
                 shares[j] += 1
                 shares[k] = 0
                 break
+
+
+@inlined
+def _place(row: int, i: int, k: int, is_whole: bool) -> tuple[float, float]:
+    """Returns the place in the image, in pixels, of the k-th sample of a pixel, or of the pixel's middle."""
+    if is_whole:
+        return i + 0.5, row + 0.5
+    return i + OFFSETS[k], row + (k + 0.5) * 0.25
+
+
+@inlined
+def _ray(eye: Array, px: float, py: float, rows: int, columns: int, pixel: float) -> Colour:
+    """Returns the direction in world coordinates, with depth 1, of a point of the image; ``pixel`` is the
+    width of a pixel at depth 1."""
+    rx, ry = (px - columns * 0.5) * pixel, (py - rows * 0.5) * pixel
+    return (
+        eye[3] * rx + eye[6] * ry + eye[9],
+        eye[4] * rx + eye[7] * ry + eye[10],
+        eye[5] * rx + eye[8] * ry + eye[11],
+    )
+
+
+@inlined
+def _haze_and_level(w: float, dx: float, dy: float, dz: float, pixel: float) -> tuple[float, float, float]:
+    """Returns the arguments ``thin`` and ``warm`` of `hazy`, and the base-2 logarithm of the width in metres
+    of a pixel on level ground, at the depth w in the direction (dx, dy, dz)."""
+    far = math.sqrt(dx * dx + dy * dy + dz * dz)
+    thin, warm = air(w * far, (dx * SUN_X + dy * SUN_Y) / far)
+    return thin, warm, 0.5 * math.log2(w * w * pixel * pixel * far / max(abs(dz), 0.02 * far))
+
+
+@inlined
+def _sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
+    short = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
+    return sky(tiles, dx * short, dy * short, dz * short)
 
 
 @compiled
@@ -182,61 +224,36 @@ def shade(
     shares = np.zeros(4, np.int64)
     for row in range(rows):
         last = -2
-        level = thin = warm = 0.0
-        r = g = b = 0.0
+        level = thin = warm = r = g = b = 0.0
         for i in range(columns):
             red = green = blue = 0.0
-            n0, n1, n2, n3 = ids[4 * row, i], ids[4 * row + 1, i], ids[4 * row + 2, i], ids[4 * row + 3, i]
-            is_whole = n0 == n1 and n0 == n2 and n0 == n3
+            is_whole = _is_whole(ids, row, i)
             if not is_whole:
                 _gather(ids, depth, kinds, row, i, shares)
-            for k in range(4):
+            for k in range(1 if is_whole else 4):
+                if not is_whole and shares[k] == 0:
+                    continue
                 n = ids[4 * row + k, i]
-                same = 4 if is_whole else shares[k]
-                if same > 0:
-                    px = i + 0.5 if is_whole else i + OFFSETS[k]
-                    py = row + 0.5 if is_whole else row + (k + 0.5) * 0.25
-                    rx, ry = (px - columns * 0.5) * pixel, (py - rows * 0.5) * pixel
-                    dx = eye[3] * rx + eye[6] * ry + eye[9]
-                    dy = eye[4] * rx + eye[7] * ry + eye[10]
-                    dz = eye[5] * rx + eye[8] * ry + eye[11]
-                    is_new = n != last or not is_whole or i % BLOCK == 0
-                    if n < 0:
-                        if is_new or i % 2 == 0 or dz < RIDGES:
-                            short = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
-                            r, g, b = sky(tiles, dx * short, dy * short, dz * short)
+                px, py = _place(row, i, k, is_whole)
+                dx, dy, dz = _ray(eye, px, py, rows, columns, pixel)
+                is_new = n != last or not is_whole or i % BLOCK == 0
+                if n >= 0:
+                    w = 1.0 / max(planes[n, 0] * px + planes[n, 1] * py + planes[n, 2], 1e-6)
+                    if is_new:
+                        thin, warm, level = _haze_and_level(w, dx, dy, dz, pixel)
+                    if kinds[n] < POST:
+                        r, g, b = _ground(
+                            n, px, py, w, dx, dy, dz, level, planes, kinds[n] == ROAD, tiles, eye, lanes,
+                            numbers,
+                        )  # fmt: skip
                     else:
-                        w = 1.0 / max(planes[n, 0] * px + planes[n, 1] * py + planes[n, 2], 1e-6)
-                        if is_new:
-                            far = math.sqrt(dx * dx + dy * dy + dz * dz)
-                            thin, warm = air(w * far, (dx * SUN_X + dy * SUN_Y) / far)
-                            level = 0.5 * math.log2(w * w * pixel * pixel * far / max(abs(dz), 0.02 * far))
-                        kind = kinds[n]
-                        if kind < POST:
-                            r, g, b = _ground(
-                                n,
-                                px,
-                                py,
-                                w,
-                                dx,
-                                dy,
-                                dz,
-                                level,
-                                planes,
-                                kind == ROAD,
-                                tiles,
-                                eye,
-                                lanes,
-                                numbers,
-                            )
-                        else:
-                            r, g, b = _thing(n, px, py, w, planes, kind, palette)
-                        r, g, b = hazy(r, g, b, thin, warm)
-                    last = n if is_whole else -2
-                    part = same * 0.25
-                    red, green, blue = red + r * part, green + g * part, blue + b * part
-                if is_whole:
-                    break
+                        r, g, b = _thing(n, px, py, w, planes, kinds[n], palette)
+                    r, g, b = hazy(r, g, b, thin, warm)
+                elif is_new or i % 2 == 0 or dz < RIDGES:
+                    r, g, b = _sky(tiles, dx, dy, dz)
+                last = n if is_whole else -2
+                part = 1.0 if is_whole else shares[k] * 0.25
+                red, green, blue = red + r * part, green + g * part, blue + b * part
             picture[row, i, 0], picture[row, i, 1], picture[row, i, 2] = red, green, blue
 
 

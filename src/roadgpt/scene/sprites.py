@@ -9,6 +9,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.scene.compiled import compiled, inlined
 from roadgpt.scene.light import SUN_X, SUN_Y
 from roadgpt.scene.shade import air, hazy
+from roadgpt.scene.surfaces import Colour
 from roadgpt.scene.trees import SIDE
 
 SMALLEST = 0.7  # pixels high
@@ -30,6 +31,36 @@ def _texel(
                 part = (du if i else 1.0 - du) * (dv if j else 1.0 - dv)
                 out += part * pictures[look, start + (fv + j) * side + fu + i, k]
     return out
+
+
+@inlined
+def _mip_level(high: float) -> tuple[int, int]:
+    """Returns the first texel and the side of the smallest copy of a picture that is sharp enough for a tree
+    of this height in pixels."""
+    side, start = SIDE, 0
+    while side > 1 and side > 1.4 * high:
+        start += side * side
+        side >>= 1
+    return start, side
+
+
+@inlined
+def _range(a: float, b: float, reach: float, size: int) -> tuple[int, int]:
+    """Returns the first pixel, and the end of the pixels, between two places in the image, ``reach`` pixels
+    beyond them included."""
+    return max(0, int(min(a, b) - reach)), min(size, int(max(a, b) + reach) + 1)
+
+
+@inlined
+def _blend(
+    picture: NDArray[np.float32], row: int, i: int, pictures: NDArray[np.float32], look: int, start: int,
+    side: int, u: float, v: float, cover: float, light: float, haze: Colour, part: float,
+) -> None:  # fmt: skip
+    """Blends a tree into one pixel, of which ``part`` is not hidden."""
+    cover *= part
+    for k in range(3):
+        colour = _texel(pictures, look, start, side, u, v, k) * light * part
+        picture[row, i, k] = picture[row, i, k] * (1.0 - cover) + colour + haze[k] * cover
 
 
 @compiled
@@ -66,22 +97,15 @@ def overlay(
         if high < SMALLEST:
             continue
         wide = high * sizes[n, 1] / sizes[n, 0]
-        reach_x, reach_y = abs(uy) / high * wide / 2 + 1, abs(ux) / high * wide / 2 + 1
-        left, right = (
-            max(0, int(min(x0, x0 + ux) - reach_x)),
-            min(columns, int(max(x0, x0 + ux) + reach_x) + 1),
-        )
-        above, below = max(0, int(min(y0, y0 + uy) - reach_y)), min(rows, int(max(y0, y0 + uy) + reach_y) + 1)
+        left, right = _range(x0, x0 + ux, abs(uy) / high * wide / 2 + 1, columns)
+        above, below = _range(y0, y0 + uy, abs(ux) / high * wide / 2 + 1, rows)
         if left >= right or above >= below:
             continue
-        side, start = SIDE, 0
-        while side > 1 and side > 1.4 * high:
-            start += side * side
-            side >>= 1
+        start, side = _mip_level(high)
         near = 1.0 / foot[2]
         far = math.sqrt(dx * dx + dy * dy + dz * dz)
         thin, warm = air(far, (dx * SUN_X + dy * SUN_Y) / far)
-        hr, hg, hb = hazy(0.0, 0.0, 0.0, thin, warm)
+        haze = hazy(0.0, 0.0, 0.0, thin, warm)
         for row in range(above, below):
             for i in range(left, right):
                 px, py = i + 0.5 - x0, row + 0.5 - y0
@@ -95,11 +119,8 @@ def overlay(
                 free = 0
                 for k in range(4):
                     free += depth[4 * row + k, i] < near
-                if free == 0:
-                    continue
-                part, light = free / 4.0, tints[n] * thin
-                cover *= part
-                for k in range(3):
-                    colour = _texel(pictures, looks[n], start, side, u * side, v * side, k) * light * part
-                    haze = hr if k == 0 else (hg if k == 1 else hb)
-                    picture[row, i, k] = picture[row, i, k] * (1.0 - cover) + colour + haze * cover
+                if free > 0:
+                    _blend(
+                        picture, row, i, pictures, looks[n], start, side, u * side, v * side, cover,
+                        tints[n] * thin, haze, free / 4.0,
+                    )  # fmt: skip

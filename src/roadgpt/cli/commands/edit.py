@@ -11,7 +11,7 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_groups import GroupedCommand
-from roadgpt.cli.result_row import row_of, spending
+from roadgpt.cli.result_row import Row, row_of, spending
 from roadgpt.cli.roads import roads_named
 from roadgpt.cli.screen import Screen
 from roadgpt.errors import UsageError
@@ -110,13 +110,20 @@ def edit_road(
     with redirect_stdout(sys.stderr):  # a user's driver may print
         run = prove(made.design, before.seed, before.world, setup)
     folder = folder_for(words, before.seed, out)
-    draw = options.drawing_of(pictures)
-    place = write_edit(run, old, words, made.changes, before.path, folder, draw)
+    place = write_edit(run, old, words, made.changes, before.path, folder, options.drawing_of(pictures))
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
         told = {"request": words, "of": before.path, "changes": made.changes, "unused": made.unused}
         print(json.dumps({**told, **json.loads(row.to_json())}, ensure_ascii=False))
         return place
+    _print_edit(screen, made, row, place, pictures)
+    return place
+
+
+def _print_edit(
+    screen: Screen, made: "Edited", row: Row, place: Path, pictures: "tuple[Format, ...]"
+) -> None:
+    """Prints what was changed, the row of the run, and where the run and its pictures are."""
     for sentence in made.changes:
         screen.say(sentence)
     if made.unused:
@@ -127,7 +134,6 @@ def edit_road(
     if pictures:
         kind = pictures[0]
         screen.say(f"pictures: {place}/*.{kind}, and of the road as it was: {place}/before/*.{kind}")
-    return place
 
 
 def _planned(line: str, designer: str) -> "EditRequest":

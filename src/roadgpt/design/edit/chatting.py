@@ -87,8 +87,7 @@ def edited_by_chat(
         Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
         Message(role="user", text=_question(design, words, elements, found.length)),
     ]
-    messages, wrong, problem = opening, "", None
-    allowed = _members(elements, spoken_of)
+    messages, wrong, problem, allowed = opening, "", None, _members(elements, spoken_of)
     for _ in range(settings.rounds):
         said, problem = "", None
         try:
@@ -100,22 +99,31 @@ def edited_by_chat(
             if new == design:
                 wrong = "nothing about it has changed"
             if not wrong:
-                seen, _ = elements_on_road(road.design, geometry)
-                is_same = [element.name for element in seen] == [element.name for element in elements]
-                return replace(road, elements=seen if is_same else ())
+                return _with_elements(road, elements, geometry)
         except UnparsableError as error:
             wrong, said, problem = f"it could not be read: {error}", error.text, error
         except UsageError as error:
             wrong = str(error)
-        messages = [
-            *opening,
-            Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
-            Message(role="user", text=f"This road will not do: {wrong}\nGive the whole road again, mended."),
-        ]
+        messages = [*opening, *_objection(said, wrong)]
     if isinstance(problem, ReplyError):
         raise problem
     raise EditError(
         f"the language model's road will not do: {wrong}; say it in other words, or without --designer"
+    )
+
+
+def _with_elements(road: Look, elements: RoadElements, geometry: Geometry) -> Look:
+    """Returns the Look with the elements measured on its road, if their names are those of ``elements``."""
+    seen, _ = elements_on_road(road.design, geometry)
+    is_same = [element.name for element in seen] == [element.name for element in elements]
+    return replace(road, elements=seen if is_same else ())
+
+
+def _objection(said: str, wrong: str) -> tuple[Message, Message]:
+    """Returns the answer of a language model, and the message that says what is wrong with its road."""
+    return (
+        Message(role="assistant", text=said[:MOST_SHOWN] or "(nothing)"),
+        Message(role="user", text=f"This road will not do: {wrong}\nGive the whole road again, mended."),
     )
 
 
