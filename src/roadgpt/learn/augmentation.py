@@ -51,8 +51,8 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with a different count of turns; None if the original count does not occur
-    exactly once in each.
+    """Returns the text and plan with a random count of turns; None unless the original count occurs exactly
+    once in the text and once in the plan.
     """
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (

@@ -92,7 +92,7 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
     Args:
         stream: the examples.
         size: number of examples in a batch.
-        pool: number of batches that are filled from one group of examples, sorted by length.
+        pool: number of batches cut from one group of examples, which is first sorted by length.
         seed: seed of the random order of the batches.
 
     Yields:

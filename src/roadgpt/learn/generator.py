@@ -1,4 +1,6 @@
-"""Generates any number of descriptions from grammars, drops those without sense, and adds typing errors."""
+"""Generates any number of descriptions and their plans, discards those that make no sense, and adds typing
+errors.
+"""
 
 import re
 from collections.abc import Iterator
@@ -64,7 +66,9 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
 
 
 def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair | None:
-    """Returns one random pair from a grammar; None if the result makes no sense."""
+    """Returns a random description and its plan, made with a grammar; None if they make no sense, or if the
+    description is too long or held out.
+    """
     try:
         text, raw = Speaker(grammar_of(language), rng).say(symbol)
         plan = assembled(raw)

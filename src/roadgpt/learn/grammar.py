@@ -1,4 +1,4 @@
-"""Two-sided grammars: rules that write a description and its plan at the same time.
+"""Grammars whose rules write a description and its plan at the same time.
 
 A grammar is a text. ``= name`` begins the rules of a symbol; each following line is one rule::
 

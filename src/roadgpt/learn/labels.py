@@ -79,8 +79,8 @@ def split(
 
     Args:
         pairs: the hand-written pairs.
-        test: smallest number of pairs in the test set.
-        validation: smallest fraction of the pairs in the validation set, from 0 to 1.
+        test: the minimum number of pairs in the test set.
+        validation: the minimum share of all pairs that go to the validation set, from 0 to 1.
         seed: seed of the order in which families are assigned.
     """
     families: dict[str, list[Pair]] = {}

@@ -20,7 +20,7 @@ def card(
 ) -> str:
     """Returns the model card as Markdown.
 
-    The card shows no description of the test split, since authors of pairs may read the card.
+    The card quotes no description from the test split, because people who write more pairs may read the card.
 
     Args:
         weights: folder of the exported model.

@@ -56,7 +56,8 @@ def grams(text: str) -> Counter[tuple[str, ...]]:
 def near_duplicates(texts: Sequence[str], most: float = MOST_SHARED) -> list[NearDuplicate]:
     """Returns all pairs of texts that have too many 5-grams in common, worst first.
 
-    Texts that consist of masked words only are skipped, since there are few ways to write "two left bends".
+    A pair is skipped if both texts have fewer than five words, or if one has masked words only, such as "two
+    left bends", since there are few ways to write such texts.
 
     Args:
         texts: the texts to compare.

@@ -206,7 +206,7 @@ def load_minilm(reader: ReaderNetwork, path: Path, pieces: Sequence[str]) -> Non
     """Loads the pretrained weights of all-MiniLM-L6-v2 (safetensors) into the encoder.
 
     Args:
-        reader: the network, which is changed.
+        reader: the network into which the weights are copied.
         path: the file of the weights; ``vocab.txt`` must be in the same folder.
         pieces: the word pieces of the network, a selection of BERT's vocabulary in any order.
     """

@@ -16,7 +16,8 @@ def standard(brief: Brief) -> str:
 def makes_sense(brief: Brief) -> bool:
     """Returns True if the Brief asks for a road that a map of 250 m can hold, with at most 12 turns.
 
-    A Brief without any requirement makes no sense, nor does one that shapes turns but excludes them.
+    A Brief makes no sense if it requires nothing, or if it excludes turns but states their sharpness, angle
+    or radius.
     """
     said = normal(brief)
     shapes = said.sharpness or said.degrees or said.radius

@@ -96,8 +96,8 @@ class ChatReader:
         """Returns the Brief of a description, in normal form.
 
         Raises:
-            BriefError: the description is empty, too long, not about a road, or contradicts itself.
-            ChatError: the model could not be asked, or returned no valid plan.
+            BriefError: the description is empty or too long, or the model wrote no valid plan for it.
+            ChatError: the model gave no answer in the requested format, for example because a server failed.
         """
         if not words.strip():
             raise BriefError(f"the description is empty; {EXAMPLE}")

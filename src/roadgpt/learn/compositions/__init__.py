@@ -1,10 +1,9 @@
-"""Composes English descriptions of turns that are numbered, repeated, separated by straights, or counted by
-side.
+"""Composes English descriptions whose turns are numbered, repeated, separated by straights, or counted
+separately for left and right.
 
 The grammars of ``learn.generator`` describe a road feature by feature. Here, one sentence refers to many
 features at once ("six bends, 30 m of straight between any two", "turns 2 and 4 go left, the others right"),
-so the reader of the sentence has to count. A network trained on such descriptions learns to count further
-than in the hand-written examples.
+so the reader of the sentence has to count. Such descriptions teach a network to count.
 """
 
 from collections.abc import Callable

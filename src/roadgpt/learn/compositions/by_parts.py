@@ -18,7 +18,7 @@ ASPECTS: tuple[tuple[str, Words, float], ...] = (
 def by_parts(voice: Voice) -> Composition:
     """Returns a description of three to eight turns in which the first turns differ from the rest.
 
-    Sometimes the turn at one end is a hairpin.
+    Sometimes the first turn, the last turn or both are hairpins.
     """
     total = voice.whole(3, 8)
     first = voice.whole(1, total - 1)

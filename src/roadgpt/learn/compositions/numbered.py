@@ -15,7 +15,7 @@ GO = (("go", "goes"), ("turn", "turns"), ("are", "is"), ("bend", "bends"), ("go 
 
 
 def numbered_sides(voice: Voice) -> Composition:
-    """Returns a description of three to eight turns that gives the sides of some turns by their numbers."""
+    """Returns a description of three to eight numbered turns that says which ones go left and which right."""
     total = voice.whole(3, 8)
     side = voice.pick(SIDES)
     names, chosen, is_one = _chosen(voice, total)

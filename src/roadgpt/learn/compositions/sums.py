@@ -1,5 +1,5 @@
-"""Descriptions with counts that add up: the number of all turns, and how many of them go left, go right or
-come first.
+"""Descriptions with counts that add up, such as the number of all turns and the numbers of left and right
+turns.
 """
 
 from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, DescribedTurn, Voice, clauses

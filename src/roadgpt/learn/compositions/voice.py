@@ -1,4 +1,4 @@
-"""Tools for compositions: draws phrases at random, writes numbers as digits or words, and combines turns into
+"""Tools for compositions: choose phrases at random, write numbers as digits or words, and combine turns into
 a plan.
 """
 
@@ -38,7 +38,7 @@ class Composition(NamedTuple):
 
 @dataclass
 class DescribedTurn:
-    """One turn of a road, and the words by which a plan states it."""
+    """One turn of a road: its kind, and the words that describe it in a plan."""
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
@@ -64,14 +64,14 @@ def clauses(turns: Sequence[DescribedTurn]) -> str:
 
 
 class Voice:
-    """Draws phrases at random; each voice writes all its numbers as digits, or all of them as words."""
+    """Chooses phrases at random; each voice writes all its numbers as digits, or all of them as words."""
 
     def __init__(self, rng: np.random.Generator) -> None:
         self.rng = rng
         self.spells = rng.random() < 0.45
 
     def pick(self, ways: Sequence[Thing]) -> Thing:
-        """Returns one of the alternatives, drawn at random."""
+        """Returns one of the alternatives, chosen at random."""
         return ways[int(self.rng.integers(len(ways)))]
 
     def say(self, way: str, *parts: str, **named: str) -> str:
@@ -91,18 +91,18 @@ class Voice:
         return spell(value, "en") if self.spells else str(value)
 
     def metres(self, low: int = 15, high: int = 80) -> tuple[str, int]:
-        """Returns a random length from ``low`` to ``high`` metres in steps of 5, as words and as a number."""
+        """Returns a random length from ``low`` to ``high`` metres in steps of 5, as text and as a number."""
         value = 5 * self.whole(low // 5, high // 5)
         units = (" metres", " meters") if self.spells else (" m", " m", "m", " metres", " meters")
         return f"{self.number(value)}{self.pick(units)}", value
 
     def angle(self, low: int = 20, high: int = 120) -> tuple[str, int]:
-        """Returns a random angle from ``low`` to ``high`` degrees in steps of 5, as words and as a number."""
+        """Returns a random angle from ``low`` to ``high`` degrees in steps of 5, as text and as a number."""
         value = 5 * self.whole(low // 5, high // 5)
         return f"{self.number(value)}{self.pick((' degrees', ' degrees', ' deg', '°'))}", value
 
     def percent(self, low: int = 3, high: int = 12) -> tuple[str, int]:
-        """Returns a random grade from ``low`` to ``high`` percent, as words and as a number."""
+        """Returns a random grade from ``low`` to ``high`` percent, as text and as a number."""
         value = self.whole(low, high)
         return f"{self.number(value)}{self.pick((' %', ' percent', '%', ' per cent'))}", value
 
@@ -119,13 +119,13 @@ class Voice:
         return ORDINALS[at]
 
     def listed(self, names: Sequence[str]) -> str:
-        """Returns the names joined to one text: 'a, b and c'."""
+        """Returns the names joined into one text: 'a, b and c'."""
         if len(names) == 1:
             return names[0]
         return f"{', '.join(names[:-1])}{self.pick((' and ', ' and ', ', and ', ' & '))}{names[-1]}"
 
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
-        """Returns the composition, with an opening put before the text if it has none.
+        """Returns text and plan as a composition, often with an opening such as 'give me' before the text.
 
         Sometimes a purpose or a requirement for the whole road is added.
         """

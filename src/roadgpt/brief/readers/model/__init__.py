@@ -50,7 +50,7 @@ class ModelReader:
 
     @classmethod
     def from_folder(cls, folder: str) -> Self:
-        """Returns a reader with other weights, as ``roadgpt learn export`` writes them.
+        """Returns a reader that uses the weights in a folder written by ``roadgpt learn export``.
 
         Raises:
             PartError: a file is missing in the folder.

@@ -2,8 +2,8 @@
 as "at least".
 
 A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases that have the
-same meaning throughout the training pairs are used for corrections; "over 60 m" often means a distance, and
-is ignored.
+same meaning throughout the training pairs are used for corrections; "over 60 m" is ignored, because it often
+means "over a distance of 60 m".
 """
 
 from collections.abc import Sequence

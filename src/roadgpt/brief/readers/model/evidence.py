@@ -1,4 +1,4 @@
-"""Decides by rules which numbers a plan may contain that are not written in the description.
+"""Decides by rules which numbers a plan may contain although the description does not state them.
 
 Words can imply a number ("right angle", "mountain road"). A plan may contain such a number only if some word
 of the description, in any of the five languages, can imply it.

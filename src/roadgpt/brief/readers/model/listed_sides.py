@@ -17,11 +17,10 @@ JOINTS = frozenset(
 
 
 def listed_sides(text: SlottedText) -> tuple[str, ...]:
-    """Returns the sides of the only list of sides in the text; empty if this list has fewer than FEWEST
-    sides.
+    """Returns the listed sides in order; empty unless all sides in the text form one list of at least three.
 
-    The result is also empty if the text contains another number or a word like "twice", since one side may
-    then stand for several turns.
+    The result is also empty if the text contains a count other than the number of listed sides, or a word
+    like "twice", since one side may then stand for several turns.
     """
     lists: list[list[str]] = [[]]
     for word in text.words:

@@ -83,8 +83,8 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
 
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
-    """Assigns a unit to the numbers without one, if the description announces it as in "lengths in feet: 250
-    straight".
+    """Treats numbers without a unit, except counts, as feet or yards if the description says so, as in
+    "lengths in feet: 250 straight".
     """
     factors = {UNITS.get((unit,), ("", 0.0)) for word, unit in pairwise(tokens) if word in ("in", "en")}
     sizes = [factor for unit, factor in factors if unit == "metres" and factor < 1.0]

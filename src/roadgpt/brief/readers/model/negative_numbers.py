@@ -1,4 +1,4 @@
-"""Finds negative numbers where none can be meant: "minus three turns", "a straight of -50 m".
+"""Finds negative numbers where they make no sense: "minus three turns", "a straight of -50 m".
 
 The network ignores the sign. Grades and climbs may be negative, and a dash may be just punctuation, so only
 negative numbers that are certainly lengths, radii or counts are reported.

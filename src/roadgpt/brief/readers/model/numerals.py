@@ -1,7 +1,7 @@
 """Number words in five languages: writes them and reads them back.
 
-``spell`` writes a number as words. ``words`` is the table for reading, from 0 to 1500 (above 200 only
-multiples of 5). It maps each spelling, a tuple of words in lower case without accents and hyphens, to its
+``spell`` writes a number as words. ``words`` is the table for reading numbers: 0 and 2 to 1500, above 200
+only multiples of 5. It maps each spelling, a tuple of words in lower case without accents and hyphens, to its
 number.
 """
 
@@ -290,8 +290,7 @@ def _spellings(number: int, language: str) -> Iterator[str]:
 
 @cache
 def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Returns a table that maps each spelling, as a tuple of words, to the number it stands for in each
-    language.
+    """Returns a table that maps each spelling, a tuple of words, to its number in each language that uses it.
 
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
     """

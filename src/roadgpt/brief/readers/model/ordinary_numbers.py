@@ -1,4 +1,4 @@
-"""Replaces unusually large or small numbers, because of which the network would refuse a description.
+"""Rewrites descriptions that the network would refuse because of unusually large or small numbers.
 
 The network was trained for one map of 250 m and refuses roads that do not fit on it. But other maps may hold
 such a road. So if the network calls a road impossible, it reads the same description again with ordinary

@@ -25,7 +25,7 @@ LONGEST = 4
 
 
 def tolerances_first(said: Sequence[str]) -> list[str]:
-    """Returns the words with "five turns, give or take one" reordered to "five, give or take one turns"."""
+    """Moves a noun behind a tolerance: "five turns, give or take 1" becomes "five, give or take 1 turns"."""
     words = [*said]
     tokens = [plain(word) for word in words]
     for at in range(1, len(words) - 2):

@@ -39,7 +39,7 @@ WAYS = tuple(
 
 
 class TotalTurning(NamedTuple):
-    """The required sum of all turning angles in degrees, and the rest of the description."""
+    """The required sum of all turning angles in degrees, and the description without this requirement."""
 
     degrees: Amount
     rest: str
@@ -51,7 +51,7 @@ class TotalTurning(NamedTuple):
 
 
 def total_turning(words: str) -> TotalTurning | None:
-    """Returns the required sum of all turning angles and the other words; None if no such sum is required."""
+    """Returns the required sum of turning angles and the remaining description; None if no sum is given."""
     text = slotted(words)
     line = " ".join(word.text for word in text.words)
     found = next((match for way in WAYS if (match := way.search(line))), None)
