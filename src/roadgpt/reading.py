@@ -13,11 +13,15 @@ from collections.abc import Hashable, Iterable
 from errno import EISDIR
 from functools import cache
 from pathlib import Path
-from typing import Any, BinaryIO, TypeVar, cast
+from typing import TYPE_CHECKING, Any, BinaryIO, TypeVar, cast
 
 from roadgpt.errors import UsageError
 
+if TYPE_CHECKING:
+    from pydantic import BaseModel
+
 T = TypeVar("T")
+M = TypeVar("M", bound="BaseModel")
 
 LARGEST = 50_000_000  # bytes, where a caller gives no other limit
 MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # of a JSON text: each costs many bytes of memory
@@ -92,6 +96,34 @@ def read_json(path: Path, most: int = LARGEST, what: str = ANY) -> Any:
             too many digits.
     """
     return json_of(read_text(path, most, what))
+
+
+def read_model(
+    kind: type[M],
+    path: Path,
+    what: str,
+    absent: str,
+    advice: str = "name another folder",
+    most: int = LARGEST,
+) -> M:
+    """Returns the pydantic model in a JSON file of at most ``most`` bytes that RoadGPT wrote.
+
+    Raises:
+        UsageError: There is no such file (the message is ``absent``), it cannot be read as ``what``, or
+            another version of RoadGPT wrote it (these messages end with ``advice``).
+    """
+    try:
+        data = read_json(path, most, what)
+    except FileNotFoundError as error:
+        raise UsageError(absent) from error
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path} cannot be read ({error}); {advice}") from error
+    try:
+        return kind.model_validate(data)
+    except ValueError as error:  # pydantic's ValidationError is one
+        raise UsageError(
+            f"{path} is damaged or was written by another version of roadgpt; {advice}"
+        ) from error
 
 
 def json_of(text: str) -> Any:

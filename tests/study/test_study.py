@@ -343,7 +343,7 @@ def test_a_report_names_the_lanes_and_banks_of_its_roads(tmp_path: Path) -> None
 def test_folders_that_hold_nothing(tmp_path: Path) -> None:
     result = CliRunner().invoke(app, ["report", str(tmp_path)])
     assert result.exit_code == 2
-    assert "no runs, no campaign and no study" in result.stderr
+    assert f"there is no campaign in {tmp_path}, and there are no runs" in result.stderr
     with pytest.raises(UsageError):
         write_run_report(tmp_path)
 

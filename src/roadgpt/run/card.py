@@ -3,11 +3,8 @@
 from pathlib import Path
 from typing import Literal
 
-from pydantic import ValidationError
-
 from roadgpt.brief.model import Frozen
-from roadgpt.errors import UsageError
-from roadgpt.reading import read_json
+from roadgpt.reading import read_model
 from roadgpt.run.model import Request
 
 CARD = "campaign.json"
@@ -37,18 +34,6 @@ def read_card(folder: Path) -> Card:
     Raises:
         UsageError: there is no ``campaign.json``, or it is damaged or has another version.
     """
-    try:
-        card = read_json(folder / CARD, 4_000_000, "the card of a campaign")
-    except FileNotFoundError as error:
-        raise UsageError(
-            f"{folder} is not empty and was not made by roadgpt run; name another folder"
-        ) from error
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
-    try:
-        found = Card.model_validate(card)
-        return found.model_copy(update={"request": found.request.came_with(folder / CARD)})
-    except ValidationError as error:
-        raise UsageError(
-            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
-        ) from error
+    absent = f"{folder} is not empty and was not made by roadgpt run; name another folder"
+    found = read_model(Card, folder / CARD, "the card of a campaign", absent, most=4_000_000)
+    return found.model_copy(update={"request": found.request.came_with(folder / CARD)})

@@ -3,13 +3,13 @@
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from roadgpt import plugins
 from roadgpt.brief.model import Frozen
 from roadgpt.chat import asks_a_model
 from roadgpt.errors import UsageError, explained
-from roadgpt.reading import read_json
+from roadgpt.reading import read_model
 from roadgpt.road import World
 from roadgpt.run import Setup
 from roadgpt.run.atomic import LOCK, PART, json_text, write_whole
@@ -122,16 +122,6 @@ def read_plan(folder: Path) -> StudyPlan:
     Raises:
         UsageError: the folder holds no study, or the plan cannot be read.
     """
-    try:
-        card = read_json(folder / CARD, what="the card of a study")
-    except FileNotFoundError as error:
-        raise UsageError(f"there is no study in {folder}; give the folder of a study") from error
-    except (OSError, ValueError) as error:
-        raise UsageError(f"{folder / CARD} cannot be read ({error}); name another folder") from error
-    try:
-        plan = StudyPlan.model_validate(card)
-        return plan.model_copy(update={"setup": plan.setup.came_with(folder / CARD)})
-    except ValidationError as error:
-        raise UsageError(
-            f"{folder / CARD} is damaged or was written by another version of roadgpt; name another folder"
-        ) from error
+    absent = f"there is no study in {folder}; give the folder of a study"
+    plan = read_model(StudyPlan, folder / CARD, "the card of a study", absent)
+    return plan.model_copy(update={"setup": plan.setup.came_with(folder / CARD)})

@@ -6,11 +6,9 @@ from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import ValidationError
 
 from roadgpt.brief.model import Frozen
-from roadgpt.errors import UsageError
-from roadgpt.reading import read_json
+from roadgpt.reading import read_model
 from roadgpt.study.survey.questions import (
     ABOUT,
     ATTENTION,
@@ -135,14 +133,5 @@ def read_survey(folder: Path | str) -> Survey:
     Raises:
         UsageError: there is no survey, or it cannot be read.
     """
-    path = Path(folder) / CARD
-    try:
-        return Survey.model_validate(read_json(path, what="a survey"))
-    except FileNotFoundError as error:
-        raise UsageError(
-            f"{folder} holds no survey; make one: roadgpt study survey new SURVEY.toml --out {folder}"
-        ) from error
-    except (OSError, ValueError, ValidationError) as error:
-        raise UsageError(
-            f"{path} is damaged or of another version of roadgpt; make the survey again"
-        ) from error
+    absent = f"{folder} holds no survey; make one: roadgpt study survey new SURVEY.toml --out {folder}"
+    return read_model(Survey, Path(folder) / CARD, "a survey", absent, "make the survey again")
