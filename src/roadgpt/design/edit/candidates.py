@@ -4,13 +4,14 @@ Words ('sharper') allow wide ranges. If a number is given, such as the angle of 
 vary, such as its radius. A second candidate has wider ranges, or lets more elements change.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from math import inf
 
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, PERCENT_SLACK, Range
-from roadgpt.check.measures import Measures, way
+from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, Range
+from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.slopes import bounded_slopes, road_slope_candidates, slope_steps
 from roadgpt.design.edit.steps import (
     Adjust,
     Become,
@@ -18,7 +19,6 @@ from roadgpt.design.edit.steps import (
     EditStep,
     Mirror,
     RoadLength,
-    SlopeOfAll,
     Wanted,
     near,
     straight,
@@ -43,10 +43,6 @@ MOST_ANGLE = 210.0
 SEEN = 10.6  # m: the shortest straight that is seen
 KEPT = 17.5  # m of a straight that others are shortened to
 ROAD_SLACK = 0.02  # of the length of a road
-STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
-STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
-LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
-STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
 def change_candidates(
@@ -66,29 +62,26 @@ def change_candidates(
     if change.bound:
         elements = [element for element in elements if _is_beyond(change, element, found)]
         if change.what == "slope" and elements:
-            up = sum(element.incline * element.length for element in elements) >= 0
-            most = change.to or 0.0
-            slope = _between(0, most) if change.bound < 0 else _between(most, inf, 1 if up else -1)
-            return ((SlopeOfAll(frozenset(element.name for element in elements), slope),),)
+            return ((bounded_slopes(change, elements),),)
     is_road = change.target is not None and change.target.noun == "road"
     match change.what:
         case "angle" | "radius" | "shape":
-            return _each(elements, lambda element: _bends(change, element, world))
+            return _together(_bends(change, element, world) for element in elements)
         case "length" if is_road:
             return _road_lengths(change, elements, world)
         case "length":
-            return _each(elements, lambda element: _lengths(change, element, world))
+            return _together(_lengths(change, element, world) for element in elements)
         case "slope" if is_road:
-            return _road_slopes(change, elements, found, world)
+            return road_slope_candidates(change, elements, found, world)
         case "slope":
-            return _each(elements, lambda element: _slopes(change, element, found, world))
+            return _together(slope_steps(change, element, found, world) for element in elements)
         case "side":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in elements if change.side is None or b.side != change.side]
             return _flipped(wrong, world) if wrong else ()
         case _:
-            return _each(elements, _straightened)
+            return _together(_straightened(element) for element in elements)
 
 
 def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
@@ -114,11 +107,9 @@ def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tup
     return _flipped(wrong, world) if wrong else ()
 
 
-def _each(
-    elements: Sequence[RoadElement], ways: Callable[[RoadElement], Sequence[EditStep]]
-) -> tuple[EditCandidate, ...]:
+def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
     """All elements alike: the first way of each, the second way of each, ..."""
-    rows = [row for row in (with_milder(ways(element)) for element in elements) if row]
+    rows = [row for row in map(with_milder, ways) if row]
     if not rows:
         return ()
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
@@ -310,91 +301,3 @@ def _straightened(element: RoadElement) -> list[EditStep]:
     """A straight in the place of a turn, as long as the turn was if there is room for it."""
     bends = element.kind == "turn" and element.seen is not None
     return [Become(element, (straight(element.length, element.incline),))] if bends else []
-
-
-def _slopes(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
-    """One turn or straight on another grade."""
-    now = element.seen.grade if element.seen else element.incline
-    limit = 100 * world.limits.max_grade
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
-        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
-    )
-    sign = sign or (-1 if found.grade <= -LEVEL else 1)
-    aim: float | None = None
-    if change.to is not None and change.way != "flat":
-        aim = sign * change.to
-    elif change.by is not None:
-        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
-    if aim is not None:
-        _refuse_too_steep(abs(aim), limit)
-    elif change.times is not None:
-        aim = now * change.times
-    if aim is not None:
-        return _graded(element, 1, aim, (aim - 0.5, aim + 0.5), (aim - PERCENT_SLACK, aim + PERCENT_SLACK))
-    if change.way == "flat":
-        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
-            return []
-        return _graded(element, 1, 0.0, (-0.5, 0.5), (-CLEARLY_LEVEL, CLEARLY_LEVEL))
-    if change.way and not change.more:
-        return [] if way(now) == change.way else _graded(element, sign, 5.0, (3.0, 12.0), (1.3, 13.0))
-    if change.more > 0 and change.way and way(now) != change.way:
-        return _graded(element, sign, 6.0, (3.0, 12.0))
-    if change.more < 0:
-        is_level = abs(now) < LEVEL
-        return [] if is_level else _graded(element, 1, FLATTER * now, (0.1 * now, 0.9 * now))
-    steep = max(abs(now) * (1 + (STEEPER - 1) * change.dose), abs(now) + STEEPER_BY * change.dose)
-    steep = min(steep if abs(now) >= LEVEL else STEEP_FROM, limit - 0.3)
-    if steep <= abs(now) + 0.4:
-        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
-    return _graded(element, sign, steep, (min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
-
-
-def _refuse_too_steep(grade: float, limit: float) -> None:
-    if grade > limit:
-        raise EditError(f"{grade:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
-
-
-def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
-    """A step for each range, all with the same aim; percent, downhill where the sign is -1."""
-    ends = [sorted((sign * one, sign * other)) for one, other in rooms]
-    return [Adjust(element, grade=Wanted(sign * aim, Range(low, high))) for low, high in ends]
-
-
-def _road_slopes(
-    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
-) -> tuple[EditCandidate, ...]:
-    """Many elements on other grades."""
-    names = frozenset(element.name for element in elements)
-    limit = 100 * world.limits.max_grade
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
-    _refuse_too_steep(change.to or 0.0, limit)
-    inclines = [segment.incline for element in elements for segment in element.segments]
-    if change.way == "flat" or change.to == 0:
-        slopes = [_between(0, 0)]
-    elif change.to is not None:
-        slopes = [_between(change.to, change.to, sign or (-1 if found.grade < 0 else 1))]
-    elif change.by is not None:
-        more = (change.more or 1) * change.by
-        slopes = [lambda incline: incline + (more if incline >= 0 else -more)]
-    elif change.times is not None:
-        slopes = [_times(change.times)]
-    elif sign and not change.more:
-        if inclines and min(incline * sign for incline in inclines) >= 1.5:
-            return ()
-        slopes = [_between(low, 12.0, sign) for low in (4.0, 3.0)]
-    elif change.more < 0:
-        slopes = [_times(FLATTER), _times(0.75)]
-    elif all(abs(incline) < LEVEL for incline in inclines):
-        slopes = [_between(STEEP_FROM, limit, sign or 1)]
-    else:
-        slopes = [_times(1 + (times - 1) * change.dose) for times in (STEEPER, 1.3, 1.15)]
-    return tuple((SlopeOfAll(names, slope),) for slope in slopes)
-
-
-def _times(times: float) -> Callable[[float], float]:
-    return lambda incline: incline * times
-
-
-def _between(low: float, high: float, sign: int = 0) -> Callable[[float], float]:
-    """Brings inclines between two sizes; uphill or downhill where the sign is 1 or -1."""
-    return lambda incline: (sign or (1 if incline >= 0 else -1)) * min(max(abs(incline), low), high)

@@ -191,7 +191,8 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in steps:
         after = step.apply(after, world)
-    after = numbered(with_room(after, elements))
+    after = with_room(after, elements)
+    after = numbered(after)
     count = len(joined(after))
     if not 1 <= count <= MAX_SEGMENTS:
         raise UsageError(f"the road would have {count} segments")

@@ -8,7 +8,7 @@ would break a rule, or if its measurements differ from the desired values.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, floor, radians
+from math import ceil, floor, inf, radians
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -249,23 +249,32 @@ class RoadLength:
 
 @dataclass(frozen=True, slots=True)
 class SlopeOfAll:
-    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow."""
+    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow.
+
+    An incline i becomes |i| * ``times`` + ``more`` with the sign that it had, all in percent.
+    """
 
     names: frozenset[str]
-    slope: Callable[[float], float]
-    """A function that maps the present incline of a segment to its new incline, both in percent."""
+    times: float = 1.0
+    more: float = 0.0
+    least: float = -inf
+    """Lower limit of the size of the new incline."""
+    most: float = inf
+    """Upper limit of the size of the new incline."""
+    sign: int = 0
+    """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
+        return tuple(self._applied(e, world) if e.name in self.names else e for e in elements)
+
+    def _applied(self, element: RoadElement, world: World) -> RoadElement:
         limit = 100 * world.limits.max_grade - 0.2
-        return tuple(
-            e.with_segments(
-                with_inclines(e.segments, np.clip([self.slope(s.incline) for s in e.segments], -limit, limit))
-            )
-            if e.name in self.names
-            else e
-            for e in elements
-        )
+        before = np.array([segment.incline for segment in element.segments])
+        size = np.clip(np.abs(before) * self.times + self.more, self.least, self.most)
+        signs = self.sign or np.where(before >= 0, 1, -1)
+        after = np.clip(signs * size, -limit, limit) + 0.0  # no -0.0
+        return element.with_segments(with_inclines(element.segments, after))
 
 
 @dataclass(frozen=True, slots=True)

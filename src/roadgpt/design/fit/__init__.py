@@ -57,7 +57,8 @@ def fit(
         if before and segments == last.design.segments:
             continue
         design = first.design.model_copy(update={"segments": segments})
-        last = look(graded(design, first.elements, outline, world, before), first.elements, requirements)
+        design = graded(design, first.elements, outline, world, before)
+        last = look(design, first.elements, requirements)
         if not last.objection:
             return last if before else restored(last, first)
         if best is None and before is None and last.keeps_all_but_slopes:

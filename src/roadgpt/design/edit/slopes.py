@@ -1,0 +1,114 @@
+"""Lists ways to change grades: of one turn or straight, or of many elements at once."""
+
+from collections.abc import Sequence
+from math import inf
+
+from roadgpt.brief.words import PERCENT_SLACK, Range
+from roadgpt.check.measures import Measures, way
+from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, SlopeOfAll, Wanted
+from roadgpt.design.road_elements import RoadElement
+from roadgpt.errors import EditError
+from roadgpt.road import World
+
+STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
+STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
+LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
+STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
+
+
+def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> EditStep:
+    """Returns the step by which no incline of the elements is beyond the bound of the change."""
+    names, bound = frozenset(element.name for element in elements), change.to or 0.0
+    if change.bound < 0:
+        return SlopeOfAll(names, least=0, most=bound)
+    up = sum(element.incline * element.length for element in elements) >= 0
+    return SlopeOfAll(names, least=bound, most=inf, sign=1 if up else -1)
+
+
+def slope_steps(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
+    """Returns the steps that give one turn or straight another grade; none if it has it already.
+
+    Raises:
+        EditError: the grade is steeper than the rules allow.
+    """
+    now = element.seen.grade if element.seen else element.incline
+    limit = 100 * world.limits.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
+        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
+    )
+    sign = sign or (-1 if found.grade <= -LEVEL else 1)
+    aim: float | None = None
+    if change.to is not None and change.way != "flat":
+        aim = sign * change.to
+    elif change.by is not None:
+        aim = sign * max(abs(now) + (change.more or 1) * change.by, 0.0)
+    if aim is not None:
+        _refuse_too_steep(abs(aim), limit)
+    elif change.times is not None:
+        aim = now * change.times
+    if aim is not None:
+        return _graded(element, 1, aim, (aim - 0.5, aim + 0.5), (aim - PERCENT_SLACK, aim + PERCENT_SLACK))
+    if change.way == "flat":
+        if abs(now) < CLEARLY_LEVEL and all(abs(s.incline) < LEVEL for s in element.segments):
+            return []
+        return _graded(element, 1, 0.0, (-0.5, 0.5), (-CLEARLY_LEVEL, CLEARLY_LEVEL))
+    if change.way and not change.more:
+        return [] if way(now) == change.way else _graded(element, sign, 5.0, (3.0, 12.0), (1.3, 13.0))
+    if change.more > 0 and change.way and way(now) != change.way:
+        return _graded(element, sign, 6.0, (3.0, 12.0))
+    if change.more < 0:
+        is_level = abs(now) < LEVEL
+        return [] if is_level else _graded(element, 1, FLATTER * now, (0.1 * now, 0.9 * now))
+    steep = max(abs(now) * (1 + (STEEPER - 1) * change.dose), abs(now) + STEEPER_BY * change.dose)
+    steep = min(steep if abs(now) >= LEVEL else STEEP_FROM, limit - 0.3)
+    if steep <= abs(now) + 0.4:
+        raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
+    return _graded(element, sign, steep, (min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
+
+
+def _refuse_too_steep(grade: float, limit: float) -> None:
+    if grade > limit:
+        raise EditError(f"{grade:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
+
+
+def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
+    """A step for each range, all with the same aim; percent, downhill where the sign is -1."""
+    ends = [sorted((sign * one, sign * other)) for one, other in rooms]
+    return [Adjust(element, grade=Wanted(sign * aim, Range(low, high))) for low, high in ends]
+
+
+def road_slope_candidates(
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that change the grades of many elements; none if the road is so already.
+
+    Raises:
+        EditError: the grade is steeper than the rules allow.
+    """
+    names = frozenset(element.name for element in elements)
+    limit = 100 * world.limits.max_grade
+    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
+    _refuse_too_steep(change.to or 0.0, limit)
+    inclines = [segment.incline for element in elements for segment in element.segments]
+    if change.way == "flat" or change.to == 0:
+        slopes = [SlopeOfAll(names, least=0, most=0)]
+    elif change.to is not None:
+        down = -1 if found.grade < 0 else 1
+        slopes = [SlopeOfAll(names, least=change.to, most=change.to, sign=sign or down)]
+    elif change.by is not None:
+        slopes = [SlopeOfAll(names, more=(change.more or 1) * change.by)]
+    elif change.times is not None:
+        slopes = [SlopeOfAll(names, times=change.times)]
+    elif sign and not change.more:
+        if inclines and min(incline * sign for incline in inclines) >= 1.5:
+            return ()
+        slopes = [SlopeOfAll(names, least=low, most=12.0, sign=sign) for low in (4.0, 3.0)]
+    elif change.more < 0:
+        slopes = [SlopeOfAll(names, times=times) for times in (FLATTER, 0.75)]
+    elif all(abs(incline) < LEVEL for incline in inclines):
+        slopes = [SlopeOfAll(names, least=STEEP_FROM, most=limit, sign=sign or 1)]
+    else:
+        shares = [1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15)]
+        slopes = [SlopeOfAll(names, times=times) for times in shares]
+    return tuple((slope,) for slope in slopes)
