@@ -2,8 +2,9 @@ import pytest
 
 from paper_roads import road_of, straight, turn
 from roadgpt.brief.model import Brief, Clause, at_least, between, exactly
-from roadgpt.brief.outline import outline
-from roadgpt.check.measures import measure
+from roadgpt.brief.outline import Feature, Outline, outline
+from roadgpt.brief.words import FEATURE, ROAD
+from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.check.rules.promises import complaints, inspect
 from roadgpt.road import World
 
@@ -77,6 +78,8 @@ BROKEN = [
     (Brief(slope="nearly_flat"), "asked for a steepest place of 0 to 3.5 %, has 5.0 %"),
     (Brief(climb=exactly(20)), "asked for a climb of 17 to 23 m"),
     (Brief(length=exactly(500)), "asked for a length of 450 to 550 m"),
+    (Brief(turning=exactly(300)), "asked for 270 to 330 degrees of turning in all, has 110"),
+    (Brief(steepest=exactly(9)), "asked for a steepest place of 8 to 10 %, has 5.0 %"),
     (Brief(hills=at_least(2)), "asked for 2 or more changes between climbing and falling, has 0"),
     (Brief(starts=clause(side="right")), "turn 1 goes left, asked for right"),
     (Brief(ends=clause("hairpin")), "turn 2 turns 50 degrees, asked for 140 to 210"),
@@ -95,6 +98,15 @@ def test_a_road_that_keeps_its_promises_passes(brief: Brief) -> None:
 @pytest.mark.parametrize(("brief", "sentence"), BROKEN)
 def test_a_broken_promise_is_said(brief: Brief, sentence: str) -> None:
     assert any(sentence in found for found in said(brief)), said(brief)
+
+
+def test_every_quantity_of_the_table_is_asked_and_measured_under_its_name() -> None:
+    for name, row in ROAD.items():
+        assert {name} <= Measures.__dataclass_fields__.keys() & Outline.__dataclass_fields__.keys()
+        assert not row.said or name in Brief.model_fields
+    for name in FEATURE:
+        assert hasattr(MeasuredFeature, name)
+        assert name in Feature.__dataclass_fields__
 
 
 def test_no_brief_promises_nothing() -> None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
-from roadgpt.brief.model import Amount, Brief, Clause, exactly, span
+from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.words import (
     COUNTS,
@@ -31,9 +31,10 @@ SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
-RISING = ("up", "gently_up", "steeply_up")
-FALLING = ("down", "gently_down", "steeply_down")
-LEVEL = ("flat", "nearly_flat")
+GRADES = {slope: meaning.grade or Range() for slope, meaning in SLOPES.items()}
+RISING = tuple(slope for slope, grade in GRADES.items() if grade.lo > 0)
+FALLING = tuple(slope for slope, grade in GRADES.items() if grade.hi < 0)
+LEVEL = tuple(slope for slope, grade in GRADES.items() if 0 in grade)
 
 
 class _Limits(NamedTuple):
@@ -158,10 +159,10 @@ def _exclude(one: Range | None, other: Range | None) -> bool:
     return both is not None and both.lo > both.hi
 
 
-def _incline(slope: str | None, incline: Amount | None, limits: _Limits) -> None:
+def _incline(slope: Slope | None, incline: Amount | None, limits: _Limits) -> None:
     least = span(incline).lo
     _not_too_steep(least, limits)
-    if slope in LEVEL and least > (1 if slope == "flat" else 3.5):
+    if slope in LEVEL and least > GRADES[slope].hi:
         raise BriefError(f"a level road cannot have a slope of {least:g} percent; leave out one of the two")
 
 
@@ -280,8 +281,8 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
         raise BriefError("the slope goes one way and the height of the end the other; make them agree")
     if brief.slope == "flat" and (climb.lo > 10 or climb.hi < -10):
         raise BriefError("a flat road cannot gain or lose that much height; leave out one of the two")
-    grade = SLOPES[brief.slope].grade if brief.slope else None
-    if grade and not brief.incline:
+    if brief.slope and not brief.incline:
+        grade = GRADES[brief.slope]
         least = 0.0 if 0 in grade else min(abs(grade.lo), abs(grade.hi))
         if steepest.hi < least - 1:
             raise BriefError(
@@ -329,5 +330,5 @@ def _noun(clause: Clause) -> str:
     return KINDS[clause.kind].names[0]
 
 
-def _said(slope: str) -> str:
-    return SLOPES[slope].names[0]  # type: ignore[index]
+def _said(slope: Slope) -> str:
+    return SLOPES[slope].names[0]
