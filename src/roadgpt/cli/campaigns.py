@@ -124,9 +124,9 @@ def headline(status: "Status") -> str:
 
 
 def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
-    """Returns a table of cells as lines; columns that do not fit into ``width`` letters are left out.
+    """Returns a table of cells as lines; columns that do not fit into ``width`` characters are left out.
 
-    The last column, which may be cut, needs only ``LEAST`` letters.
+    The last column may be cut off, and needs room for only ``LEAST`` characters.
     """
     rows = [HEAD, *map(_columns, cells)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -49,8 +49,8 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
-    """Returns suggestions, each with the command that carries it out. There are none if ``quiet`` is None or
-    ``quiet.is_worth_it`` is False.
+    """Returns suggestions, each with the command that carries it out; none if ``quiet``, the results without
+    a failure, is None or not worth suggestions (see ``WithoutFailure.is_worth_it``).
     """
     return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 

@@ -77,8 +77,8 @@ class Option(click.Option):
         self.advice = advice
 
     def under(self, heading: Heading) -> "Option":
-        """Returns a copy of this option that is listed under another heading and appears in every help
-        text.
+        """Returns a copy of this option that is listed under another heading, and by --help as well as by
+        --help-all.
         """
         twin = copy(self)
         twin.heading, twin.is_rare = heading, False
@@ -214,7 +214,7 @@ class Argument(click.Argument):
     """An argument of a command, with advice for a user who left it out.
 
     Args:
-        name: The name of the function's argument; with "..." behind it, the argument takes several values.
+        name: The name of the function's argument, followed by "..." if the argument takes several values.
         metavar: The name of the argument in the help.
         advice: A sentence that says what to type; empty if click's own message is enough.
         kind: A type as click takes it, or a function that converts the text.
@@ -246,7 +246,7 @@ def words_of(
 
     Args:
         options: The options.
-        values: Values by the names of the options' fields; a missing one needs no arguments.
+        values: The value of each option, by the name of its field; an option without a value is left out.
         usual: The defaults of these fields; None: the defaults are those of the options.
         told: The keys of options that configuration files set; for these, the arguments contain even a
             default value.

@@ -1,4 +1,4 @@
-"""Help with options in named groups: ``--help`` lists common options, ``--help-all`` lists every option."""
+"""Help texts that list options in named groups: ``--help`` the common options, ``--help-all`` all of them."""
 
 import re
 from collections.abc import Iterator, Sequence

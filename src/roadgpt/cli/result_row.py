@@ -163,7 +163,7 @@ def _rounded(value: Any) -> Any:
 
 def summary(rows: Sequence[Row]) -> list[tuple[str, int, str, str, str]]:
     """Returns a tuple for each outcome: its name, the number and percentage of roads, the smallest margin,
-    and how far the car was outside its lane at most.
+    and, as text, the largest share and distance by which the car was outside its lane.
     """
     counted = Counter(row.outcome for row in rows)
     table = []

@@ -1,6 +1,6 @@
 """Finds the smallest change that turns a road on which the car passed into one on which it fails.
 
-Delta debugging first finds the fewest fields of the fewest segments that have to change (see ``minimise``).
+Delta debugging first finds a set of changed fields from which none can be left out (see ``minimise``).
 Halving then finds the smallest fraction of that change that still makes the car fail.
 """
 
@@ -63,7 +63,9 @@ class SmallestChange:
 def smallest_change(
     kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
 ) -> SmallestChange:
-    """Finds the smallest change that makes the car fail, between two Runs with the same number of segments.
+    """Finds the smallest change that makes the car fail, among the differences between two Runs.
+
+    Both roads must have the same number of segments.
 
     Args:
         kept: a Run that passed.
@@ -73,7 +75,7 @@ def smallest_change(
         most: maximum number of drives.
 
     Raises:
-        UsageError: the designs do not correspond, or the second Run did not fail.
+        UsageError: the numbers of segments differ, a Run has no Design, or the second Run did not fail.
     """
     if kept.design is None or failure.design is None:
         raise UsageError("only roads with designs can be compared segment by segment")

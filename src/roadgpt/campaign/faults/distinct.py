@@ -33,7 +33,7 @@ MOST = 1000  # failures that are compared each with each at a time: a second, an
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """The lane around a departure, sampled every metre; all columns have the same length."""
+    """The lane around a departure, sampled every metre; both arrays have the same length."""
 
     bends: Array
     """Smoothed curvature of the lane, 1/m, with ``SHIFT`` additional values at each end; NaN beyond the
@@ -73,7 +73,7 @@ def _smoothed(values: Array) -> Array:
 
 
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
-    """Returns the distances ``(n,)`` from one failure to n others.
+    """Returns the distances from one failure to n others, as an array of shape ``(n,)``.
 
     A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade. Beyond its ends,
     a road counts as straight and level. If two failures differ in ``kind``, their distance is infinite.
@@ -83,8 +83,8 @@ def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
 
 
 def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Array:
-    """Returns the distance from each failure of one list to each of the other, ``(len(some),
-    len(others))``; see ``distances``.
+    """Returns the distance from each failure in one list to each failure in the other, as an array of shape
+    ``(len(some), len(others))``; see ``distances``.
     """
     least = np.full((len(some), len(others)), np.inf)
     if not least.size:

@@ -1,4 +1,4 @@
-"""Finds the failures of a campaign or a folder of runs, with their places and Runs; nothing is driven."""
+"""Finds the failures of a campaign or of runs, and where on its road each occurred; nothing is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ AT_ONCE = 500  # tests that a store is asked for
 
 @dataclass(frozen=True, eq=False)
 class LocatedFailure:
-    """A failure, with the place where it happened."""
+    """A failure, and where on the road it occurred."""
 
     name: NumberedTest
     around: Surroundings

@@ -1,4 +1,4 @@
-"""Simplifies a road on which the car fails, as long as the car still fails for the same cause and to the same
+"""Simplifies a road on which the car fails, as long as the car still fails for the same cause and on the same
 side.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
@@ -46,7 +46,7 @@ class Simplest:
 
 
 class Trial:
-    """Drives simplified roads of one failure, each at most once, and counts the drives."""
+    """Drives simplified versions of one failing road, each at most once, and counts the drives."""
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
         if failure.verdict is None or failure.verdict.kept or failure.design is None:
@@ -102,7 +102,7 @@ def _moved(design: Design, failure: Run) -> list[Design]:
 
 
 def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
-    """Finds the simplest valid road on which the car fails for the same cause and to the same side.
+    """Finds the simplest valid road on which the car fails for the same cause and on the same side.
 
     Args:
         failure: a failing Run with a Design.

@@ -47,7 +47,7 @@ def simplifications() -> list[Simplifier]:
     """Returns one function for each type of simplification; the function lists all such simplifications of a
     Design.
 
-    The types that remove most come first.
+    The types that simplify the road most come first.
     """
     rounding = [
         _rounding(field, unit)

@@ -85,16 +85,17 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
         spread: the function that runs the drives: the built-in ``map``, or the ``map`` of a process pool.
 
     Raises:
-        UsageError: a plug-in is not installed, or the driver's file makes no driver.
+        UsageError: the user did not permit the driver's file to be run.
+        GivenUpError: the simulator failed three times in a row.
     """
     require_permission(run.request.setup.driver)  # other processes know nothing of where it comes from
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once with a disturbance; if the driver raises an error, the drive counts as failed.
+    """Drives a Run's road once with a disturbance; a drive that ends with an error counts as failed.
 
-    If the simulator itself fails, the drive is repeated.
+    If the simulator itself failed, the drive is repeated instead.
 
     Raises:
         GivenUpError: the simulator failed three times in a row.

@@ -42,7 +42,7 @@ class Genetic:
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes children of the fittest roads, or drafts as long as no road has been driven."""
+        """Proposes children of the fittest roads; proposes random drafts until it has the first results."""
         rng = batch_rng(self._cell, batch)
         tasks = [self._task(rng) for _ in range(n)]
         return proposals_of(self._cell, first, n, make_candidates(tasks, pool))

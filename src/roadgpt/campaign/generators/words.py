@@ -1,4 +1,4 @@
-"""The test generator ``words``: roads of one description, each different from the earlier ones."""
+"""The test generator ``words``: roads for one description, each different from the earlier ones."""
 
 from collections.abc import Sequence
 
@@ -6,7 +6,7 @@ from roadgpt.campaign.model import Cell, Pool, Proposal, Result
 
 
 class Words:
-    """Roads of one description that the workers draft, as ``roadgpt run`` does."""
+    """Roads for one description; the workers design them in the same way as ``roadgpt run``."""
 
     batch_size = 16
 
@@ -18,4 +18,4 @@ class Words:
         return [Proposal(None, self._seed, "draft")] * n
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Ignores the results; the scheduler passes earlier designs to the drafting workers."""
+        """Ignores the results; the scheduler passes earlier designs to the workers that design roads."""

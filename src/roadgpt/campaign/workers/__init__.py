@@ -1,1 +1,1 @@
-"""Code that executors share: the queue of jobs, the main loop of a worker, and the messages between them."""
+"""Code that executors share, such as the queue of jobs, a worker's main loop, and its messages."""

@@ -99,8 +99,8 @@ def work_to_the_end(
     Args:
         folder: The folder of the campaign or of the runs.
         given: Values of the options for workers, analysis of faults, JUnit file and output.
-        chat: Settings of the language model with changed limits; None: the stored settings.
-        draw: Draws pictures into a folder of runs; None: no pictures.
+        chat: Settings of the language model, if the user changed a limit; None: the stored settings.
+        draw: Function that adds pictures and road files to a folder of runs; None: neither is written.
     """
     from roadgpt.campaign.lifecycle import work
 

@@ -145,9 +145,9 @@ OPTIONS = (
 def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Select and prioritise tests over gRPC, by how likely the car is to leave its lane.
 
-    The likelihood is estimated from how far the driver's planned line leaves the lane, and from how the road
-    bends; nothing is driven. The estimate learns from outcomes that the evaluator sends. Ctrl-C ends the
-    service.
+    The likelihood is estimated from the distance between the driver's planned path and the middle of the
+    lane; nothing is driven. Once the evaluator has sent enough outcomes, the estimate learns from them, and
+    also uses how the road bends. Ctrl-C ends the service.
 
     \b
     roadgpt compete sdc --port 4545

@@ -157,8 +157,8 @@ def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int
 def chats(out: Path, number: int, seed: int) -> None:
     """Write training pairs as chats into the folder OUT, for fine-tuning a larger model.
 
-    Each chat asks with a generated description. In chat-brief.jsonl the answer is the requirements that the
-    description states; in chat-design.jsonl it is a road that meets them.
+    The question of each chat is a generated description. In chat-brief.jsonl the answer is the requirements
+    that the description states; in chat-design.jsonl it is a road that meets them.
     """
     out.mkdir(parents=True, exist_ok=True)
     _write_chats(out, number, seed)

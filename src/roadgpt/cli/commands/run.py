@@ -205,7 +205,7 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
 
 
 def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ...]) -> "Draw | None":
-    """Returns what puts pictures and road files into the folder of each run; None if neither is wanted.
+    """Returns a function that adds pictures and road files to the folder of a run; None if neither is wanted.
 
     Args:
         pictures: Formats of the pictures.

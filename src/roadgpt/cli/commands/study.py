@@ -1,4 +1,4 @@
-"""``roadgpt study``: evaluates roads as the thesis did, by measurements and by a survey of people."""
+"""``roadgpt study``: evaluates roads as the thesis did, by measurements and by asking people."""
 
 import shlex
 import time
@@ -56,9 +56,9 @@ def thesis(no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, alignment and diversity.
 
     Takes the three descriptions of the thesis' table and those of its survey, makes and drives the roads, and
-    writes one page with tables, tests, intervals and figures. The report shows the thesis' own counts next
-    to the new ones. After Ctrl-C, the same command continues where it stopped. If a language model cannot be
-    used, the report says so and the exit status is 4.
+    writes one page with tables, statistical tests, confidence intervals and figures. The report shows the
+    thesis' own counts next to the new ones. After Ctrl-C, the same command continues where it stopped. If a
+    language model cannot be used, the report says so and the exit status is 4.
 
     \b
     roadgpt study thesis

@@ -1,4 +1,4 @@
-"""``roadgpt study survey``: makes, serves and analyses a survey of people."""
+"""``roadgpt study survey``: makes, serves and analyses a survey in which people rate roads."""
 
 from pathlib import Path
 
@@ -63,9 +63,9 @@ def new(
 ) -> None:
     """Make a survey from runs: plots, films and 3-D views of every road, and the questions.
 
-    SURVEY.toml names the runs. Instead, --from STUDY_DIR draws one valid road from each folder of runs in
-    STUDY_DIR, and pairs of roads with the same description; it writes them as a SURVEY.toml, which you can
-    edit, into the survey's folder.
+    SURVEY.toml names the runs. With --from STUDY_DIR, no SURVEY.toml is needed: one valid road is chosen at
+    random from each folder of runs in STUDY_DIR, and some pairs of roads with the same description. The
+    choice is saved as a SURVEY.toml in the survey's folder, so that you can edit it.
 
     \b
     roadgpt study survey new SURVEY.toml --out my-survey
@@ -99,7 +99,7 @@ def new(
 def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url: str) -> None:
     """Serve a survey until Ctrl-C; each answer is on the disk before it is confirmed.
 
-    The same command resumes the survey later: links and answers stay. The server is an extra:
+    The same command resumes the survey later: links stay valid, and answers are kept. The server is an extra:
     python -m pip install 'roadgpt[survey]'.
 
     \b
@@ -113,7 +113,7 @@ def serve(directory: Path, raters: int, is_open: bool, port: int, host: str, url
 
 @command.command(params=[*OF_ANALYSE])
 def analyse(directory: Path, out: Path | None, synthetic: int | None, agreement: float, seed: int) -> None:
-    """Analyse the answers: figures, medians, tests, agreement, and measurements.
+    """Analyse the answers: medians, statistical tests, agreement of raters, comparison with measurements.
 
     Writes report.html, report.md, answers.csv, tables and figures. It also works while the survey is served.
     """

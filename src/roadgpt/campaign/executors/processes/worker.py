@@ -83,7 +83,7 @@ class Worker:
         self._hear(self, None, b"")
 
     def ask_to_end(self) -> None:
-        """Asks the worker to end with all processes that it has started, such as a simulator; does not
+        """Asks the worker and all processes that it has started, such as a simulator, to end; does not
         wait.
         """
         if self.is_ready and self.job is None:
