@@ -1,10 +1,15 @@
-"""Why the first drive of an installation takes long is said once, and never again."""
+"""Why the first drive of an installation takes long is said once, and never again; kept machine code is not
+used for other source code."""
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
+import roadgpt
 from roadgpt.drive.compiled import COMPILING
 
 LOOP = """
@@ -38,3 +43,56 @@ def test_it_is_said_once_while_code_is_compiled_and_not_when_it_is_kept(tmp_path
     assert said(script, tmp_path / "kept").splitlines() == [f"roadgpt: {COMPILING}"]
     assert said(script, tmp_path / "kept") == ""
     assert said(script, tmp_path / "other", quiet=True) == ""
+
+
+CALLER = """
+from roadgpt.{room}.compiled import compiled
+from roadgpt.{module} import {name}
+
+@compiled
+def called():
+    return {value}
+
+print(called())
+"""
+
+
+@pytest.mark.parametrize(
+    ("room", "module", "value", "file", "old", "new"),
+    [
+        (
+            *("drive", "drive.simulators.mujoco.chassis_control", "slip_valve(0.5, 0.3, 0.1, 0.002)"),
+            *("drive/simulators/mujoco/chassis_control.py", "rate = 20.0", "rate = 2.0"),
+        ),
+        (
+            *("scene", "scene.patterns", "dashed(7.0, 4.0, 12.0)"),
+            *("scene/patterns.py", "return whole * dash +", "return 1.0 +"),
+        ),
+        (
+            *("scene", "scene.surfaces", "PERIOD"),
+            *("export/exporters/opendrive/lanes.py", "DASH, GAP = 4.0", "DASH, GAP = 5.0"),
+        ),
+    ],
+)
+def test_kept_code_is_not_used_where_a_file_that_it_uses_has_changed(
+    room: str, module: str, value: str, file: str, old: str, new: str, tmp_path: Path
+) -> None:
+    package = tmp_path / "src" / "roadgpt"
+    shutil.copytree(Path(roadgpt.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
+    script = tmp_path / "caller.py"
+    script.write_text(CALLER.format(room=room, module=module, name=value.partition("(")[0], value=value))
+    env = {**os.environ, "PYTHONPATH": str(package.parent), "NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+
+    def answer() -> str:
+        command = [sys.executable, "-B", str(script)]
+        return subprocess.run(command, env=env, capture_output=True, text=True, check=True).stdout
+
+    first = answer()
+    kept = sorted((tmp_path / "kept").rglob("*.nbc"))
+    assert kept
+    assert answer() == first
+    assert sorted((tmp_path / "kept").rglob("*.nbc")) == kept
+    text = (package / file).read_text(encoding="utf-8")
+    assert text.count(old) == 1
+    (package / file).write_text(text.replace(old, new), encoding="utf-8")
+    assert answer() != first

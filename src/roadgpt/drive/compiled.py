@@ -9,6 +9,8 @@ import logging
 import os
 import warnings
 from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, TypeVar
 
 from roadgpt.drive.native import addresses, intrinsic_call
@@ -62,11 +64,23 @@ if COMPILES:
     _announce()
 
 
+def _digest() -> str:
+    """Returns a digest of the files of this room; their functions and numbers become part of machine code."""
+    files = sorted(Path(__file__).parent.rglob("*.py"))
+    return sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
+
+
+SOURCES = _digest() if COMPILES else ""
+
+
 def compiled(function: Function) -> Function:
     """Returns the function as machine code. If the cache folder is writable, the code is kept there for
     later processes."""
     if not COMPILES:
         return function
+    # Numba notices changes in the function's own file only, not in the files of functions that it calls; but
+    # the names of the files in its cache begin with this name.
+    function.__qualname__ += f"-{SOURCES}"
     try:
         made: Function = numba.njit(cache=True, nogil=True)(function)
     except RuntimeError:  # there is no writable folder for the cache

@@ -2,7 +2,11 @@
 
 import warnings
 from collections.abc import Callable
+from hashlib import sha256
+from pathlib import Path
 from typing import Any, TypeVar
+
+from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -18,9 +22,22 @@ def _numba() -> Any:
 NUMBA = _numba()
 
 
+def _digest() -> str:
+    """Returns a digest of all that becomes part of compiled code: this room, and the numbers that it takes
+    from others."""
+    files = sorted(Path(__file__).parent.rglob("*.py"))
+    return sha256(b"".join(file.read_bytes() for file in files) + f"{DASH} {GAP}".encode()).hexdigest()[:12]
+
+
+SOURCES = _digest()
+
+
 def compiled(function: Function) -> Function:
     """Returns the function as machine code, cached on disk for later processes if the folder is writable.
     The compiler's fast-math option is off, so that the same inputs always give the same bytes."""
+    # Numba notices changes in the function's own file only, not in the files of functions that it calls; but
+    # the names of the files in its cache begin with this name.
+    function.__qualname__ += f"-{SOURCES}"
     try:
         made: Function = NUMBA.njit(cache=True, nogil=True, error_model="numpy")(function)
     except RuntimeError:  # there is no writable folder for the cache

@@ -1,12 +1,9 @@
 """Runs one control step: 20 ms of physics, after which the state of the car is written as one row of a
 Drive."""
 
-import hashlib
 import math
-from pathlib import Path
 from typing import Any
 
-from roadgpt.drive import compiled as compiling
 from roadgpt.drive.compiled import compiled, inlined
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import share_outside
@@ -78,58 +75,36 @@ def _look(mj: MujocoHandles, car: Any, ground: Ground, car_state: CarState, row:
     return fell
 
 
-def _made(mark: int) -> Any:
-    """Returns `control_step`, compiled.
-
-    Numba identifies cached code by the function's own file and by the values in its closure. The mark makes
-    it notice changes in all other files, too.
-    """
-
-    @compiled
-    def control_step(
-        mj: MujocoHandles,
-        cars: Any,
-        axles: Any,
-        ground: Ground,
-        car_state: CarState,
-        steer: float,
-        throttle: float,
-        brake: float,
-        steps: int,
-        row: FloatArray,
-    ) -> bool:
-        """Runs `steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then fills the row; returns
-        whether the car fell."""
-        car = cars[0]
-        for _ in range(steps):
-            step_once(mj, car, axles, ground, car_state, steer, throttle, brake)
-        fell = _look(mj, car, ground, car_state, row)
-        m = mj.xmat[BODY]
-        vx, vy = mj.qvel[0], mj.qvel[1]
-        dt = max(steps, 1) * STEP
-        state = car_state.state
-        gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
-        state[PAST_VX], state[PAST_VY] = vx, vy
-        # Level axes of the car; over a step of 20 ms the mean acceleration.
-        norm = 1.0 / max(math.hypot(m[0], m[3]), 1e-6)
-        c, n = m[0] * norm, m[3] * norm
-        row[AX] = gx * c + gy * n
-        row[AY] = gy * c - gx * n
-        row[THROTTLE] = throttle
-        row[BRAKE] = brake
-        return fell or mark == 0  # the mark is never 0, but only values in use belong to the closure
-
-    return control_step
-
-
-def _mark_of_sources() -> int:
-    """Returns a number that changes when any file of the physics changes."""
-    here = Path(__file__)
-    files = sorted(here.parent.glob("*.py"))
-    for name in ("compiled.py", "drive.py", "lane_polygon.py", "native.py", "sampled_road.py"):
-        files.append(here.parents[2] / name)
-    digest = hashlib.sha256(b"".join(file.read_bytes() for file in files)).hexdigest()
-    return int(digest[:12], 16) | 1
-
-
-control_step = _made(_mark_of_sources() if compiling.COMPILES else 1)
+@compiled
+def control_step(
+    mj: MujocoHandles,
+    cars: Any,
+    axles: Any,
+    ground: Ground,
+    car_state: CarState,
+    steer: float,
+    throttle: float,
+    brake: float,
+    steps: int,
+    row: FloatArray,
+) -> bool:
+    """Runs `steps` steps of 2 ms with these commands (rad, 0..1, 0..1), then fills the row; returns
+    whether the car fell."""
+    car = cars[0]
+    for _ in range(steps):
+        step_once(mj, car, axles, ground, car_state, steer, throttle, brake)
+    fell = _look(mj, car, ground, car_state, row)
+    m = mj.xmat[BODY]
+    vx, vy = mj.qvel[0], mj.qvel[1]
+    dt = max(steps, 1) * STEP
+    state = car_state.state
+    gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
+    state[PAST_VX], state[PAST_VY] = vx, vy
+    # Level axes of the car; over a step of 20 ms the mean acceleration.
+    norm = 1.0 / max(math.hypot(m[0], m[3]), 1e-6)
+    c, n = m[0] * norm, m[3] * norm
+    row[AX] = gx * c + gy * n
+    row[AY] = gy * c - gx * n
+    row[THROTTLE] = throttle
+    row[BRAKE] = brake
+    return fell
