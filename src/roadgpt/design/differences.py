@@ -14,11 +14,10 @@ from roadgpt.road import Design, Segment
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
 FADING = 12.0  # m that a straight gains at most from turns that fade into it
-AGAIN = ("start ", "turned ", "theta ")  # what a repair says of the road as a whole, which is measured here
 
 
 def sentences(
-    before: Design, elements: RoadElements, found: Measures, after: Look, besides: Sequence[str] = ()
+    before: Design, elements: RoadElements, found: Measures, after: Look, draft: Design
 ) -> tuple[str, ...]:
     """Returns a sentence for each turn and straight that has changed, and for the road as a whole.
 
@@ -28,22 +27,21 @@ def sentences(
         found: The measurements of that road.
         after: The road after the edit. Its elements have the names that they had before; if it has none, only
             the measured turns are compared.
-        besides: Sentences about changes that were made only to keep the road valid.
+        draft: The design before segments were changed only to keep the road valid.
     """
-    besides = [said for said in besides if not said.startswith(AGAIN)]
-    if besides:
-        besides = [f"to keep it valid: {'; '.join(besides)}"]
-    if after.elements:
-        things = tuple(_things(elements, after.elements, after.found))
-    else:
-        things = _counted(found, after.found)
-    return (*things, *_whole(found, after.found), *_placing(before, after.design), *besides)
+    new = after.found
+    things = _things(elements, after.elements, new) if after.elements else _counted(found, new)
+    lengths, climbs = f"{found.length:.0f} -> {new.length:.0f}", f"{found.climb:+.1f} -> {new.climb:+.1f}"
+    whole = f"the road: {lengths} m long, climbs {climbs} m"
+    besides = "; ".join(_changed_segments(draft, after.design))
+    valid = [f"to keep it valid: {besides}"] if besides else []
+    return (*things, whole, *_placing(before, after.design), *valid)
 
 
-def _counted(before: Measures, after: Measures) -> tuple[str, ...]:
-    said = [f"{len(before.turns)} -> {len(after.turns)} turns"]
-    said += [f"turn {number} is now {_turn(turn)}" for number, turn in enumerate(after.turns, 1)]
-    return tuple(said)
+def _counted(before: Measures, after: Measures) -> Iterator[str]:
+    yield f"{len(before.turns)} -> {len(after.turns)} turns"
+    for number, turn in enumerate(after.turns, 1):
+        yield f"turn {number} is now {_turn(turn)}"
 
 
 def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterator[str]:
@@ -125,47 +123,30 @@ def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeat
         yield f"{name}: {', '.join(said)}"
 
 
-def _whole(before: Measures, after: Measures) -> Iterator[str]:
-    yield (
-        f"the road: {before.length:.0f} -> {after.length:.0f} m long, "
-        f"climbs {before.climb:+.1f} -> {after.climb:+.1f} m"
-    )
-
-
-def _placing(before: Design, after: Design) -> Iterator[str]:
-    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
-    turned = (after.theta - before.theta + 180) % 360 - 180
-    if abs(x - x1) > MOVED or abs(y - y1) > MOVED:
-        yield f"the start was moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
-    if abs(z - z1) > MOVED:
-        yield f"the start was {'raised' if z1 > z else 'lowered'} from {z:g} to {z1:g} m"
-    if abs(turned) > 1e-6:
-        yield f"the road was turned by {turned:+.4g} degrees"
-
-
 def changes_between(before: Design, after: Design) -> tuple[str, ...]:
     """Returns one sentence each for a changed start, a changed heading and each changed segment.
 
     Both designs must have the same number of segments. If more than 60 segments changed, one sentence gives
     their number.
     """
-    out = list(_moved(before, after))
+    return (*_placing(before, after), *_changed_segments(before, after))
+
+
+def _placing(before: Design, after: Design) -> Iterator[str]:
+    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
+    if abs(x - x1) > MOVED or abs(y - y1) > MOVED:
+        yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
+    if abs(z - z1) > MOVED:
+        yield f"start {'raised' if z1 > z else 'lowered'} from {z:g} to {z1:g} m"
+    turned = (after.theta - before.theta + 180) % 360 - 180
+    if abs(turned) > 1e-6:
+        yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
+
+
+def _changed_segments(before: Design, after: Design) -> list[str]:
     pairs = zip(before.segments, after.segments, strict=True)
     told = [said for number, (one, other) in enumerate(pairs, 1) if (said := _segment(number, one, other))]
-    if len(told) > ALL_LISTED:
-        return (*out, f"{len(told)} segments changed")
-    return (*out, *told)
-
-
-def _moved(before: Design, after: Design) -> Iterator[str]:
-    (x, y, z), (x1, y1, z1) = before.starting_point, after.starting_point
-    if (x, y) != (x1, y1):
-        yield f"start moved from ({x:g}, {y:g}) to ({x1:g}, {y1:g})"
-    if z != z1:
-        yield f"start raised from {z:g} to {z1:g} m" if z1 > z else f"start lowered from {z:g} to {z1:g} m"
-    turned = (after.theta - before.theta + 180) % 360 - 180
-    if abs(turned) > 1e-9:
-        yield f"turned by {turned:+.4g} degrees, theta {before.theta:g} -> {after.theta:g}"
+    return told if len(told) <= ALL_LISTED else [f"{len(told)} segments changed"]
 
 
 def _segment(number: int, before: Segment, after: Segment) -> str:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
-from roadgpt.design.differences import changes_between, sentences
+from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.pointing import placed
 from roadgpt.design.edit.reading import read_request
@@ -75,11 +75,11 @@ def edit(
         road = edited_by_chat(
             open_chat(settings), settings, design, said, elements, found, spoken_of, world, geometry
         )
-        return Edited(road.design, sentences(design, elements, found, road))
+        return Edited(road.design, sentences(design, elements, found, road, road.design))
     if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
     road, draft, idle = made(design, elements, found, changes, world, geometry)
-    told = sentences(design, elements, found, road, changes_between(draft, road.design))
+    told = sentences(design, elements, found, road, draft)
     told += tuple(f"'{change.words}' was so already" for change in idle)
     return Edited(road.design, told, request.unused)
 
