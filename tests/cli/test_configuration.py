@@ -11,7 +11,9 @@ from click.testing import CliRunner, Result
 from roadgpt.cli import app
 from roadgpt.run import read_run
 
-OF_A_CALL = {"roads", "seed", "out", "no_drive", "no_plot", "junit", "json", "quiet", "verbose", "help_all"}
+OF_A_CALL = {
+    "roads", "seed", "out", "plan", "no_drive", "no_plot", "junit", "json", "quiet", "verbose", "help_all",
+}  # fmt: skip
 """Options that are given with each call, and that no file sets."""
 OTHERWISE = {
     "speed_limit": "speed_limit_kmh", "headless": "beamng_headless", "nogpu": "beamng_nogpu",

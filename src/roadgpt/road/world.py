@@ -235,8 +235,9 @@ class World(BaseModel):
         Raises:
             pydantic.ValidationError: There is no such field, or its value is invalid.
         """
-        own = {EARLIER.get(name, name): value for name, value in values.items()}
-        return World.model_validate(self.values() | own)
+        named = {EARLIER.get(name, name) for name in values}
+        kept = {name: value for name, value in self.values().items() if name not in named}
+        return World.model_validate(kept | values)
 
     def profile_of(self, road: Road) -> Profile:
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.

@@ -141,7 +141,8 @@ def test_a_dead_simulator_is_given_up_and_no_road_is_lost(
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
     setup, out = Setup(reader="grammar", simulator="beamng"), tmp_path / "out"
     with pytest.raises(
-        GivenUpError, match=r"failed 3 times in a row .*nobody listens on .*same command and --out .*out"
+        GivenUpError,
+        match=r"failed 3 times in a row .*nobody listens on .*continue with: roadgpt resume .*out",
     ) as caught:
         list(campaign(SHORTEST, 8, 5, World(), setup, out))
     assert caught.value.exit_status == 5
