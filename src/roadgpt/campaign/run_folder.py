@@ -210,11 +210,12 @@ class RunFolder:
 
     def remove(self, number: int) -> None:
         """Removes a test that has no drive, so that it is run when the campaign continues."""
-        ended = self.tests.pop(number, None)
+        self.tests.pop(number, None)
+        self._tally = Tally()
+        for ended in [*self.tests.values()]:
+            self._count(ended)
         with writing(self.folder):
             remove_run(number, self.folder)
-            if ended is not None and ended.entry is not None:
-                self._tally.take_back(ended.entry)
             self._tally.write(self.folder)
 
     def write_tables(self) -> None:

@@ -43,6 +43,7 @@ def watch_campaign(campaign: Path, once: bool = False) -> None:
 
 def _picture(status: "Status", width: int) -> "RenderableType":
     from rich.console import Group
+    from rich.padding import Padding
     from rich.progress_bar import ProgressBar
     from rich.text import Text
 
@@ -52,7 +53,8 @@ def _picture(status: "Status", width: int) -> "RenderableType":
     ]
     lines = [outcomes_line(status.outcomes), "", *cell_lines(_chosen(status), width), "", *workers]
     table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
-    return Group(Text(headline(status), style="bold"), bar, table)
+    # without colours a bar does not fill its line, so that the next line would follow it
+    return Group(Text(headline(status), style="bold"), Padding(bar), table)
 
 
 def _chosen(status: "Status") -> "list[CellStatus]":

@@ -62,23 +62,16 @@ class Tally:
 
     def add(self, entry: TallyEntry) -> None:
         """Adds a Run to the counts."""
-        self._count(entry, 1)
+        self.outcomes[entry.outcome] += 1
+        self.valid += entry.is_valid
+        self.with_road += entry.has_road
+        self.designing += entry.seconds.design
+        self.driving += entry.seconds.drive
         self.simulated += entry.simulated
         if entry.departure is not None:
             self.sides[entry.departure.side] += 1
             if entry.departure.segment is not None:
                 self.spread.add(entry.number, entry.departure.segment)
-
-    def take_back(self, entry: TallyEntry) -> None:
-        """Removes a Run from the counts; the Run must not have a drive."""
-        self._count(entry, -1)
-
-    def _count(self, entry: TallyEntry, times: int) -> None:
-        self.outcomes[entry.outcome] += times
-        self.valid += times * entry.is_valid
-        self.with_road += times * entry.has_road
-        self.designing += times * entry.seconds.design
-        self.driving += times * entry.seconds.drive
 
     def write(self, folder: Path) -> None:
         """Writes the two tables that change with each road: generation_stats.csv and oob_stats.csv."""
