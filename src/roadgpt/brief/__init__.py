@@ -187,10 +187,10 @@ def alternatives(
 
 
 def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
-    """Returns sentences, without full stops, on what a road of this Brief lacks or has besides.
+    """Returns what the user should know about a road of this Brief, as sentences without full stops.
 
-    They say what becomes of each thing in ``brief.beside``, what "motorway" requires, and whether a map of
-    this size, in metres, can hold it.
+    They say for each thing in ``brief.beside`` that it is not built, needs a number or is set by an option.
+    They also say what "motorway" requires, and whether a map of this size, in metres, can hold a motorway.
     """
     return (*map(beside.remark, brief.beside), *motorway.remarks(brief, map_size))
 

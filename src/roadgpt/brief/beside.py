@@ -1,7 +1,7 @@
-"""The table of things that descriptions of roads mention and that no requirement of a Brief expresses.
+"""Lists things that descriptions mention but no requirement of a Brief can express, such as a roundabout.
 
-A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then says what becomes of
-it, so that no word of a description is dropped in silence.
+A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then tells the user that
+it is not built, needs a number or is set by an option, so that nothing is ignored silently.
 """
 
 NOT_BUILT = {
@@ -70,7 +70,7 @@ BESIDE = frozenset({*NOT_BUILT, *NEEDS_NUMBERS, *OPTIONS})
 
 
 def remark(name: str) -> str:
-    """Returns the sentence, without a full stop, that says what becomes of a thing of this name."""
+    """Returns what the user should know about a thing of this name, as a sentence without a full stop."""
     if name in NOT_BUILT:
         return f"{NOT_BUILT[name]} is not built yet; the road is made without it"
     return NEEDS_NUMBERS.get(name) or OPTIONS[name]

@@ -1,4 +1,4 @@
-"""Computes a lower bound of the length of the roads that satisfy a Brief."""
+"""Computes a lower bound on the length of any road that satisfies a Brief."""
 
 from math import inf, radians
 
@@ -11,7 +11,7 @@ GAP = 16.0  # metres of straight between two turns to the same side
 
 
 def least_length(brief: Brief, min_radius: float) -> float:
-    """Returns a lower bound in metres of the length of a road that has the clauses and turns of a Brief.
+    """Returns a lower bound, in metres, on the length of a road with the clauses and turns of a Brief.
 
     Args:
         brief: the requirements.

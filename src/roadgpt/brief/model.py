@@ -85,7 +85,7 @@ class Amount(Frozen):
 
 
 def span(amount: Amount | None) -> Range:
-    """Returns the numbers that an amount allows as an interval; None allows every number."""
+    """Returns the interval of numbers that an amount allows; None allows every number."""
     lo, hi = (amount.lo, amount.hi) if amount else (None, None)
     return Range(-inf if lo is None else lo, inf if hi is None else hi)
 

@@ -54,7 +54,7 @@ STEEP = ("steeply_up", "steeply_down")
 
 
 def says_motorway(words: str) -> bool:
-    """Returns True if a description, in any of the five languages, asks for a motorway."""
+    """Returns True if a description in English, German, French, Spanish or Italian asks for a motorway."""
     plain = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
     said = re.findall(r"[^\W\d_]+", plain)
     for at, (word, after) in enumerate(zip(said, [*said[1:], ""], strict=True)):
@@ -74,7 +74,7 @@ def has_wide_turns(brief: Brief, map_size: float) -> bool:
 
 
 def has_low_grades(brief: Brief) -> bool:
-    """Returns True if the Brief asks for a motorway, and for no grade steeper than a motorway may have."""
+    """Returns True if the Brief asks for a motorway and requires no grade that is too steep for one."""
     if not brief.motorway:
         return False
     things: list[Brief | Clause] = [brief, *_clauses(brief)]

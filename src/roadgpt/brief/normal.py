@@ -5,7 +5,8 @@
 - A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
   without a slope means uphill.
 - A clause with several straights, crests or dips is split into one clause each, as are alternating turns
-  whose first direction is known. Other equal clauses in a row are merged into one with a count.
+  whose first direction is known. Consecutive clauses with the same single turns, S-bends or chicanes are
+  merged into one with their total count.
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
@@ -13,9 +14,11 @@
 - Fields that only repeat the clauses (number of turns, left or right, slope, first and last feature) are
   cleared.
 - If 4 of 5 turns go left, 1 goes right; if none goes left, all turns go right.
-- 'N turns' and nothing else is one clause; 'N or more turns' and nothing else is a requirement for the road.
-- A Brief that does not mention turns requires at least one turn; a Brief that names only straights requires
-  none. Only a Brief that names only straights can keep the requirement '0 or more turns'.
+- If a Brief names no other feature, 'N turns' becomes a clause, and 'N or more turns' a requirement for the
+  whole road.
+- A Brief that names no features and no number of turns requires at least one turn. A Brief that names only
+  straights forbids turns, unless it has the requirement '0 or more turns'; other Briefs lose this
+  requirement.
 """
 
 from math import inf

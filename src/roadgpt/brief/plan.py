@@ -1,5 +1,5 @@
 """Writes a Brief as one short line, called a plan, and reads it back. Plans are written by models, by people
-who label data, and by users who want no words to be interpreted.
+who label data, and by users who want to state requirements without words that a reader has to interpret.
 
     turn x3 left up; straight long down; hairpin right | len=300 hard beside(traffic, night)
 

@@ -1,5 +1,5 @@
-"""Refusals of descriptions: what they say, and the errors that carry the Brief because the road may fit on
-another map.
+"""Defines the messages with which descriptions are refused, and two errors that contain the Brief, since a
+larger map may hold the road.
 """
 
 from roadgpt.brief.beside import NOT_BUILT

@@ -152,15 +152,15 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees.
+    """Returns the tolerance of an angle in degrees: 10 % of it, but at most 7 below 90 degrees.
 
-    For angles of 90 degrees or more, the tolerance is at most 10 degrees.
+    From 90 degrees on, the tolerance is at most 10 degrees.
     """
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
 
 class Quantity(NamedTuple):
-    """One measurable number of a road, its tolerance and its words; ``{}`` stands for a range."""
+    """A measurable quantity of a road: its tolerance, and phrases in which ``{}`` stands for a range."""
 
     asked: str
     """The requirement in prompts, complaints and advice."""

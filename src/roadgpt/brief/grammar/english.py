@@ -1,9 +1,9 @@
-"""English vocabulary, first part: features along the road, sides, shapes and slopes.
+"""English vocabulary, first part: features along the road, left and right, shapes and slopes.
 
-A key names one meaning, or several meanings in a row; its phrases are separated by '|'. Accents, case and
-hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number. ``handlers.py`` defines the effect of
-each meaning. If a phrase occurs under two keys, the first key is used. Exception: a meaning that is a bound
-('over') is only used next to a number.
+Each key of the table names one meaning, or several in a row; its value lists the phrases with that meaning,
+separated by '|'. Accents, case and hyphens do not matter. '+' marks a plural, '~' a verb, '#' a number.
+``handlers.py`` defines the effect of each meaning. If a phrase occurs under two keys, the first key is used.
+Exception: a meaning that is a bound ('over') is only used next to a number.
 """
 
 ROAD_WORDS: dict[str, str] = {

@@ -31,7 +31,7 @@ def lower(order: DrivingOrder, road_said: bool) -> Brief:
         road_said: True if the description names the road itself ('a road with ...').
 
     Raises:
-        BriefError: all turns of an S-bend or a chicane are required to go to one side.
+        BriefError: all turns of an S-bend or a chicane are required to go the same way.
     """
     in_driving_order(order)
     _deal_out(order)

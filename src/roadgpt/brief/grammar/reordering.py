@@ -91,8 +91,8 @@ def most_to_one_side(order: DrivingOrder) -> None:
 
 
 def hills_of_a_list(order: DrivingOrder) -> None:
-    """Drops the three changes of slope that 'hilly' requires by itself if the description lists fewer
-    changes: 'hilly: up, down, up' has two.
+    """Drops the requirement of three changes of slope, which 'hilly' implies, if the description lists fewer:
+    'hilly: up, down, up' has two.
     """
     hills, changes, before = order.wishes.hills, 0, ""
     for thing in order.things:

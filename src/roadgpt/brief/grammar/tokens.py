@@ -80,7 +80,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def tokens(text: str) -> list[Token]:
-    """Returns the tokens of a description in order; punctuation without a meaning for roads is left out."""
+    """Returns the tokens of a description in order; punctuation without a meaning is left out."""
     folded, places = plain(text), _places(text)
     found = [
         (match.lastgroup, match.group(), match.span())

@@ -1,7 +1,7 @@
 """Words that would change the road but that a Brief cannot express; they are reported as not understood.
 
-The format is that of ``english.py``. The key '?' lists phrases that are only reported as not understood; the
-words next to them are still read.
+The format is that of ``english.py``. Phrases under the key '?' have no other effect; the words next to them
+are still read.
 """
 
 UNSUPPORTED_WORDS: dict[str, str] = {
