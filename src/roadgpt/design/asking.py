@@ -73,8 +73,8 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
 
 
 def start_for(world: World, seed: int) -> str:
-    """Returns a random start in words; suggesting it to the model makes the roads of different seeds
-    differ.
+    """Returns a random start in words, to be suggested to the model so that different seeds give different
+    roads.
     """
     x, y, theta = drawn_start(world, seed)
     return f"a start near ({x:g}, {y:g}) with theta {theta:g}"

@@ -1,4 +1,4 @@
-"""Composes a draft from turns, the required straights between them, and straights that only join these.
+"""Composes a draft from turns, required straights, and further straights that join these elements.
 
 lead-in | turn | joining straight | turn | required straight | turn | lead-out
 """
@@ -63,12 +63,12 @@ def composed(
     """Returns the elements of a draft in driving order; None if they cannot have the required length.
 
     Args:
-        order: the turns with their sides, and the required straights between them.
+        order: the turns, each to the left or right, and the required straights between them.
         outline: the requirements for the road.
         windows: the grades that the requirements allow.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         rng: random number generator.
-        haste: 0 draws values from their whole ranges, 1 draws values close to the smallest ones allowed.
+        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
     """
     narrowed = narrowed_turns(order.turns, outline, windows, world)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
@@ -129,7 +129,7 @@ def gap_between(
         outline: the requirements for the road.
         windows: the grades that the requirements allow.
         rng: random number generator.
-        haste: 0 draws lengths from their whole ranges, 1 draws lengths close to the shortest ones allowed.
+        haste: from 0 (lengths from their whole ranges) to 1 (only lengths close to the shortest allowed).
     """
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1

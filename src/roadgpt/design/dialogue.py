@@ -185,7 +185,7 @@ class _Steps:
         return self._outcome()
 
     def _begin(self) -> None:
-        """The start, as the model has it; as it was drawn where its answer is none."""
+        """Sets the start to the model's answer; keeps the random start if the answer is none."""
         try:
             reply = self.chat.ask(self._messages("Give the start of the road."), AnswerStart)
             point = reply.data.starting_point

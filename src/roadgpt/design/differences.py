@@ -25,8 +25,8 @@ def sentences(
         before: The road before the edit.
         elements: The elements of that road.
         found: The measurements of that road.
-        after: The road after the edit. Its elements have the names that they had before; if it has none, only
-            the measured turns are compared.
+        after: The road after the edit. Its elements have the same names as before the edit; if it has no
+            elements, only the measured turns are compared.
         draft: The design before segments were changed only to keep the road valid.
     """
     new = after.found

@@ -1,4 +1,4 @@
-"""Draws at random what a description leaves open: angle, radius and transitions of turns, and lengths of
+"""Chooses at random what a description leaves open: angle, radius and transitions of turns, and lengths of
 straights.
 """
 
@@ -38,7 +38,7 @@ TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 def narrowed_turns(
     turns: Sequence[Feature], outline: Outline, windows: Windows, world: World
 ) -> list[Feature]:
-    """Returns the turns with the ranges of angle, radius, length and grade from which they are drawn.
+    """Returns the turns with the ranges from which their angle, radius, length and grade are chosen.
 
     The ranges lie a little inside the required ones.
 
@@ -73,7 +73,7 @@ def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
 
 
 def _angles(turn: Feature, promised: Range) -> Range:
-    """Returns the degrees to draw from: near a given number, the aim of a word, or nearly the whole range."""
+    """Returns the range of degrees: near a given number, the aim of a word, or nearly the whole range."""
     width = promised.hi - promised.lo
     if width <= 24:
         return _inside(promised, 0.25)
@@ -96,14 +96,14 @@ def hand_of(turn: Feature) -> int:
 def drawn_turns(
     turns: Sequence[Feature], outline: Outline, world: World, rng: np.random.Generator, haste: float
 ) -> list[Element]:
-    """Draws the angle, radius and transitions of each turn.
+    """Chooses the angle, radius and transitions of each turn at random.
 
     Args:
-        turns: the turns with the ranges to draw from, as ``narrowed_turns`` returns them.
+        turns: the turns with the ranges to choose from, as ``narrowed_turns`` returns them.
         outline: the requirements for the road.
         world: the World; the size of its map limits the length of a turn.
         rng: random number generator.
-        haste: 0 draws turns from their whole ranges, 1 draws turns close to the smallest ones allowed.
+        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
     """
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
@@ -145,7 +145,7 @@ def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int]
 
 
 def _target(asked: Range, rng: np.random.Generator) -> float:
-    """Draws the sum of the angles of all turns in degrees, within the required range."""
+    """Chooses the sum of the angles of all turns at random, in degrees, within the required range."""
     low = asked.lo if asked.lo > 0 else 0.6 * asked.hi
     high = asked.hi if asked.hi < inf else 1.3 * asked.lo
     return low + (high - low) * (0.3 + 0.4 * float(rng.random()))
@@ -171,15 +171,15 @@ def _swing(signed: Sequence[float]) -> float:
 def drawn_turn(
     turn: Feature, angle: float, longest: float, hard: bool, rng: np.random.Generator, haste: float
 ) -> Element:
-    """Draws the radius and the transitions of one turn.
+    """Chooses the radius and the transitions of one turn at random.
 
     Args:
-        turn: the turn with the ranges to draw from, as ``narrowed_turns`` returns it.
+        turn: the turn with the ranges to choose from, as ``narrowed_turns`` returns it.
         angle: change of heading in degrees; it may be changed within its range so that the turn fits.
         longest: greatest length of the turn in metres.
         hard: True if a hard road was requested; the radius is then near the smallest one allowed.
         rng: random number generator.
-        haste: 0 draws values from their whole ranges, 1 draws values close to the smallest ones allowed.
+        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
     """
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
@@ -208,7 +208,7 @@ def drawn_turn(
 
 
 def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Generator) -> float:
-    """Draws the length of the clothoids in metres; short where a required radius must be measurable."""
+    """Returns a random clothoid length in metres; short where a required radius must be measurable."""
     arc = radius * radians(angle)
     share = TRANSITIONS[0] + (TRANSITIONS[1] - TRANSITIONS[0]) * rng.random()
     transition = min(
@@ -220,12 +220,12 @@ def _transition(is_tight: bool, angle: float, radius: float, rng: np.random.Gene
 
 
 def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Draws the length of a required straight in metres.
+    """Chooses the length of a required straight at random, in metres.
 
     Args:
         wish: the required straight.
         rng: random number generator.
-        haste: 0 draws lengths from their whole ranges, 1 draws lengths close to the shortest ones allowed.
+        haste: from 0 (lengths from their whole ranges) to 1 (only lengths close to the shortest allowed).
         least: least length in metres; ignored as far as the required range excludes it.
         mean: average number of metres by which a straight without an upper limit exceeds its least length.
     """
@@ -241,15 +241,13 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the length in metres at which a straight is designed so that at least ``least`` metres are
-    measured.
-    """
+    """Returns how long to design a straight, in metres, so that ``least`` metres of it are measured."""
     return 1.05 * least + 3.0
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
-    """Draws the length in metres of a straight without requirements.
+    """Returns a random length, in metres, of a straight without requirements.
 
-    The length is at least ``least``, and on average about ``mean`` metres more.
+    The length is at least ``least``; without haste, it is about ``mean`` metres more on average.
     """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

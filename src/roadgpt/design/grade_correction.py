@@ -1,12 +1,13 @@
-"""Writes drafts with parabolas, and corrects straights that are not measured as required. Main function:
+"""Adds parabolas to drafts, and corrects straights whose measured values are not as required. Main function:
 ``corrected_draft``.
 
 The parabola that joins the grades of two straights takes up a part of both. A level straight is measured only
 where the road is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls.
-So the draft is measured, joints and grades of straights are changed by the errors, and it is measured again.
+So the draft is measured, joints and grades of straights are corrected by the measured errors, and the draft
+is measured again.
 
-``design.fit.grades`` does this for the inclines of a road whose plan stands. Here the lengths of straights
-change, which moves the joints between them and leaves the curve of the road as it is.
+``design.fit.grades`` corrects only inclines. Here the lengths of consecutive straights change, too, which
+moves the joints between them but not the road in plan view.
 """
 
 from collections.abc import Sequence
@@ -44,7 +45,7 @@ def corrected_draft(
     share: float,
     bumps: bool,
 ) -> tuple[tuple[Segment, ...], list[Complaint]]:
-    """Returns the segments of a draft, corrected until nothing is left to correct, and what is wrong.
+    """Returns the segments of a draft, corrected in up to eight rounds, and the complaints that remain.
 
     Args:
         elements: the elements of the draft, with inclines.
@@ -52,10 +53,10 @@ def corrected_draft(
         outline: the requirements for the road.
         limit: range of inclines that are allowed, in percent.
         pace: the vertical radii that the expected speeds require.
-        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1, beside
-            straights of fixed length.
-        share: the same elsewhere.
-        bumps: True if a crest or a dip was requested, so that the vertical acceleration may reach gravity.
+        ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule requires)
+            to 1, between consecutive straights of which one has a fixed length.
+        share: the same kind of share for all other vertical radii.
+        bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
     ends = np.cumsum([element.length for element in elements])
     for _ in range(CORRECTIONS):

@@ -71,7 +71,7 @@ def grown(
     """Returns a road of the required length; None if it ran out of room, or if no length is required.
 
     Args:
-        order: the turns with their sides, and the required straights between them.
+        order: the turns, each to the left or right, and the required straights between them.
         outline: the requirements for the road.
         windows: the grades that the requirements allow.
         world: size of the map, and limits that the rules check, such as the steepest grade.

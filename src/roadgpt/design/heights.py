@@ -1,4 +1,4 @@
-"""Draws the heights of a draft: one incline for every turn, and one or more for every straight."""
+"""Chooses the heights of a draft at random: one incline per turn, and one or more per straight."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -97,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns a range of grades per straight; without a requirement, it differs from its neighbour's."""
+        """Returns each straight's range of grades; where nothing is required, one unlike its neighbour's."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -136,7 +136,7 @@ def drawn_heights(
     ease: float = 1.0,
     bumps: bool = False,
 ) -> list[Element]:
-    """Returns the elements of a plan with inclines, drawn and rounded to a tenth of a percent.
+    """Returns the elements of a plan with random inclines, rounded to a tenth of a percent.
 
     A straight of several slopes becomes several elements.
 
@@ -148,7 +148,7 @@ def drawn_heights(
         pace: the vertical radii that the expected speeds on this plan require.
         ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule
             requires) to 1 (fully comfortable).
-        bumps: True if a crest or a dip was requested, so that the vertical acceleration may reach gravity.
+        bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
     is_hilly = bool(outline.hills and outline.hills.lo > 0)
     if is_hilly:
@@ -348,7 +348,7 @@ def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: f
 
 
 def _held(element: Element, value: float, room: Range) -> Range:
-    """Returns the limit of a straight of required length and grade: hardly less than what was drawn."""
+    """Returns the limit of a straight of required length and grade: hardly less than what was chosen."""
     if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
         return room
     return overlap(room, Range(value - HELD, value + HELD)) or room
@@ -382,7 +382,7 @@ def _softened(
 
 
 def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
-    """Returns the grades, clipped to their limits after a common shift that makes the road climb ``metres``.
+    """Returns the grades, shifted alike and clipped to their limits so that the road climbs ``metres``.
 
     Args:
         grades: grades in percent, ``(n,)``.

@@ -73,7 +73,7 @@ def walk(elements: Sequence[Element]) -> PlanLine:
 def bends_of(elements: Sequence[Element]) -> tuple[Array, Array, float]:
     """Returns stations in metres, the curvature at each in 1/m, and the length of the elements in metres.
 
-    The curvature is linear between two stations, and 0 behind the last one.
+    The curvature is linear between two stations, and 0 after the last one.
     """
     knots, bends, at = [0.0], [0.0], 0.0
     for element in elements:
@@ -136,7 +136,7 @@ def meeting(
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
-    """Draws a start and a heading at which the road lies on the map; returns None if none was found."""
+    """Returns a random start and heading at which the road lies on the map; None if none was found."""
     room = world.site.map_size - world.section.road_width - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
     chosen = _first_that_fits(line.z, turns[:1], room)
@@ -181,7 +181,7 @@ def _first_that_fits(
 
 
 def smallest_box(line: PlanLine) -> float:
-    """Returns the side in metres of the smallest square that contains the line at some heading."""
+    """Returns the side in metres of the smallest square that the line fits into, at any heading."""
     _, _, width, height = boxes(line.z[:: max(1, len(line.z) // MOST_POINTS)], np.arange(0.0, 90.0, 5.0))
     return float(np.maximum(width, height).min())
 

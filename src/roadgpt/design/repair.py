@@ -3,7 +3,7 @@
     none   nothing is changed
     place  the road is moved, rotated only if that is not enough, and raised above the ground
     full   then lengths, angles, radii and grades are changed as little as necessary; the number of turns,
-           their sides, and whether they go up, down or level stay as proposed
+           and whether each goes left or right, and up, down or level, stay as proposed
 
 A road that cannot be repaired is at least placed on the map if possible; ``check.inspect`` says what is still
 wrong with it. Main function: ``repair``.

@@ -3,10 +3,11 @@
     gap 0 | turn 1 | gap 1 | turn 2 | ... | turn n | gap n
 
 The segments can be grouped in two ways. ``elements_on_road`` uses the turns that are measured on the finished
-geometry (``check.measures``): segments to one side that run into each other are one turn, and a bend that is
+geometry (``check.measures``): segments that are measured as a single turn form one turn, and a bend that is
 too slight to be measured as a turn belongs to a gap. ``elements_as_proposed`` uses the list of segments
-alone: successive segments to one side are one turn, as RoadGPT's prompt demands for turns of more than 70
-degrees, and successive straight segments are one element as long as all of them go up, down or level.
+alone: successive segments that bend the same way form one turn, since RoadGPT's prompt asks for turns of more
+than 70 degrees to be split, and successive straight segments form one element if all of them climb, all fall
+or all are level.
 """
 
 from collections.abc import Iterable, Sequence
@@ -151,12 +152,12 @@ def elements_as_proposed(segments: Sequence[Segment]) -> RoadElements:
 
 
 def shows_turns(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether a measured road has the turns of the elements, in order and to the same sides."""
+    """Returns whether a measured road has the same sequence of left and right turns as the elements."""
     return [turn.side for turn in found.turns] == [one.side for one in elements if one.is_turn]
 
 
 def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
-    """Returns whether each measured turn goes up, down or level as its segments do, or has the required
+    """Returns whether each measured turn climbs, falls or is level like its segments, or has the required
     grade.
 
     The road must have the turns of the elements.

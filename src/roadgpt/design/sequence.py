@@ -1,4 +1,4 @@
-"""Draws the sequence of a draft: its turns with their sides, and the required straights between them."""
+"""Chooses the sequence of a draft at random: its left and right turns, and the required straights."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -28,7 +28,7 @@ OpenTurn = tuple[Feature, bool]
 
 
 class TurnSequence(NamedTuple):
-    """The turns of a road with their sides, and the straights required before, between and after them."""
+    """The left and right turns of a road, and the straights required before, between and after them."""
 
     turns: tuple[Feature, ...]
     gaps: tuple[tuple[Feature, ...], ...]
@@ -40,7 +40,8 @@ def is_hairpin(feature: Feature) -> bool:
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
-    """Draws the turns, their sides and their order, as far as the Outline leaves them open.
+    """Chooses at random what the Outline leaves open: the number of turns, left or right, places of
+    straights.
 
     Args:
         outline: the requirements for the road.
@@ -77,7 +78,7 @@ def _listed(
 
 
 def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> list[int]:
-    """Draws the number of features per group; the turns add up to a required number."""
+    """Chooses the number of features per group at random; the turns add up to a required number."""
     groups = outline.groups
     counts = [group.lo for group in groups]
     if not plain:
@@ -188,7 +189,7 @@ def _sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator
 
 
 def _drawn_sides(turns: Sequence[OpenTurn], outline: Outline, rng: np.random.Generator) -> list[Side] | None:
-    """Draws the sides of turns; None if a required side contradicts a required alternation."""
+    """Chooses left or right for each turn; None if a required side contradicts a required alternation."""
     sides: list[Side] = []
     for turn, switches in turns:
         if sides and (switches or outline.alternating):

@@ -85,7 +85,7 @@ class Pace:
     def least(self, s: float, is_bump: bool = False) -> float:
         """Returns the least vertical radius in metres that the rule allows at station ``s`` in metres.
 
-        If ``is_bump``, a crest or dip was required there, and the vertical acceleration may reach gravity.
+        If ``is_bump``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip.
         """
         return self._square(s) / (GRAVITY if is_bump else MOST)
 
@@ -146,7 +146,7 @@ def made_to_fit(
     Args:
         grades: grade of each segment in percent, ``(n,)``.
         lengths: length of each segment in metres.
-        inclines: incline of each segment in percent as it was proposed; it decides which form one slope.
+        inclines: proposed incline of each segment in percent; neighbours with the same one form one slope.
         joining: indices of segments that only join others.
         bounds: range of the grade of each segment in percent.
         pace: the vertical radii that the expected speeds require.
@@ -237,7 +237,7 @@ def joined(
 def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
     """Returns the segments with other inclines in percent, rounded to a tenth.
 
-    A segment whose incline changes by less than rounding stays the same object.
+    A segment whose incline would change by less than 0.05 percentage points is returned as it is.
     """
     pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
     return tuple(
@@ -249,15 +249,15 @@ def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, 
 def with_new_parabolas(
     segments: tuple[Segment, ...], before: Sequence[Segment], pace: Pace, ease: float, is_widened: bool
 ) -> tuple[Segment, ...]:
-    """Returns segments with parabolas at the joints of slopes that met nowhere before a change.
+    """Returns segments with new parabolas wherever two grades meet that did not meet before a change.
 
     Args:
         segments: the segments after the change.
         before: the segments of the road before the change.
         pace: the vertical radii that the expected speeds require.
         ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
-        is_widened: whether other parabolas may change as well: those at segments that the road had before,
-            and those that are smaller than the rule allows.
+        is_widened: True to add parabolas to unchanged segments, too, and to enlarge all parabolas that are
+            smaller than the rule allows.
     """
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
     opened = frozenset(
@@ -272,7 +272,7 @@ def with_new_parabolas(
 
 
 def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
-    """Returns the segments with larger radii for parabolas that are smaller than the rule allows.
+    """Returns the segments; each vertical radius that is smaller than the rule allows is increased.
 
     If neighbouring parabolas leave no room, their radii are chosen anew as well.
     """
@@ -291,7 +291,7 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
     """Returns whether any parabola is smaller than the rule allows.
 
-    If ``bumps``, a crest or dip was required, and the vertical acceleration may reach gravity.
+    If ``bumps``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip.
     """
     return any(True for _ in _too_small(segments, pace, bumps))
 

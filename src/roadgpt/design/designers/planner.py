@@ -1,4 +1,4 @@
-"""The default designer: draws drafts until one meets the Brief, is valid and differs from earlier roads.
+"""The default designer: tries random drafts until one meets the Brief, is valid and unlike earlier roads.
 
 Each draft is checked, the cheapest check first: it must fit on the map, keep clear of itself, differ from
 earlier roads and meet the requirements as measured on its line; then the rules must accept the road that is
@@ -49,7 +49,7 @@ STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 
 
 class Planner:
-    """The default designer: draws drafts until one is accepted."""
+    """The default designer: tries random drafts until one is accepted."""
 
     def __init__(self) -> None:
         self._shapes = Shapes()

@@ -1,9 +1,9 @@
 """The method of RoadGPT's thesis, unchanged, as a baseline for comparisons.
 
-The model gets one request with the thesis' system prompt and answers once in JSON; nothing is asked again or
-repaired. The road is the spline through the ends of the segments; it may be invalid. Source: sections 5.3.1
-and 5.3.2 of the thesis. The prompt is paraphrased. Where it contradicts itself or the thesis' program, this
-designer does the following:
+The model gets one request with the thesis' system prompt and answers once in JSON; there is no second request
+and no repair. The road is the spline through the ends of the segments; it may be invalid. Source: sections
+5.3.1 and 5.3.2 of the thesis. The prompt is paraphrased. Where it contradicts itself or the thesis' program,
+this designer does the following:
 
 * theta 0 is "along the y axis" in the prompt and +x in the program: +x is used;
 * x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": here the

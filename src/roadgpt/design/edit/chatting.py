@@ -70,8 +70,8 @@ def edited_by_chat(
         words: the change request.
         elements: the elements of that road.
         found: the measurements of that road.
-        spoken_of: names of the elements that the model may change at most; None if rules cannot tell, then
-            it may change those that it names itself.
+        spoken_of: names of the only elements that the model may change; None if rules cannot tell them: the
+            model may then change those that it names itself.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that roads are built with.
 

@@ -50,7 +50,7 @@ def named(row: Sequence[RequestLexeme], at: int) -> NamedTarget | None:
 def place_at(row: Sequence[RequestLexeme], at: int) -> tuple[int, Place | None]:
     """Reads a place such as 'after the second turn' from the lexemes at index ``at``.
 
-    Returns the index of the next lexeme, and the place; None instead of the place if there is none.
+    Returns the index of the next lexeme, and the place, or None if the lexemes name no place.
     """
     return _TargetReader(row).place_behind(at)
 

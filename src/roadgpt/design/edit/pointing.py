@@ -61,7 +61,8 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
     Args:
         target: the places, as they were read from the request.
         elements: the elements of the road before the edit.
-        what: the property to be changed; it decides what 'the end' and a name without a noun refer to.
+        what: the property to be changed; it decides what 'the end' and a target without a noun ('the second')
+            refer to.
 
     Raises:
         EditError: no element matches, or several match although the request means one.

@@ -3,8 +3,8 @@
 Each change has one or more candidates. They are combined, and the preferred ones are tried first. The steps
 of the candidates are applied to the elements of the road. Then ``design.fit`` changes the elements that the
 request names until the road is valid and its measurements are as requested; all other elements are frozen. If
-that fails, the other elements of a road of arcs may change as well. The start stays the same, unless the road
-would leave the map: then the road is shifted or rotated.
+that fails and the geometry is ``arcs``, the other elements may change as well. The start stays the same,
+unless the road would leave the map: then the road is shifted or rotated.
 """
 
 from collections.abc import Iterator, Sequence

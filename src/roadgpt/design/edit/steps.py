@@ -161,7 +161,7 @@ def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
 
 
 def scaled(segment: Segment, more: float, wider: float) -> Segment:
-    """Returns a segment with ``more`` times the angle and ``wider`` times the radius."""
+    """Returns a segment with its angle multiplied by ``more`` and its radius by ``wider``."""
     if not segment.turn_degrees:
         return segment
     degrees = round(segment.turn_degrees * more * TENTH) / TENTH
@@ -194,7 +194,7 @@ def gap(name: str, length: float, incline: float) -> RoadElement:
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """Returns a new turn with this angle and radius, and with the side and the slope of the element."""
+    """Returns a turn with a new angle and radius that goes left or right, and up or down, as before."""
     transitions = [s.transition for s in element.segments if s.transition]
     transition = transitions[0] if transitions else TRANSITION_SHARE * radius * radians(degrees)
     segments = turn_segments(
@@ -363,9 +363,9 @@ class Insert:
 
 
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Returns the elements with straights between new neighbours of one hand, so that two turns are seen.
+    """Inserts straights between turns that bend the same way and newly follow each other, to keep them apart.
 
-    Turns that were neighbours before, on the same sides, are two already.
+    Turns that followed each other before the edit, in the same directions, are measured as two already.
     """
     known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
     out: list[RoadElement] = []

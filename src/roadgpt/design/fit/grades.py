@@ -1,9 +1,10 @@
-"""Changes inclines until elements are measured with the grades that they should have. Main function:
+"""Changes inclines until the measured grades of the elements are as they should be. Main function:
 ``graded``.
 
 Parabolas join the grades of a road. A short level turn between two climbs is therefore measured as climbing,
 and a short slope is measured flatter than it is written. So the inclines of an element are changed by the
-measured error, and the road is measured again. What an element may not change is changed at its neighbours.
+measured error, and the road is measured again. If an incline is at its limit, the neighbouring inclines are
+changed instead.
 
 In a proposal, every turn must be measured with the slope that was proposed or is required, and all inclines
 may change as long as they stay up, down or level. In an edited road, only the inclines of elements with a
@@ -67,10 +68,10 @@ class _Slope(NamedTuple):
 def graded(
     design: Design, elements: RoadElements, outline: Outline, world: World, before: Design | None = None
 ) -> Design:
-    """Returns the design with inclines and parabolas with which elements are measured as required.
+    """Returns the design with inclines and parabolas for which the measured grades are as required.
 
-    If none are found, it returns the design with the last inclines that were measured as required, or else
-    with the first that were tried. The plan and the start stay the same.
+    If no such design obeys the rule ``too_abrupt``, the last one with the required grades is returned; if
+    there is none, the first that was tried. The plan and the start stay the same.
 
     Args:
         design: the design as it was proposed, or after the steps of an edit.

@@ -61,7 +61,7 @@ class Look:
 
     @cached_property
     def has_turns(self) -> bool:
-        """Whether the measured road has the turns of the elements, in order and to the same sides."""
+        """Whether the measured road has the same sequence of left and right turns as the elements."""
         return shows_turns(self.found, self.elements)
 
     @cached_property
@@ -87,7 +87,7 @@ class Look:
 
     @property
     def keeps_all_but_slopes(self) -> bool:
-        """Whether the road breaks no rule, and has all turns, each to the required side, when measured."""
+        """Whether the road breaks no rule, and its measured turns go left and right like the elements."""
         return not self.findings and self.has_turns
 
     def _unmet(self) -> str:
@@ -110,7 +110,7 @@ class Look:
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Returns a Look at a design and its elements, which get its segments.
+    """Returns a Look at a design; the elements are given the segments of the design.
 
     The road is moved inside the map, and above the ground, if it is not there and if this is possible.
     """
@@ -134,7 +134,7 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
 
 
 def restored(mended: Look, first: Look) -> Look:
-    """Returns the mended road with all values put back as proposed that need not have changed.
+    """Returns the mended road, with proposed values restored as long as it stays without objection.
 
     Args:
         mended: a road without an objection.

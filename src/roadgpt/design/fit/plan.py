@@ -271,7 +271,7 @@ def _drawn_in(span: Range, share: float) -> Range:
 
 
 def _separate(rows: _Rows, elements: Sequence[RoadElement], margins: Margins) -> None:
-    """Between two turns of one hand lies so much that they are seen as two."""
+    """Keeps two turns that go the same way far enough apart to be measured as two."""
     turns = [element for element in elements if element.is_turn]
     for one, other in pairwise(turns):
         if one.side == other.side:

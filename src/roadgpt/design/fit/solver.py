@@ -2,9 +2,9 @@
 ``least_change``.
 
 The objective is a weighted sum of squared relative changes. Its weights make a few larger changes cost no
-more than many small ones. A penalty is added for each limit that is broken, in metres, and its weight grows
-from round to round. Each step solves for all free lengths, all free turns and the place on the map at once
-(Levenberg-Marquardt). The plan is a polyline that follows its lengths and turns:
+more than many small ones. For each limit that is exceeded, the squared excess in metres is added as a
+penalty, whose weight grows from round to round. Each step solves for all free lengths, all free turns and the
+place on the map at once (Levenberg-Marquardt). The plan is a polyline that follows its lengths and turns:
 
     step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
 
@@ -52,7 +52,7 @@ class Margins(NamedTuple):
     seen: float = 12.0
     """Smallest angle of a turn, in degrees."""
     apart: float = 15.5
-    """Smallest distance between two successive turns to the same side, in metres."""
+    """Smallest distance between two successive turns that go the same way, in metres."""
     clear: float = 1.1
     """Distance in metres between two parts of the road, in addition to its width."""
     edge: float = 0.6
