@@ -40,7 +40,7 @@ from roadgpt.campaign.surrogate_features import NAMES, surrogate_features_of
 from roadgpt.check import inspect
 from roadgpt.cli.app import app
 from roadgpt.drive import COLUMNS, Box, Columns, Command, Drive, View
-from roadgpt.errors import DriverError, UsageError
+from roadgpt.errors import DriverError, PartError, UsageError
 from roadgpt.road import CrossSection, Design, Road, Segment, Site, World, build
 from roadgpt.run import Request, Run, prove, write_run
 from roadgpt.verdict import Verdict, judge
@@ -304,6 +304,18 @@ def test_a_driver_that_breaks_down_has_failed(monkeypatch: pytest.MonkeyPatch) -
     found = repeated(failed(build(design(straight(60), bend(-80, 20))), 72.0, t=1.5), 3)
     assert (found.failed, found.is_stable) == (3, True)
     assert all(math.isnan(drive.margin) for drive in found.drives)
+
+
+@pytest.mark.parametrize("error", [UsageError("there is no own.py"), PartError("there is no simulator")])
+def test_a_driver_that_cannot_be_loaded_has_not_failed(
+    error: UsageError, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuses(run: Run, disturbance: Disturbance) -> Verdict:
+        raise error
+
+    monkeypatch.setattr(stability, "drive_disturbed", refuses)
+    with pytest.raises(UsageError, match="there is no"):
+        repeated(failed(build(design(straight(60), bend(-80, 20))), 72.0, t=1.5), 3)
 
 
 def _proved_by(

@@ -134,6 +134,43 @@ def test_the_users_own_copy_is_run_where_the_folder_names_another_place(shared: 
     assert not (shared / "ran").exists()
 
 
+AGAIN = {
+    "faults": ("faults", "made", "--repeat", "2", "--no-plot"),
+    "drive": ("drive", "--again", "made", "1", "--no-plot"),
+    "resume": ("resume", "made", "-q"),
+}
+
+
+@pytest.mark.parametrize("words", AGAIN.values(), ids=AGAIN)
+@pytest.mark.parametrize("name", ["own.py:Mine", "./own.py:Mine", "whole"])
+def test_a_driver_that_was_named_by_a_relative_path_is_named_so_again(
+    words: tuple[str, ...], name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("own.py").write_text(DRIVER.format(str(tmp_path / "ran")))
+    made = ("run", "two sharp turns", "--driver", "own.py:Mine", "--no-plot", "-q", "--out", "made")
+    assert invoke(*made, "--seed", "3").exit_code == 0
+    provenance.CODE.forget()
+    name = str(tmp_path / "own.py:Mine") if name == "whole" else name
+    result = invoke(*words, "--driver", name)
+    assert result.exit_code == 0, result.output
+    assert "is driven by own.py:Mine, not by" in invoke(*words, "--driver", "own.py:Other").stderr
+
+
+def test_a_driver_that_is_gone_is_told_and_has_not_failed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("own.py").write_text(DRIVER.format(str(tmp_path / "ran")))
+    made = ("run", "two sharp turns", "--driver", "own.py:Mine", "--no-plot", "-q", "--out", "made")
+    assert invoke(*made, "--seed", "3").exit_code == 0
+    Path("own.py").rename("gone.py")
+    result = invoke(*AGAIN["faults"], "--driver", "own.py:Mine")
+    assert result.exit_code == 2, result.output
+    assert "own.py" in result.stderr
+    assert "fail again" not in result.output
+
+
 def test_what_needs_no_driver_shows_a_strangers_folder(shared: Path) -> None:
     for words in (
         ("show", "run/runs/0001"), ("show", "done"), ("status", "done"),

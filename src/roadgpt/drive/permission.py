@@ -65,7 +65,7 @@ def check_named_driver(spec: str | None, drivers: set[str], place: object) -> No
     Raises:
         UsageError: the driver is not used there.
     """
-    if spec is not None and spec not in drivers:
+    if spec is not None and _whole(spec) not in {*map(_whole, drivers)}:
         told = ", ".join(sorted(drivers)) or "nobody"
         raise UsageError(
             f"{place} is driven by {told}, not by {spec}; name that driver, or leave out --driver"
@@ -73,8 +73,9 @@ def check_named_driver(spec: str | None, drivers: set[str], place: object) -> No
 
 
 def _whole(spec: str) -> str:
+    """Returns PATH.py:CLASS with an absolute path; the name of a plug-in is returned unchanged."""
     path, wanted = split_spec(spec)
-    return f"{Path(path).absolute()}:{wanted}"
+    return f"{Path(path).absolute()}:{wanted}" if path else spec
 
 
 def _short(spec: str) -> str:

@@ -15,7 +15,7 @@ from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturban
 from roadgpt.drive import Simulator, simulate
 from roadgpt.drive.loading import driver_of
 from roadgpt.drive.permission import require_permission
-from roadgpt.errors import RoadGPTError, SimulatorError
+from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.run import Run
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.verdict import Verdict, judge
@@ -85,7 +85,8 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
         spread: the function that runs the drives: the built-in ``map``, or the ``map`` of a process pool.
 
     Raises:
-        UsageError: the user did not permit the driver's file to be run.
+        UsageError: the user did not permit the driver's file to be run, or the driver or the simulator cannot
+            be loaded.
         GivenUpError: the simulator failed three times in a row.
     """
     require_permission(run.request.setup.driver)  # other processes know nothing of where it comes from
@@ -98,6 +99,7 @@ def once(task: tuple[Run, int]) -> Repeated:
     If the simulator itself failed, the drive is repeated instead.
 
     Raises:
+        UsageError: the driver or the simulator cannot be loaded.
         GivenUpError: the simulator failed three times in a row.
     """
     run, number = task
@@ -112,7 +114,7 @@ def once(task: tuple[Run, int]) -> Repeated:
                     str(error), "fix it and run the same command again, which continues"
                 ) from error
             continue
-        except RoadGPTError:
+        except (DriverError, SimulationError):
             return Repeated(number, disturbance, True, float("nan"), None)
         break
     return Repeated(number, disturbance, not verdict.kept, verdict.margin, verdict.at_s)

@@ -18,12 +18,12 @@ DIRECTORY = Argument("directory", "DIR", kind=folder)
 # fmt: off
 OF_NEW = (
     Argument("file", "[SURVEY.toml]", kind=PATH, required=False),
-    Option("--from study", "Draw roads from its folders of runs.", folder, metavar="STUDY_DIR"),
+    Option("--from study", "Choose roads of its folders of runs at random.", folder, metavar="STUDY_DIR"),
     options.out("The survey's folder.", required=True, metavar="DIR"),
     Option("--asks", "With --from: who conducts the survey; raters see it first.", str, ""),
     Option("--contact", "With --from: where raters can send questions.", str, ""),
     Option("--pairs", "With --from: number of pairs of roads to compare.", whole(0, 20, "a number"), 2),
-    options.seed("With --from: seed of the draw.", 0),
+    options.seed("With --from: seed of the random choice.", 0),
     Option("--no-films", "Make no films, which take most of the time.", bool),
 )
 OF_SERVE = (
@@ -87,7 +87,7 @@ def new(
     survey = make_survey(plan, file.parent if file else Path(), out, click.echo)
     if study is not None:
         (out / FILE).write_text(plan_text(plan), encoding="utf-8")
-        click.echo(f"{out / FILE} lists the roads that were drawn; edit it and make the survey again from it")
+        click.echo(f"{out / FILE} lists the chosen roads; edit it and make the survey again from it")
     if survey.lacks:
         warn(survey.lacks)
     click.echo(
