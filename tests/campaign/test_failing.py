@@ -11,8 +11,11 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import children
-from roadgpt.campaign.faults import Simplest, failures_of, fault_log, faults_in
+from roadgpt.campaign.faults import fault_log
+from roadgpt.campaign.faults.failures import failures_of
+from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.faults.fault_log import FailureAnalysis
+from roadgpt.campaign.faults.minimise import Simplest
 from roadgpt.campaign.faults.stability import repeated
 from roadgpt.campaign.rerun import kept_run, read_trace, run_again
 from roadgpt.campaign.workers.unordered_map import unordered_map

@@ -11,31 +11,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import binomtest
 
-from roadgpt.campaign.faults import (
-    Repeated,
-    Stability,
-    faults_of,
-    manner_of,
-    reason_of,
-    repeated,
-    simplest,
-    smallest_change,
-    stability,
-)
 from roadgpt.campaign.faults import minimise as minimising
+from roadgpt.campaign.faults import stability
+from roadgpt.campaign.faults.change import smallest_change
 from roadgpt.campaign.faults.distinct import (
     BEND,
     GRADE,
     SHIFT,
     Surroundings,
     distances,
+    faults_of,
     surroundings,
     typical,
 )
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.campaign.faults.fault import WAYS
-from roadgpt.campaign.faults.reason import lane_curvature
-from roadgpt.campaign.faults.stability import drive_disturbed
+from roadgpt.campaign.faults.minimise import simplest
+from roadgpt.campaign.faults.reason import lane_curvature, manner_of, reason_of
+from roadgpt.campaign.faults.stability import Repeated, Stability, drive_disturbed, repeated
 from roadgpt.campaign.surrogate_features import NAMES, surrogate_features_of
 from roadgpt.check import inspect
 from roadgpt.cli.app import app

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.campaign.faults import faults_in
+from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.selection import chosen, selection_of

@@ -11,7 +11,8 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Literal
 
-from roadgpt.campaign.faults import faults_in, kept_analysis
+from roadgpt.campaign.faults.fault import faults_in
+from roadgpt.campaign.faults.fault_log import kept_analysis
 from roadgpt.campaign.folder_record import has_tests, open_record
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.record import Record

@@ -13,7 +13,7 @@ from roadgpt.cli.streams import apart, warn
 
 if TYPE_CHECKING:
     from roadgpt.campaign.cell_status import CellStatus
-    from roadgpt.campaign.faults import Faults
+    from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import Status
 
@@ -52,7 +52,7 @@ def faults_of(status: "Status") -> "Faults | None":
     """Returns the distinct faults of a campaign, comparing at most ``COMPARED`` failures; None if no test
     was driven.
     """
-    from roadgpt.campaign.faults import faults_in
+    from roadgpt.campaign.faults.fault import faults_in
 
     if not status.outcomes.get("PASS") and not status.outcomes.get("FAIL"):
         return None

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from roadgpt.campaign.faults import FailureReason
+from roadgpt.campaign.faults.reason import FailureReason
 from roadgpt.report.birds_eye import birds_eye
 from roadgpt.report.canvas import in_our_style, save
 from roadgpt.report.plan_view import Frame

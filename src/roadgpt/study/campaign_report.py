@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from roadgpt.campaign.cell_status import CellStatus
-from roadgpt.campaign.faults import faults_in
+from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.store_check import reading_store

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from roadgpt.campaign.faults import faults_in
+from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.errors import UsageError
 from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write

@@ -2,45 +2,20 @@
 road on which it occurs.
 """
 
-from roadgpt.campaign.faults.change import Difference, SmallestChange, smallest_change
-from roadgpt.campaign.faults.distinct import Surroundings, faults_of, surroundings
-from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
-from roadgpt.campaign.faults.fault import Fault, Faults, faults_in
-from roadgpt.campaign.faults.fault_log import (
-    AnalysisTask,
-    FailureAnalysis,
-    analyse,
-    kept_analysis,
-    write_tables,
-)
-from roadgpt.campaign.faults.minimise import Simplest, simplest
-from roadgpt.campaign.faults.reason import FailureReason, Manner, manner_of, reason_of
-from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
+from importlib import import_module
+from typing import Any
 
-__all__ = [
-    "AnalysisTask",
-    "Difference",
-    "FailureAnalysis",
-    "FailureReason",
-    "Fault",
-    "Faults",
-    "LocatedFailure",
-    "Manner",
-    "Repeated",
-    "Simplest",
-    "SmallestChange",
-    "Stability",
-    "Surroundings",
-    "analyse",
-    "failures_of",
-    "faults_in",
-    "faults_of",
-    "kept_analysis",
-    "manner_of",
-    "reason_of",
-    "repeated",
-    "simplest",
-    "smallest_change",
-    "surroundings",
-    "write_tables",
-]
+_MODULES = {
+    "faults_in": "fault",
+    "reason_of": "reason",
+    "repeated": "stability",
+    "simplest": "minimise",
+    "smallest_change": "change",
+}
+"""The functions for users, which are imported when they are first used."""
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"roadgpt.campaign.faults has no '{name}'; it offers {', '.join(_MODULES)}")
+    return getattr(import_module(f"roadgpt.campaign.faults.{_MODULES[name]}"), name)

@@ -16,8 +16,8 @@ from roadgpt.cli.progress import watched
 from roadgpt.cli.streams import warn
 
 if TYPE_CHECKING:
-    from roadgpt.campaign.faults import FailureAnalysis, Faults
-    from roadgpt.campaign.faults.fault_log import FailureDrawing
+    from roadgpt.campaign.faults.fault import Faults
+    from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
 
 REPEAT = 10  # disturbed drives of each fault, where nobody says how many
 DRIVES = whole(1, 1000, "drives")
@@ -79,8 +79,10 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         UsageError: There are no roads, or a file cannot be read.
         RoadGPTError: A file cannot be written.
     """
-    from roadgpt.campaign.faults import analyse, fault_log, faults_in, write_tables
+    from roadgpt.campaign.faults import fault_log
     from roadgpt.campaign.faults.failures import drivers_of
+    from roadgpt.campaign.faults.fault import faults_in
+    from roadgpt.campaign.faults.fault_log import analyse, write_tables
     from roadgpt.campaign.workers.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
     from roadgpt.drive.permission import require_permission

@@ -6,16 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.faults import (
-    FailureAnalysis,
-    FailureReason,
-    Fault,
-    Faults,
-    kept_analysis,
-    reason_of,
-)
-from roadgpt.campaign.faults.fault import DEFINED
-from roadgpt.campaign.faults.fault_log import FOLDER, TABLE
+from roadgpt.campaign.faults.fault import DEFINED, Fault, Faults
+from roadgpt.campaign.faults.fault_log import FOLDER, TABLE, FailureAnalysis, kept_analysis
+from roadgpt.campaign.faults.reason import FailureReason, reason_of
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
