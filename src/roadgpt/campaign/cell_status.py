@@ -68,8 +68,9 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
     counts: dict[str, dict[str, int]] = {}
     passed: dict[str, tuple[Any, ...]] = {}
     grouped = (
-        "SELECT cell, outcome, count(*), min(margin), sum(max_oob > 0 AND max_oob <= ?), sum(max_oob > ?), "
-        "max(max_oob), max(beyond) FROM tests WHERE outcome IS NOT NULL GROUP BY 1, 2"
+        "SELECT cell, outcome, count(*), min(margin), coalesce(sum(max_oob > 0 AND max_oob <= ?), 0), "
+        "coalesce(sum(max_oob > ?), 0), max(max_oob), max(beyond) FROM tests WHERE outcome IS NOT NULL "
+        "GROUP BY 1, 2"
     )
     for cell, outcome, count, *rest in record.stream(grouped, (MOSTLY, MOSTLY)):
         counts.setdefault(cell, {})[outcome] = count
@@ -77,6 +78,7 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
             passed[cell] = tuple(rest)
     asked = dict(record.query("SELECT cell, sum(n) FROM batches GROUP BY cell"))
     closed = dict(record.query("SELECT name, closed FROM cells"))
+    measured = ("least_margin", "partly_outside", "mostly_outside", "max_oob", "beyond")
     return tuple(
         CellStatus(
             name=cell.name,
@@ -86,13 +88,9 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
             seed=cell.request.seed,
             asked=asked.get(cell.name, 0),
             outcomes=counts.get(cell.name, {}),
-            least_margin=passed.get(cell.name, NOTHING)[0],
-            partly_outside=passed.get(cell.name, NOTHING)[1] or 0,
-            mostly_outside=passed.get(cell.name, NOTHING)[2] or 0,
-            max_oob=passed.get(cell.name, NOTHING)[3],
-            beyond=passed.get(cell.name, NOTHING)[4],
             goal=cell.goal,
             closed=closed[cell.name],
+            **dict(zip(measured, passed.get(cell.name, NOTHING), strict=True)),
         )
         for cell in record.cells()
     )

@@ -1,16 +1,8 @@
 """Executors: plug-ins that run the jobs of a campaign on workers. Each file defines one kind of worker.
 
-An executor is a class whose constructor takes a WorkerConfig. An executor only runs jobs: the process that
-created it chooses the tests, receives their results, and is the only one that writes the store. An executor
-has these methods:
-
-    share(name, value)      keeps a value for jobs that need it; it is sent to each worker at most once
-    forget(name)            drops a shared value that no later job needs
-    submit(jobs)            queues jobs, which begin in about this order; returns at once
-    done(seconds) -> list   returns the jobs that ended since the last call; waits up to ``seconds`` for one
-    map(function, items)    see ``campaign.model.Pool.map``; runs before all jobs that have not begun
-    under_way() -> list     returns the jobs that are running, and the worker of each
-    stop()                  ends every worker at once
+An executor is a class whose constructor takes a WorkerConfig; ``Executor`` describes its methods. It only
+runs jobs: the process that created it chooses the tests, receives their results, and is the only one that
+writes the store.
 
 A job runs ``function(item, *values)`` with the shared values that it needs; the function must be defined at
 the top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life,
@@ -83,20 +75,21 @@ class RunningJob:
 
 
 class Executor(Protocol):
-    """The interface of executors; the docstring of this module describes each method."""
+    """The interface of executors."""
 
     def __init__(self, staff: WorkerConfig) -> None: ...
 
     def share(self, name: str, value: Any) -> None:
-        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``."""
+        """Keeps a value under a name, for the jobs that list this name in ``Job.needs``; it is sent to each
+        worker at most once."""
         ...
 
     def forget(self, name: str) -> None:
-        """Drops a shared value."""
+        """Drops a shared value that no later job needs."""
         ...
 
     def submit(self, jobs: Sequence[Job]) -> None:
-        """Queues jobs and returns at once."""
+        """Queues jobs, which begin in about this order, and returns at once."""
         ...
 
     def done(self, seconds: float) -> list[FinishedJob]:
@@ -108,15 +101,16 @@ class Executor(Protocol):
         ...
 
     def under_way(self) -> list[RunningJob]:
-        """Returns the jobs that are running now."""
+        """Returns the jobs that are running, and the worker of each."""
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in the order of the items."""
+        """Returns the results of ``function`` for all items, in order; runs before all jobs that have not
+        begun. See ``campaign.model.Pool.map``."""
         ...
 
     def stop(self) -> None:
-        """Ends every worker."""
+        """Ends every worker at once."""
         ...
 
 
