@@ -16,7 +16,7 @@ from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.pointing import placed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.request import EditRequest
+from roadgpt.design.edit.request import Change, EditRequest
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import elements_on_road
 from roadgpt.errors import EditError
@@ -61,27 +61,30 @@ def edit(
     """
     asks = asks_a_model(plugins.find("designers", designer))
     elements, found = elements_on_road(design, geometry)
+    allowed: set[int] | None = None
     try:
         request = read_request(words) if isinstance(words, str) else words
         changes = placed(request.changes, elements)
-        spoken_of = None if request.unused else {one.name for change in changes for one in change.elements}
-    except EditError:
+        if not request.unused:
+            allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
+    except EditError:  # a model may understand it all the same
         if not asks:
             raise
-        spoken_of = None  # rules cannot tell
+    idle: tuple[Change, ...] = ()
+    unused: tuple[str, ...] = ()
     if asks:
-        settings = chat or configured()
-        said = words if isinstance(words, str) else words.words
+        model, said = chat or configured(), words if isinstance(words, str) else words.words
         road = edited_by_chat(
-            open_chat(settings), settings, design, said, elements, found, spoken_of, world, geometry
+            open_chat(model), model, design, said, elements, found, allowed, world, geometry
         )
-        return Edited(road.design, sentences(design, elements, found, road, road.design))
-    if len(changes) > MOST_CHANGES:
+        draft = road.design
+    elif len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
-    road, draft, idle = made(design, elements, found, changes, world, geometry)
+    else:
+        road, draft, idle = made(design, elements, found, changes, world, geometry)
+        unused = request.unused
     told = sentences(design, elements, found, road, draft)
-    told += tuple(f"'{change.words}' was so already" for change in idle)
-    return Edited(road.design, told, request.unused)
+    return Edited(road.design, (*told, *(f"'{change.words}' was so already" for change in idle)), unused)
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

@@ -7,7 +7,7 @@ answered for them.
 """
 
 import json
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from pydantic import BaseModel, Field
@@ -57,7 +57,7 @@ def edited_by_chat(
     words: str,
     elements: RoadElements,
     found: Measures,
-    spoken_of: Collection[str] | None,
+    allowed: set[int] | None,
     world: World,
     geometry: Geometry,
 ) -> Look:
@@ -70,8 +70,8 @@ def edited_by_chat(
         words: the change request.
         elements: the elements of that road.
         found: the measurements of that road.
-        spoken_of: names of the only elements that the model may change; None if rules cannot tell them: the
-            model may then change those that it names itself.
+        allowed: numbers of the only segments that the model may change, from 1; None if rules cannot tell
+            them: the model may then change those that it names itself.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that roads are built with.
 
@@ -87,7 +87,7 @@ def edited_by_chat(
         Message(role="system", text=f"{rules(RULES, world)}\n\n{TASK}"),
         Message(role="user", text=_question(design, words, elements, found.length)),
     ]
-    messages, wrong, problem, allowed = opening, "", None, _members(elements, spoken_of)
+    messages, wrong, problem = opening, "", None
     for _ in range(settings.rounds):
         said, problem = "", None
         try:
@@ -159,13 +159,6 @@ def _seen(elements: Sequence[RoadElement]) -> list[str]:
             out.append(f"- straight {straights}, {seen.length:.0f} m, {seen.grade:+.1f} %: {where}")
         first = end + 1
     return out
-
-
-def _members(elements: RoadElements, spoken_of: Collection[str] | None) -> set[int] | None:
-    """Numbers of the segments of the elements of these names; None where rules cannot tell."""
-    if spoken_of is None:
-        return None
-    return {i + 1 for element in elements if element.name in spoken_of for i in element.members}
 
 
 def _kept(design: Design, answer: EditedRoad, allowed: set[int] | None) -> Design:
