@@ -287,3 +287,24 @@ def test_the_longest_turns_keep_one_radius_through_all_their_segments() -> None:
     arc = (bend > 0.999 / radius).sum() * 0.25
     swept = radians(sum(part.turn_degrees for part in parts))
     assert arc == pytest.approx(radius * swept - (parts[0].transition or 0), abs=1.0)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize(
+    ("line", "degrees"),
+    [
+        ("straight up; turn right 90; straight down", [90]),
+        ("straight down; turn left 130; straight up", [130]),
+        ("straight up; hairpin left 170; straight down", [170]),
+        ("straight 60 up pct=8; turn right 60 r25; straight 60 down pct=8", [60]),
+        ("straight up; turn right 45; turn left 70; straight down", [45, 70]),
+    ],
+)
+def test_a_turn_between_slopes_is_one_turn_of_its_angle(line: str, degrees: list[float], seed: int) -> None:
+    """The turn itself has no slope that was asked for, and joins those of its neighbours."""
+    design = draft(read_plan(line), World(), seed=seed)
+    found = measure(build(design).sample().points)
+    assert [turn.degrees for turn in found.turns] == pytest.approx(degrees, rel=0.12)
+    assert sum(abs(segment.turn_degrees) for segment in design.segments) == pytest.approx(
+        sum(degrees), rel=0.12
+    )

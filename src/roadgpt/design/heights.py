@@ -320,19 +320,20 @@ def _with_climb(
 
 
 def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
-    """Gives a joining straight the grades of its neighbours, half each where they differ."""
+    """Gives the halves of a joining straight the grades of its neighbours, and a joining turn the mean."""
     out = [*drawn]
     for index, own in enumerate(out):
         if not np.isnan(own[0].incline):
             continue
-        before = next((o[-1].incline for o in out[:index][::-1] if not np.isnan(o[-1].incline)), None)
-        after = next((o[0].incline for o in out[index + 1 :] if not np.isnan(o[0].incline)), None)
-        first, last = (before if before is not None else after), (after if after is not None else before)
+        before = [o[-1].incline for o in out[:index] if not np.isnan(o[-1].incline)][-1:]
+        after = [o[0].incline for o in out[index + 1 :] if not np.isnan(o[0].incline)][:1]
+        first, last = (before or after or [0.0])[0], (after or before or [0.0])[0]
         if first == last:
-            out[index] = [own[0]._replace(incline=first or 0.0)]
+            out[index] = [own[0]._replace(incline=first)]
+        elif own[0].turn:
+            out[index] = [own[0]._replace(incline=float(rounded(np.array([(first + last) / 2]))[0]))]
         else:
-            half = own[0]._replace(straight=own[0].straight / 2)
-            out[index] = [half._replace(incline=grade or 0.0) for grade in (first, last)]
+            out[index] = [own[0]._replace(straight=own[0].straight / 2, incline=g) for g in (first, last)]
     return out
 
 
