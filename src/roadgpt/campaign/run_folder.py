@@ -26,6 +26,8 @@ from roadgpt.run.folder_names import HOME, new_folder
 from roadgpt.run.sbft_json import test_name, test_text
 from roadgpt.run.tables import DESCRIPTION, TABLES, Tally, TallyEntry, write_description
 
+GIVEN = "given"  # origin of roads that were not made from a description
+
 
 @dataclass(frozen=True)
 class FinishedRun(FinishedTest):
@@ -71,7 +73,7 @@ class RunWriter:
 
 def finished_run(run: Run) -> FinishedRun:
     """Converts the Run of an earlier session to a FinishedRun."""
-    proposal = Proposal(run.design, run.seed, "draft" if run.words else "given")
+    proposal = Proposal(run.design, run.seed, "draft" if run.words else GIVEN)
     task = Task(run.index, run.index - 1, proposal)
     return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
 
@@ -168,8 +170,9 @@ class RunFolder:
 
     def cell(self, name: str) -> Cell:
         """Returns the cell whose tests this folder holds."""
+        generator = WITHOUT_GOAL if self.request.words else GIVEN
         budget = Budget(tests=self.roads)
-        return Cell(name, self.request, self.brief, WITHOUT_GOAL, None, {}, budget, in_sequence=True)
+        return Cell(name, self.request, self.brief, generator, None, {}, budget, in_sequence=True)
 
     def begin(self) -> bool:
         """Prepares the folder for a session. If all tests have ended, changes nothing and returns True.
