@@ -26,6 +26,7 @@ from roadgpt.campaign.rerun import read_trace
 from roadgpt.campaign.status import status_of
 from roadgpt.cli import app
 from roadgpt.run import read_run
+from roadgpt.run.atomic import alone_in
 
 QUICK = [sys.executable, str(TESTS / "campaign" / "quick.py")]
 SOON = 120.0  # s: far more than anything here takes
@@ -239,6 +240,11 @@ def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> 
     (broken / "runs/0003/run.json").write_text("{}")
     card = json.loads((broken / "campaign.json").read_text())
     (broken / "campaign.json").write_text(json.dumps(card | {"is_finished": False}))
+    (broken / "runs/0003").rename(broken / "aside")
+    with alone_in(broken):
+        assert roadgpt("status", broken).stdout.startswith(f"{broken}: at work, 1 of 4 tests")
+    assert roadgpt("status", broken).stdout.startswith(f"{broken}: interrupted, 1 of 4 tests")
+    (broken / "aside").rename(broken / "runs/0003")
     done = roadgpt("resume", broken, "--json", "--junit", tmp_path / "tests.xml")
     assert done.exit_code == 0, done.output
     told = json.loads(done.stdout)

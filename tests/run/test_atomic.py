@@ -2,12 +2,23 @@
 
 import json
 import math
+import os
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from roadgpt.errors import UsageError
-from roadgpt.run.atomic import LOCK, alone_in, json_text, sweep, whole_folder, write_whole
+from roadgpt.run.atomic import (
+    LOCK,
+    alone_in,
+    is_locked,
+    json_text,
+    sweep,
+    whole_folder,
+    write_lines,
+    write_whole,
+)
 
 
 def test_a_file_is_replaced_whole(tmp_path: Path) -> None:
@@ -102,3 +113,24 @@ def test_a_failure_under_the_lock_is_what_is_told(tmp_path: Path, monkeypatch: p
         _ = 1 / 0
     with alone_in(tmp_path):
         pass
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no such locks")
+def test_others_see_that_somebody_is_at_work(tmp_path: Path) -> None:
+    assert not is_locked(tmp_path)
+    with alone_in(tmp_path):
+        assert is_locked(tmp_path)
+    assert not is_locked(tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == [LOCK]  # looking makes no file
+
+
+def test_lines_are_written_whole_or_not_at_all(tmp_path: Path) -> None:
+    def lines() -> Iterator[str]:
+        yield "one\n"
+        raise RuntimeError("enough")
+
+    write_lines(tmp_path / "a.csv", ["old\n", "\udcff\n"])
+    with pytest.raises(RuntimeError):
+        write_lines(tmp_path / "a.csv", lines())
+    assert (tmp_path / "a.csv").read_bytes() == b"old\n\\udcff\n"
+    assert [path.name for path in tmp_path.iterdir()] == ["a.csv"]
