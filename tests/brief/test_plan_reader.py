@@ -66,6 +66,7 @@ def test_a_plan_becomes_the_road_that_it_describes() -> None:
         ("!nonsense turns", "a plan has no refusal"),
         ("!perhaps", "a plan has no refusal '!perhaps'"),
         ("!nonsense", "does not describe a road"),
+        ("!impossible speed", "words do not do this: the speed limit is set with --speed-limit"),
         ("!unclear", "what is wanted is not said"),
         ("| turns=3 lefts=2 rights=2", "left"),
     ],

@@ -66,11 +66,12 @@ OPTIONS = {
     "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
 }
 """Names of what an option sets and words do not, with the remark."""
-BESIDE = frozenset({*NOT_BUILT, *NEEDS_NUMBERS, *OPTIONS})
+SAID_OTHERWISE = NEEDS_NUMBERS | OPTIONS
+BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE})
 
 
 def remark(name: str) -> str:
     """Returns what the user should know about a thing of this name, as a sentence without a full stop."""
     if name in NOT_BUILT:
         return f"{NOT_BUILT[name]} is not built yet; the road is made without it"
-    return NEEDS_NUMBERS.get(name) or OPTIONS[name]
+    return SAID_OTHERWISE[name]

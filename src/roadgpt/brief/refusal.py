@@ -2,7 +2,7 @@
 larger map may hold the road.
 """
 
-from roadgpt.brief.beside import NOT_BUILT
+from roadgpt.brief.beside import NOT_BUILT, SAID_OTHERWISE
 from roadgpt.brief.model import Brief
 from roadgpt.errors import BriefError
 
@@ -42,7 +42,9 @@ BEYOND = {
 def refused(line: str) -> BriefError:
     """Returns the error for a plan that is a refusal, such as '!impossible roundabout'."""
     kind, *causes = line.split()
-    known = {"!contradiction": CLASHING, "!impossible": {**NOT_BUILT, **BEYOND}}.get(kind, {})
+    known = {"!contradiction": CLASHING, "!impossible": {**NOT_BUILT, **BEYOND, **SAID_OTHERWISE}}.get(
+        kind, {}
+    )
     unknown = [cause for cause in causes if cause not in known]
     if kind not in ADVICE or unknown:
         return BriefError(f"a plan has no refusal '{line.strip()[:60]}'; begin one with {', '.join(ADVICE)}")
@@ -51,6 +53,8 @@ def refused(line: str) -> BriefError:
     said = " and ".join(known[cause] for cause in causes)
     if kind == "!contradiction":
         return BriefError(f"the description contradicts itself about {said}; leave one of them out")
+    if SAID_OTHERWISE.keys() & {*causes}:
+        return BriefError(f"words do not do this: {said}")
     return BriefError(f"no such road can be built: {said}; leave that out")
 
 
