@@ -1,6 +1,7 @@
 """The table of what words such as "hairpin" mean, and of the numbers that can be required.
 
-The readers, the Outline, the sentences, prompts and complaints, and the documentation take both from here.
+Everything takes these meanings and numbers from here: the readers, the Outline, the texts that RoadGPT writes
+(descriptions, prompts, complaints about a road), and the documentation.
 
 Every number is in everyday units (degrees, metres, percent with uphill positive) and applies to a measurement
 on the finished geometry: the angle and the tightest radius of a turn, the length of a straight, the mean

@@ -134,9 +134,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the numbers of earlier batches. Every draft in this batch must differ from all their
-        roads.
-        """
+        """Returns the indices of earlier batches whose roads every draft in this batch must differ from."""
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)

@@ -46,7 +46,7 @@ def open_record(folder: Path) -> Record:
 class FolderRecord(FolderStore):
     """The tests in a folder of runs, open for reading.
 
-    The Runs are read when the first query needs the tables; a Run that cannot be read is then an error.
+    All Runs are read when the tables are first queried; if one of them cannot be read, that query fails.
     """
 
     def __init__(self, folder: Path) -> None:

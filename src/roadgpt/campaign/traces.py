@@ -62,8 +62,9 @@ def trace_of(drive: Drive) -> Trace:
 
 
 def drive_of(trace: Trace) -> Drive:
-    """Returns the Drive of a Trace; its values differ from those of the original drive by at most half a
-    step.
+    """Returns the Drive of a Trace.
+
+    A value differs from that of the original drive by at most half the rounding step of its column.
     """
     header = dict(trace.header)
     columns = Columns({name: _number(trace.columns[name], STEPS[name]) for name in COLUMNS})

@@ -63,7 +63,8 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "Interpreter: model, grammar, chat or plan.", str, "model", guard=reader_guard),
+    _run("--reader", "What reads the description: model, grammar, chat, or plan (if it is a plan already).",
+         str, "model", guard=reader_guard),
     _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
     _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,

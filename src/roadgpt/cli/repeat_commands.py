@@ -29,7 +29,9 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int) -> list[str]:
-    """Returns the arguments of ``roadgpt run`` that make the first ``roads`` roads of a request."""
+    """Returns the arguments with which ``roadgpt run`` makes the first roads of a request; ``roads`` is their
+    number.
+    """
     rest = ["-n", str(roads), "--seed", str(request.seed), *option_words(request.setup, request.world)]
     if not request.setup.drives:
         rest.append("--no-drive")

@@ -11,8 +11,8 @@ Design. If no road can meet all requirements on this map, the method raises Desi
 advice.
 
 A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts = False``
-if it must not be called again when rules object; ``geometry``, the kind of geometry with which its segments
-must be built, whatever the user chose ("spline" for RoadGPT's original splines).
+if it must not be called again when rules object; ``geometry``, the kind of geometry that its designs
+require, such as "spline" for RoadGPT's original splines; it overrides the user's choice.
 """
 
 from collections.abc import Sequence

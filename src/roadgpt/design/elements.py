@@ -27,7 +27,9 @@ SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn 
 def turn_element(
     angle: float, hand: int, radius: float, transition: float, required_grade: Range | None = None
 ) -> Element:
-    """Returns a turn with its numbers rounded as in files, and its transitions short enough for its arc.
+    """Returns a turn with numbers rounded to the precision of design files.
+
+    Its transitions are short enough to fit its arc.
 
     Args:
         angle: change of heading in degrees, positive.
@@ -55,7 +57,9 @@ def least_radius(world: World) -> float:
 
 
 def as_written(element: Element) -> Element:
-    """Returns the element with its length, angle, radius and transition rounded as in files."""
+    """Returns the element with its length, angle, radius and transition rounded to the precision of design
+    files.
+    """
     if not element.turn:
         return element._replace(straight=max(element.straight, SHORTEST))
     hand = 1 if element.turn > 0 else -1
@@ -69,7 +73,7 @@ def segments_of_turn(angle: float) -> int:
 
 
 def cut(element: Element) -> list[Segment]:
-    """Cuts an element into segments; its numbers must be rounded as in files."""
+    """Cuts an element into segments; its numbers must be rounded to the precision of design files."""
     if not element.turn:
         return [
             Segment(

@@ -53,8 +53,8 @@ def corrected_draft(
         outline: the requirements for the road.
         limit: range of inclines that are allowed, in percent.
         pace: the vertical radii that the expected speeds require.
-        ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule requires)
-            to 1, between consecutive straights of which one has a fixed length.
+        ease: share (0 to 1) of the comfortable vertical radii to aim for between consecutive straights of
+            which one has a fixed length; where the rule requires a larger radius, that one is used.
         share: the same kind of share for all other vertical radii.
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """

@@ -146,8 +146,8 @@ def drawn_heights(
         windows: the grades that the requirements allow.
         rng: random number generator.
         pace: the vertical radii that the expected speeds on this plan require.
-        ease: vertical radii as a share of the comfortable ones, from 0 (only as large as the rule
-            requires) to 1 (fully comfortable).
+        ease: share (0 to 1) of the comfortable vertical radii to aim for; where the rule requires a larger
+            radius, that one is used.
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
     is_hilly = bool(outline.hills and outline.hills.lo > 0)

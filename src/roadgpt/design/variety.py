@@ -110,7 +110,7 @@ def apart_by_metres(shape: PlanShape, others: PlanShape) -> Array:
 
 
 class Shapes:
-    """Keeps the shapes of the roads of designs, so that each road is built and sampled only once."""
+    """Caches the shape of each design's road, so that each road is built and sampled only once."""
 
     def __init__(self) -> None:
         self._known: dict[int, tuple[Design, PlanShape]] = {}

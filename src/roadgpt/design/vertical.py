@@ -203,12 +203,15 @@ def _made_room(
 def joined(
     segments: Sequence[Segment], pace: Pace, ease: float = 1.0, opened: Collection[int] | None = None
 ) -> tuple[Segment, ...]:
-    """Returns the segments with vertical radii where grades change, as large as there is room for.
+    """Returns the segments with a vertical radius wherever the grade changes.
+
+    Each radius is as large as ``ease`` asks for, or smaller if there is not enough room.
 
     Args:
         segments: the segments of a design, in driving order.
         pace: the vertical radii that the expected speeds require.
-        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
+        ease: share (0 to 1) of the comfortable radius to aim for; if the rule requires a larger radius, that
+            one is used.
         opened: indices of the segments whose radius is chosen anew; None to choose a radius for every segment
             without one.
     """
@@ -255,7 +258,8 @@ def with_new_parabolas(
         segments: the segments after the change.
         before: the segments of the road before the change.
         pace: the vertical radii that the expected speeds require.
-        ease: share of the comfortable radius, from 0 (only as large as the rule requires) to 1.
+        ease: share (0 to 1) of the comfortable radius to aim for; if the rule requires a larger radius, that
+            one is used.
         is_widened: True to add parabolas to unchanged segments, too, and to enlarge all parabolas that are
             smaller than the rule allows.
     """

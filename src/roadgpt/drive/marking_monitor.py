@@ -1,10 +1,13 @@
 r"""Computes how far a car reaches beyond the outer edges of the markings on both sides of its lane.
 
     left                    right          The result is positive beyond an edge and negative inside,
-|    ¦ ¦      lane           |¦            in metres across the lane. It is measured at the outer edges
-|    ¦ ¦  <- the car ->      |¦            of the front tyres where they touch the road, or along both
-     ¦ ¦                     |¦            sides of the body's underside, including pitch and roll.
+|    ¦ ¦      lane           |¦            in metres across the lane.
+|    ¦ ¦  <- the car ->      |¦
+     ¦ ¦                     |¦
        ^ outer edge            ^ outer edge
+
+A monitor measures either at the outer edges of the front tyres, where they touch the road (``for_tyres``), or
+along both lower edges of the body (``for_body``). Both take pitch and roll into account.
 """
 
 import math

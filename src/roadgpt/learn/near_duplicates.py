@@ -1,7 +1,7 @@
 """Finds descriptions that are nearly the same: those that have more than 60 % of their 5-grams in common.
 
-Numbers, sides and synonyms are masked first, so texts that fill the same template with different words are
-found too.
+Numbers and words of the same kind (such as left and right, or turn and bend) are masked first, so texts that
+fill the same template with different words are found too.
 """
 
 import json
@@ -35,7 +35,7 @@ class NearDuplicate:
 
 
 def masked(text: str) -> tuple[str, ...]:
-    """Returns the words of a text, with numbers, sides and synonyms replaced by masks."""
+    """Returns the words of a text. Numbers, and words of one kind such as left and right, become masks."""
     return tuple(_mask(word) for word in re.findall(r"\d+(?:[.,]\d+)?|[^\W\d_]+", plain(text)))
 
 

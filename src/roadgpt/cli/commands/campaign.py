@@ -45,8 +45,8 @@ PARAMETERS = (
     options.out("Folder for the campaign. [default: a new one]"),
     *options.WORKERS,
     *named(options.SETUP, "reader", "designer"),
-    Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. With "
-           "FILE.toml, name a driver file that is listed there to allow RoadGPT to run it.", driver,
+    Option("--driver drivers", "Name of a driver, or FILE.py:CLASS; repeat the option for more drivers. If "
+           "FILE.toml lists a driver file, RoadGPT runs it only if you name it here, too.", driver,
            ("beamng_like",), multiple=True, heading=Heading.DRIVE, table="run", guard=driver_guard),
     *named(options.SETUP, "simulator", "keep_driving"),
     *options.WORLD,

@@ -51,7 +51,8 @@ def command(
     """Measure how similar two roads are, and plot them in two panels, one above the other.
 
     A and B are runs, tests of campaigns or road files. A similarity is a number from 0 (nothing in
-    common) to 1 (identical). Moving or rotating a road does not change it.
+    common) to 1 (identical). Moving or rotating a road does not change the
+    similarity.
 
     \b
     roadgpt compare DIR/runs/0001 DIR/runs/0002

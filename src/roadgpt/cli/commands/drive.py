@@ -60,11 +60,11 @@ def command(
     points at the same place, or no room for a car. With --rules sbft (see --help-all), every broken rule
     makes a road INVALID, as in the SBFT competition. The exit status is 0 if every road could be read.
 
-    With --again, give a folder of runs or a campaign and the tests by number, such as DIR 17. If a campaign
-    has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road, world, driver
-    and seed are taken from the test, so the drive should be identical byte for byte; the command says so if
-    it is not. Each test is written into a run folder of its own. To look at a test without driving it
-    again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
+    With --again, give a campaign or a folder of runs, followed by the numbers of its tests, such as DIR 17.
+    If a campaign has several cells (combinations of settings), name the cell, too: CAMPAIGN/c02/17. Road,
+    world, driver and seed are taken from the test, so the drive should be identical byte for byte; the
+    command says so if it is not. Each test is written into a run folder of its own. To look at a test
+    without driving it again, use roadgpt show, view, film or export with CAMPAIGN/c02/17.
 
     \b
     roadgpt drive my_road.json --friction 0.6

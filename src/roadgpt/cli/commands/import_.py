@@ -38,9 +38,9 @@ OPTIONS = (
 def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, quiet: bool) -> None:
     """Read a road from an OpenDRIVE file, write it as a road file, and describe it in words.
 
-    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The inner edge of the driving
-    lane becomes the centre line of the imported road. A road that is off the map is moved onto it. The file
-    can then be checked, driven and viewed like any other road.
+    Lines, arcs, spirals, poly3, paramPoly3, elevation and widths are read. The centre line of the
+    imported road is the inner edge of the innermost driving lane: the edge nearest to lane 0. A road that is
+    off the map is moved onto it. The file can then be checked, driven and viewed like any other road.
 
     \b
     roadgpt import town.xodr --road 12

@@ -18,7 +18,7 @@ STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
 
 
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> EditStep:
-    """Returns the step by which no incline of the elements is beyond the bound of the change."""
+    """Returns the edit step that makes every element at most, or at least, as steep as the change asks."""
     names, bound = frozenset(element.name for element in elements), change.to or 0.0
     if change.bound < 0:
         return SlopeOfAll(names, least=0, most=bound)

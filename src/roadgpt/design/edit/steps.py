@@ -184,7 +184,7 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
 
 
 def straight(length: float, incline: float) -> Segment:
-    """Returns a straight segment with its numbers rounded as in files."""
+    """Returns a straight segment with numbers rounded to the precision of design files."""
     return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
 
 

@@ -113,8 +113,8 @@ class _SectionSide(NamedTuple):
 
 
 def read_profile(road: Node, lanes: Lanes) -> FileProfile:
-    """Returns the cross-section of a road. Its widths and superelevation are constant after the end of the
-    road.
+    """Returns the cross-section of a road. Beyond the road's end, widths and superelevation keep their last
+    values.
 
     Raises:
         UsageError: A width or the superelevation consists of too many cubics.

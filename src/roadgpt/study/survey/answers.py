@@ -88,7 +88,7 @@ def answers_of_raters(
 
     Args:
         survey: the survey.
-        given: for each rater, identified by the digest of the token, the answers by question.
+        given: the answers of each rater by question; the keys are the digests that identify the raters.
         source: whether the raters are people or simulated.
         invited: number of invited raters.
         withdrawn: number of raters who withdrew.

@@ -167,7 +167,10 @@ class Draft:
         return Draft(writer, (*self.tokens, TOKENS[token]), (*self.chances, chance), token)
 
     def written(self, refusal: float) -> "WrittenPlan":
-        """Returns the draft as a WrittenPlan, with the given probability of a refusal."""
+        """Returns the draft as a WrittenPlan.
+
+        ``refusal`` is the probability that the description should be refused.
+        """
         return WrittenPlan(self.tokens, self.chances, refusal)
 
 

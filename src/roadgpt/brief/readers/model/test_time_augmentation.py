@@ -69,7 +69,7 @@ class VariantPlans:
 
     @property
     def is_clear(self) -> bool:
-        """True if one plan is nearly certain, and the probability of a refusal is close to 0 or 1."""
+        """True if the network is nearly certain whether to refuse the description and which plan is right."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
             return False
         _, best = max(self.plans.values(), key=lambda plan: plan[0])

@@ -58,8 +58,10 @@ class Watchdog:
             watcher.join()
 
     def due_in(self, seconds: float) -> None:
-        """Sets a new time limit of ``seconds``, which starts now, so that one ``within`` block can contain
-        a loop of short calls."""
+        """Restarts the time limit: it ends ``seconds`` from now.
+
+        A loop in a single ``within`` block can thus give each call a limit of its own.
+        """
         self._due = time.monotonic() + seconds
 
     def pause(self) -> None:
