@@ -1,0 +1,145 @@
+"""What a reader makes of the fresh sentences in data/fresh: five roads of each, judged by their truths.
+
+    python benchmarks/bench_fresh.py --json judged.json
+
+Whoever writes training text for a reader does not look at the rows that it misses, and does not run this.
+"""
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from roadgpt.brief import Brief, read
+from roadgpt.check.measures import Measures, measure
+from roadgpt.cli.commands.run import SURE
+from roadgpt.design import draft
+from roadgpt.errors import RoadGPTError
+from roadgpt.road import World, build
+from roadgpt.study.truth import Truth, holds
+
+ROOT = Path(__file__).resolve().parents[1]
+FRESH = ROOT / "data" / "fresh"
+SHARED = ROOT.parent / "shared"
+WORLD = World()
+ROADS = 5
+RESAMPLES = 2000
+REFUSED, HONEST, BUILT = "rightly refused", "refused though it can be built", "built though it cannot be"
+RIGHT, WARNED, SILENT, INVERTED = "right", "wrong, warned", "silently wrong", "inverted"
+
+
+class Judged(NamedTuple):
+    """What became of one sentence."""
+
+    verdict: str
+    confidence: float | None = None
+    is_flagged: bool = False
+    """Whether the answer said that something was not understood, or that it was not sure."""
+
+
+def rows(name: str) -> list[dict[str, Any]]:
+    """The lines of one file of fresh sentences."""
+    return [json.loads(line) for line in (FRESH / name).read_text(encoding="utf-8").splitlines()]
+
+
+def is_met(truth: dict[str, Any], roads: Sequence[Measures]) -> bool:
+    """Does every road meet the truth, or each road one of several?"""
+    ways = [Truth.model_validate(way) for way in truth.get("either", [truth])]
+    return all(any(all(holds(road, way).values()) for way in ways) for road in roads)
+
+
+def judged(row: dict[str, Any], reader: str) -> Judged:
+    """Reads a description, builds its roads and compares them with what its writer meant."""
+    cannot = "refuse" in row["truth"]
+    try:
+        brief: Brief = read(row["text"], reader)
+        roads = [measure(build(draft(brief, WORLD, seed=seed)).sample().points) for seed in range(ROADS)]
+    except RoadGPTError:
+        return Judged(REFUSED if cannot else HONEST)
+    flagged = brief.confidence < SURE or bool(brief.unused or brief.beside)
+    if cannot:
+        return Judged(BUILT, brief.confidence, flagged)
+    if is_met(row["truth"], roads):
+        return Judged(RIGHT, brief.confidence, flagged)
+    if "trap" in row and not flagged and is_met(row["trap"], roads):
+        return Judged(INVERTED, brief.confidence, flagged)
+    return Judged(WARNED if flagged else SILENT, brief.confidence, flagged)
+
+
+def area(found: Sequence[Judged]) -> tuple[float, float, float]:
+    """Area under the curve of the confidence, of right against wrong readings, with a 95 % interval."""
+    read_ = [(one.confidence, one.verdict == RIGHT) for one in found if one.confidence is not None]
+    sure, good = np.array([row[0] for row in read_]), np.array([row[1] for row in read_])
+    rng = np.random.default_rng(0)
+
+    def of(picked: Any) -> float:
+        yes, no = sure[picked][good[picked]], sure[picked][~good[picked]]
+        if not (len(yes) and len(no)):
+            return float("nan")
+        return float(np.mean((yes[:, None] > no) + 0.5 * (yes[:, None] == no)))
+
+    samples = [of(rng.integers(0, len(sure), len(sure))) for _ in range(RESAMPLES)]
+    low, high = np.nanquantile(samples, [0.025, 0.975])
+    return of(np.arange(len(sure))), float(low), float(high)
+
+
+def changes(folder: Path) -> dict[str, str] | None:
+    """The verdicts of the outside judge of changes by id; None where the judge is not at hand."""
+    judge = SHARED / "edits" / "judge_edits.py"
+    if not judge.is_file():
+        return None
+    out = folder / "changes.json"
+    words = [sys.executable, str(judge), str(FRESH / "changes.jsonl"), "--json", str(out)]
+    subprocess.run(words, env={**os.environ, "REFEREE": str(SHARED)}, check=True, stdout=subprocess.DEVNULL)
+    found = json.loads(out.read_text(encoding="utf-8"))
+    return {row["id"]: row["verdict"] for row in (found["rows"] if isinstance(found, dict) else found)}
+
+
+def lines(title: str, verdicts: Sequence[str]) -> Iterator[str]:
+    """The counts of one set."""
+    yield f"{title}, {len(verdicts)}:"
+    for verdict, number in Counter(verdicts).most_common():
+        yield f"    {number:4}  {verdict}"
+
+
+def main() -> None:
+    """Judge all sets and print the counts; no sentence is shown."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--reader", default="model")
+    parser.add_argument("--json", type=Path, help="where the verdict on each row is kept, by its id")
+    given = parser.parse_args()
+    found = {
+        name: {row["id"]: judged(row, given.reader) for row in rows(f"{name}.jsonl")}
+        for name in ("descriptions", "contrasts")
+    }
+    for name, of_rows in found.items():
+        print("\n".join(lines(name, [one.verdict for one in of_rows.values()])))
+    both = [one for of_rows in found.values() for one in of_rows.values()]
+    wrong = [one for one in both if one.confidence is not None and one.verdict != RIGHT]
+    right = [one for one in both if one.verdict == RIGHT]
+    print("area under the curve of the confidence: {:.3f} [{:.3f}, {:.3f}]".format(*area(both)))
+    print(f"wrong readings that are flagged: {sum(one.is_flagged for one in wrong)} of {len(wrong)}")
+    print(f"right readings that are flagged: {sum(one.is_flagged for one in right)} of {len(right)}")
+    with tempfile.TemporaryDirectory() as folder:
+        edited = changes(Path(folder))
+    print(
+        "\n".join(lines("changes", [*edited.values()])) if edited else "changes: their judge is not at hand"
+    )
+    if given.json:
+        kept = {name: {key: one._asdict() for key, one in some.items()} for name, some in found.items()}
+        text = json.dumps(kept | {"changes": edited}, indent=1, sort_keys=True)
+        given.json.write_text(text + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
