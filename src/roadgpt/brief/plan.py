@@ -132,7 +132,8 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
         _set(fields, WORDS[word], word)
     else:
         raise BriefError(
-            f"a plan has no word '{word[:40]}' here; the language is described in roadgpt.brief.plan"
+            f"a plan has no word '{word[:40]}' here; what is asked of the whole road stands behind |, and "
+            "the page 'Plans' of the reference describes the language"
         )
 
 
