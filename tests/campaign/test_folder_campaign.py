@@ -15,13 +15,13 @@ import pytest
 
 from campaign.folder_worker import Deadly, Drawing
 from roadgpt import children
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.campaign import campaign
 from roadgpt.campaign.batch_scheduler import GIVE_UP
 from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
-from roadgpt.road import Design, Road
+from roadgpt.road import Design, Road, World
 from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of
 from run.doubles import Designer, Unable, a_design, folder_of, put_on_shelf
 
@@ -518,3 +518,13 @@ def test_workers_that_die_over_a_road_leave_one_error(tmp_path: Path) -> None:
     assert [one.outcome for one in ended] == ["VALID", "ERROR"]
     assert "3 workers ended over it" in ended[1].description
     assert read_run(tmp_path / "c" / "runs" / "0002").description == ended[1].description
+
+
+def test_a_brief_that_was_written_by_hand_is_enough(tmp_path: Path) -> None:
+    """It has no words; its roads are drafted all the same, and continued."""
+    brief = Brief(clauses=(Clause(kind="turn", count=exactly(2)),))
+    made = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
+    assert [run.outcome for run in made] == ["VALID", "VALID"]
+    (tmp_path / "out" / "test.0002.json").unlink()
+    again = list(campaign(brief, 2, 3, World(), Setup(drives=False), tmp_path / "out"))
+    assert [run.design for run in again] == [made[1].design]

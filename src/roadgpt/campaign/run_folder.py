@@ -73,7 +73,7 @@ class RunWriter:
 
 def finished_run(run: Run) -> FinishedRun:
     """Converts the Run of an earlier session to a FinishedRun."""
-    proposal = Proposal(run.design, run.seed, "draft" if run.words else GIVEN)
+    proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
     task = Task(run.index, run.index - 1, proposal)
     return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
 
@@ -170,7 +170,7 @@ class RunFolder:
 
     def cell(self, name: str) -> Cell:
         """Returns the cell whose tests this folder holds."""
-        generator = WITHOUT_GOAL if self.request.words else GIVEN
+        generator = WITHOUT_GOAL if self.request.words or self.brief else GIVEN
         budget = Budget(tests=self.roads)
         return Cell(name, self.request, self.brief, generator, None, {}, budget, in_sequence=True)
 
