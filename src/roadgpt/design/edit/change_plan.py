@@ -12,20 +12,22 @@ from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
 from roadgpt.brief.model import Kind, Sharpness, Side
-from roadgpt.design.edit.request import MUCH, SLIGHTLY, Change, EditRequest, Measure, Place, Target, Way
+from roadgpt.design.edit.request import (
+    HALVES,
+    MUCH,
+    SLIGHTLY,
+    SUPERLATIVES,
+    Change,
+    EditRequest,
+    Place,
+    Target,
+    Way,
+)
 from roadgpt.errors import EditError
 
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+-]))")
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS = ("turn", "straight", "start", "end", "road")
-SUPERLATIVES: dict[str, tuple[Measure, int]] = {
-    "longest": ("long", 1),
-    "shortest": ("long", -1),
-    "sharpest": ("sharp", 1),
-    "gentlest": ("sharp", -1),
-    "steepest": ("steep", 1),
-    "flattest": ("steep", -1),
-}
 PROPERTIES = {
     **dict.fromkeys(get_args(Side), "side"),
     **dict.fromkeys(get_args(Sharpness), "sharpness"),
@@ -33,7 +35,6 @@ PROPERTIES = {
     **dict.fromkeys(("long", "short"), "size"),
 }
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
-HALVES = {"half1": 1, "half2": 2}
 BESIDE = ("after", "before", "between", "on")
 """Where something new can stand."""
 POSITIONS = (*BESIDE, "from", "up_to")

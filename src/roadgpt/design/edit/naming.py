@@ -7,7 +7,7 @@ from typing import Any, NamedTuple, cast
 from roadgpt.brief.model import Kind
 from roadgpt.design.edit.counting import CountedRow
 from roadgpt.design.edit.lexing import RequestLexeme
-from roadgpt.design.edit.request import Measure, Noun, Place, Target
+from roadgpt.design.edit.request import HALVES, SUPERLATIVES, Noun, Place, Target
 
 TURNS: dict[str, Kind | None] = {
     "turn": None,
@@ -18,17 +18,8 @@ TURNS: dict[str, Kind | None] = {
 }
 SIDED = {"lefts": "left", "rights": "right"}
 NOUNS = {*TURNS, "straight", "road", "end", "start"}
-MOST: dict[str, tuple[Measure, int]] = {
-    "sharpest": ("sharp", 1),
-    "gentlest": ("sharp", -1),
-    "longest": ("long", 1),
-    "shortest": ("long", -1),
-    "steepest": ("steep", 1),
-    "flattest": ("steep", -1),
-}
 SHARPNESS = {"sharp", "gentle", "sweeping"}
 WAYS = {"up", "down", "flat"}
-HALVES = {"half1": 1, "half2": 2}
 SLOPES = {"climb", "ascent", "rise", "descent", "montee", "descente", "subida", "bajada", "salita", "discesa"}
 STRAIGHTS = {"straights", "geraden", "rectas"}  # several of them
 DEMONSTRATIVES = {"this", "that", "these", "those"}
@@ -63,7 +54,7 @@ class _TargetReader(CountedRow):
         is_definite = False
         while True:
             name = self.name(at)
-            if name in ("a", "the", "every", "of", "mid") or name in MOST or name == "ord":
+            if name in ("a", "the", "every", "of", "mid") or name in SUPERLATIVES or name == "ord":
                 if name == "of" and at == begun:
                     return None
                 if name == "ord":
@@ -71,11 +62,11 @@ class _TargetReader(CountedRow):
                     continue
                 if name == "a":
                     found["indefinite"] = True
-                is_definite |= name in ("the", "every", "mid") or name in MOST
+                is_definite |= name in ("the", "every", "mid") or name in SUPERLATIVES
                 found["every"] = found.get("every", False) or name == "every"
                 found["middle"] = found.get("middle", False) or name == "mid"
-                if name in MOST:
-                    found["most"] = MOST[name]
+                if name in SUPERLATIVES:
+                    found["most"] = SUPERLATIVES[name]
                 if name == "of" and self.name(at + 1) not in ("the", "every", "ord", "#"):
                     return None
             elif name == "more" and at > begun and ("count" in found or found.get("indefinite")):

@@ -23,6 +23,16 @@ Way = Literal["up", "down", "flat"]
 Measure = Literal["sharp", "long", "steep"]
 SLIGHTLY, MUCH = 0.5, 1.8
 """Doses of a change for which no number is given."""
+SUPERLATIVES: dict[str, tuple[Measure, int]] = {
+    "longest": ("long", 1),
+    "shortest": ("long", -1),
+    "sharpest": ("sharp", 1),
+    "gentlest": ("sharp", -1),
+    "steepest": ("steep", 1),
+    "flattest": ("steep", -1),
+}
+"""Words for what is most, or least, of its kind."""
+HALVES = {"half1": 1, "half2": 2}
 
 
 @dataclass(frozen=True, slots=True)
