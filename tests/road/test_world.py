@@ -83,6 +83,13 @@ def test_a_change_leaves_everything_else() -> None:
     assert list(PARTS.values()) == [name.replace("verge", "shoulder") for name in json.loads(EARLIER)]
 
 
+def test_a_copy_in_the_earlier_form_changes_the_parts() -> None:
+    with pytest.warns(DeprecationWarning, match=r"'verge'.* write world\.changed\(shoulder=\.\.\.\)"):
+        copied = PARTS.model_copy(update={"verge": 0.5, "friction": 0.1})
+    assert copied == PARTS.changed(shoulder=0.5, friction=0.1)
+    assert PARTS.model_copy(update={"site": Site()}).site == Site()
+
+
 def test_a_world_can_be_sent_to_a_worker_and_be_a_key() -> None:
     assert pickle.loads(pickle.dumps(PARTS)) == PARTS
     assert len({PARTS, PARTS.model_copy(), World()}) == 2

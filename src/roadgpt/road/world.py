@@ -212,6 +212,16 @@ class World(BaseModel):
                 return getattr(getattr(self, part), field)
             return super().__getattr__(name)
 
+        def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> "World":
+            """Returns a copy with other values for some fields; the earlier form of ``changed``."""
+            flat = [name for name in update or {} if EARLIER.get(name, name) in FIELDS]
+            if not flat:
+                return super().model_copy(update=update, deep=deep)
+            told = f"world.model_copy(update={{'{flat[0]}': ...}}) is deprecated"
+            instead = f"world.changed({EARLIER.get(flat[0], flat[0])}=...)"
+            warnings.warn(f"{told}; write {instead}", DeprecationWarning, 2)
+            return self.changed(**update)
+
     @model_validator(mode="before")
     @classmethod
     def _from_file(cls, data: Any) -> Any:
