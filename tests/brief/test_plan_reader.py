@@ -26,10 +26,11 @@ def examples(language: str) -> list[str]:
 
 
 def test_a_number_without_a_key_is_the_angle_of_a_turn_and_the_length_of_a_straight() -> None:
-    brief = read_plan("turn left 90 r30; straight 40..60; hairpin 170 r..20")
+    brief = read_plan("turn left 90 r30; straight 40..60; crest 60; hairpin 170 r..20")
     assert brief.clauses == (
         Clause(kind="turn", side="left", degrees=exactly(90), radius=exactly(30)),
         Clause(kind="straight", length=Amount(lo=40, hi=60)),
+        Clause(kind="crest", length=exactly(60)),
         Clause(kind="hairpin", degrees=exactly(170), radius=Amount(hi=20)),
     )
 

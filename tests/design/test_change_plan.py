@@ -180,6 +180,21 @@ def test_a_plan_changes_what_it_names_and_nothing_else() -> None:
         assert after.turns[number].degrees == pytest.approx(before.turns[number].degrees, abs=1)
 
 
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("add crest on(straight 1)", "'crest' cannot be added"),
+        ("add serpentine", "'serpentine' cannot be added"),
+        ("add turn x40", "40 turns at once are too many"),
+        ("s_bend: remove", "'s_bend' cannot be told apart"),
+        ("road between(turn 1, turn 1): alternate", "there is no turn at that place"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_and_not_taken_for_something_else(line: str, told: str) -> None:
+    with pytest.raises(EditError, match=told):
+        edit(KNOWN["r01"], read_change_plan(line), WORLD)
+
+
 def test_a_range_of_the_road_includes_what_it_is_counted_from() -> None:
     old = KNOWN["r01"]
     before = measure(build(old).sample().points)

@@ -27,7 +27,7 @@ WORDS = {
     **dict.fromkeys(("up", "down", "flat", "nearly_flat", "gently_up", "gently_down"), "slope"),
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
-BARE = {"straight": "length"}
+BARE = dict.fromkeys(("straight", "crest", "dip"), "length")
 """The field that a number without a key has in a clause; turns have it for their degrees."""
 FLAGS = ("alternating", "hard", "motorway")
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}

@@ -100,6 +100,8 @@ def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """Returns the candidates that make turns alternate between left and right; none if they already do."""
+    if not elements:
+        raise EditError("there is no turn at that place; name another one")
     side, wrong = elements[0].side, list[RoadElement]()
     for element in elements:
         wrong += [element] if element.side != side else []

@@ -202,7 +202,7 @@ class _Parser:
 
     def _shape(self, change: Change) -> Change:
         while word := self._next():
-            if word in KINDS | {"turn"} and change.kind is None:
+            if word in KINDS and change.kind is None:
                 change = replace(change, kind=cast(Kind, word))
             elif word in get_args(Sharpness) and change.sharpness is None:
                 change = replace(change, sharpness=cast(Sharpness, word))

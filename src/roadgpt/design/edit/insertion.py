@@ -48,6 +48,7 @@ PREFERRED = {
     "sweeping": (40.0, 75.0),
 }
 """Degrees, and metres of radius, of a new turn of which no more is said."""
+MOST_NEW = 12
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a turn that goes
 SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent that are aimed at
 
@@ -64,9 +65,13 @@ def insertion_candidates(
         number: number of this change within its request; it is used to name new elements.
 
     Raises:
-        EditError: the place does not exist, or no turn can have the requested values.
+        EditError: the place does not exist, this cannot be added, or no turn can have the requested values.
     """
     change = placed.change
+    if change.count > MOST_NEW:
+        raise EditError(f"{change.count} turns at once are too many to add; add {MOST_NEW} or fewer")
+    if change.kind is not None and change.kind not in PREFERRED:
+        raise EditError(f"'{change.kind}' cannot be added; add turns or straights in its place")
     before, splits = _place(placed, elements)
     if change.target is not None and change.target.noun == "straight":
         return _straight_ways(change, elements, before, splits, number)

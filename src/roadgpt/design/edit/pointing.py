@@ -11,6 +11,7 @@ from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
+SINGLE = ("hairpin", "u_turn", "switchback")
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
 
@@ -183,7 +184,11 @@ def _fits(target: Target, element: RoadElement) -> bool:
         return False
     if target.sharpness in ("gentle", "sweeping") and seen.radius < 40:
         return False
-    if target.kind in ("hairpin", "u_turn"):
+    if target.kind is not None:
+        if target.kind not in SINGLE:
+            raise EditError(
+                f"'{target.kind}' cannot be told apart on a road; name its turns by number"
+            )
         meaning = KINDS[target.kind]
         return meaning.degrees is not None and seen.degrees in meaning.degrees
     return True
