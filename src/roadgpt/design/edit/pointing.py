@@ -186,9 +186,7 @@ def _fits(target: Target, element: RoadElement) -> bool:
         return False
     if target.kind is not None:
         if target.kind not in SINGLE:
-            raise EditError(
-                f"'{target.kind}' cannot be told apart on a road; name its turns by number"
-            )
+            raise EditError(f"'{target.kind}' cannot be told apart on a road; name its turns by number")
         meaning = KINDS[target.kind]
         return meaning.degrees is not None and seen.degrees in meaning.degrees
     return True
