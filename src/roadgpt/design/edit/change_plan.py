@@ -25,7 +25,7 @@ from roadgpt.design.edit.request import (
 )
 from roadgpt.errors import EditError
 
-TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+-]))")
+TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS = ("turn", "straight", "start", "end", "road")
 PROPERTIES = {
@@ -223,7 +223,8 @@ class _Parser:
         if self._take("-"):
             return replace(change, more=-1, by=self._figure())
         if self._take("x"):
-            return replace(change, times=self._figure())
+            figure = self._figure()
+            return replace(change, times=figure / 100 if self._take("%") else figure)
         if _is_number(self._next()):
             number = self._figure()
             if number < 0 and not self._next():  # the sign belongs to the difference: -20
