@@ -36,6 +36,21 @@ REFUSED, HONEST, BUILT = "rightly refused", "refused though it can be built", "b
 RIGHT, WARNED, SILENT, INVERTED = "right", "wrong, warned", "silently wrong", "inverted"
 
 
+CAUSES = {
+    "number of turns": ("number of turns", "12 turns"), "left and right": ("left and right",),
+    "slope": ("uphill, downhill", "steep", "heights", "grades above"), "heights": ("heights", "uphill, downhill"),
+    "length": ("length", "1500 m", "long"), "radius": ("radi",), "grade": ("grades above", "steep"),
+    "angle": ("angles", "240 degrees", "degrees"), "order": ("order", "number of turns"),
+    "straight or bend": ("number of turns", "order"), "bridge": ("bridge", "tunnel", "crosses itself"),
+    "crossing itself": ("crosses itself", "240 degrees"), "loop": ("crosses itself", "240 degrees"),
+    "junction": ("junction", "crossroads", "merge"), "fork": ("junction", "crossroads", "merge"),
+    "merging": ("merge", "junction"), "roundabout": ("roundabout",), "nothing said": ("what is wanted is not said",),
+}  # fmt: skip
+"""Parts of our refusals, one of which names the cause that a writer gave; for other causes, which are no roads
+at all, it is 'does not describe a road'."""
+NO_ROAD = ("does not describe a road",)
+
+
 class Judged(NamedTuple):
     """What became of one sentence."""
 
@@ -43,6 +58,8 @@ class Judged(NamedTuple):
     confidence: float | None = None
     is_flagged: bool = False
     """Whether the answer said that something was not understood, or that it was not sure."""
+    names_cause: bool = False
+    """Of a refusal: whether its sentence names what the writer gave as the cause."""
 
 
 def rows(name: str) -> list[dict[str, Any]]:
@@ -62,8 +79,9 @@ def judged(row: dict[str, Any], reader: str) -> Judged:
     try:
         brief: Brief = read(row["text"], reader)
         roads = [measure(build(draft(brief, WORLD, seed=seed)).sample().points) for seed in range(ROADS)]
-    except RoadGPTError:
-        return Judged(REFUSED if cannot else HONEST)
+    except RoadGPTError as error:
+        parts = CAUSES.get(row.get("cause", ""), NO_ROAD)
+        return Judged(REFUSED if cannot else HONEST, names_cause=any(part in str(error) for part in parts))
     flagged = brief.confidence < SURE or bool(brief.unused or brief.beside)
     if cannot:
         return Judged(BUILT, brief.confidence, flagged)
@@ -120,10 +138,12 @@ def main() -> None:
     given = parser.parse_args()
     found = {
         name: {row["id"]: judged(row, given.reader) for row in rows(f"{name}.jsonl")}
-        for name in ("descriptions", "contrasts")
+        for name in ("descriptions", "contrasts", "refusals")
     }
     for name, of_rows in found.items():
         print("\n".join(lines(name, [one.verdict for one in of_rows.values()])))
+    refused = [one for one in found["refusals"].values() if one.verdict == REFUSED]
+    print(f"refusals of refusals.jsonl that name the cause: {sum(one.names_cause for one in refused)} of {len(refused)}")
     both = [one for of_rows in found.values() for one in of_rows.values()]
     wrong = [one for one in both if one.confidence is not None and one.verdict != RIGHT]
     right = [one for one in both if one.verdict == RIGHT]
