@@ -38,16 +38,18 @@ RIGHT, WARNED, SILENT, INVERTED = "right", "wrong, warned", "silently wrong", "i
 
 CAUSES = {
     "number of turns": ("number of turns", "12 turns"), "left and right": ("left and right",),
-    "slope": ("uphill, downhill", "steep", "heights", "grades above"), "heights": ("heights", "uphill, downhill"),
+    "slope": ("uphill, downhill", "steep", "heights", "grades above"),
+    "heights": ("heights", "uphill, downhill"),
     "length": ("length", "1500 m", "long"), "radius": ("radi",), "grade": ("grades above", "steep"),
     "angle": ("angles", "240 degrees", "degrees"), "order": ("order", "number of turns"),
     "straight or bend": ("number of turns", "order"), "bridge": ("bridge", "tunnel", "crosses itself"),
     "crossing itself": ("crosses itself", "240 degrees"), "loop": ("crosses itself", "240 degrees"),
     "junction": ("junction", "crossroads", "merge"), "fork": ("junction", "crossroads", "merge"),
-    "merging": ("merge", "junction"), "roundabout": ("roundabout",), "nothing said": ("what is wanted is not said",),
+    "merging": ("merge", "junction"), "roundabout": ("roundabout",),
+    "nothing said": ("what is wanted is not said",),
 }  # fmt: skip
-"""Parts of our refusals, one of which names the cause that a writer gave; for other causes, which are no roads
-at all, it is 'does not describe a road'."""
+"""Parts of our refusals, one of which names the cause that a writer gave; for other causes, which are no
+roads at all, it is 'does not describe a road'."""
 NO_ROAD = ("does not describe a road",)
 
 
@@ -146,9 +148,8 @@ def main() -> None:
     for name, of_rows in found.items():
         print("\n".join(lines(name, [one.verdict for one in of_rows.values()])))
     refused = [one for one in found["refusals"].values() if one.verdict == REFUSED]
-    print(
-        f"refusals of refusals.jsonl that name the cause: {sum(one.names_cause for one in refused)} of {len(refused)}"
-    )
+    named = sum(one.names_cause for one in refused)
+    print(f"refusals of refusals.jsonl that name the cause: {named} of {len(refused)}")
     both = [one for of_rows in found.values() for one in of_rows.values()]
     wrong = [one for one in both if one.confidence is not None and one.verdict != RIGHT]
     right = [one for one in both if one.verdict == RIGHT]
