@@ -65,7 +65,7 @@ def test_no_text_is_one_of_a_test_or_stands_twice() -> None:
 
 def test_the_fresh_sentences_are_there_whole() -> None:
     counts = {path.stem: len(rows(path)) for path in (DATA / "fresh").glob("*.jsonl")}
-    assert counts == {"descriptions": 200, "contrasts": 100, "changes": 100}
+    assert counts == {"descriptions": 200, "contrasts": 100, "changes": 100, "refusals": 130}
     kept = [row for path in (DATA / "fresh").glob("*.jsonl") for row in rows(path)]
-    assert len({row["id"] for row in kept}) == 400
+    assert len({row["id"] for row in kept}) == 530
     assert all({"truth", "lang"} <= row.keys() for row in kept)
