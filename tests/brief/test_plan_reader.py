@@ -84,7 +84,7 @@ def test_things_beside_the_road_are_kept_and_told_by_name() -> None:
     assert read_plan(plan(brief)) == brief
     assert remarks(brief, 250) == (
         "a roundabout is not built yet; the road is made without it",
-        "a wet surface is set with --friction 0.6",
+        "the words say 'wet': friction is 0.6; --friction gives another",
     )
     assert Brief.model_validate_json(brief.model_dump_json()) == brief
 

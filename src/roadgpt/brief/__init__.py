@@ -186,13 +186,18 @@ def alternatives(
     return (first, *(brief for brief in others if is_possible(brief, map_size, min_radius, max_grade)))
 
 
-def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
+def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tuple[str, ...]:
     """Returns what the user should know about a road of this Brief, as sentences without full stops.
 
-    They say for each thing in ``brief.beside`` that it is not built, needs a number or is set by an option.
-    They also say what "motorway" requires, and whether a map of this size, in metres, can hold a motorway.
+    They say for each thing in ``brief.beside`` that it is not built, needs a number, is set by an option or
+    sets the friction. They also say what "motorway" requires, and whether the map can hold a motorway.
+
+    Args:
+        brief: the Brief.
+        map_size: side of the square map in metres.
+        friction: the friction of the World; None: that of the surface that the words name.
     """
-    return (*map(beside.remark, brief.beside), *motorway.remarks(brief, map_size))
+    return (*beside.remarks(brief.beside, friction), *motorway.remarks(brief, map_size))
 
 
 def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:

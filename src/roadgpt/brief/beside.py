@@ -1,8 +1,13 @@
 """Lists things that descriptions mention but no requirement of a Brief can express, such as a roundabout.
 
 A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then tells the user that
-it is not built, needs a number or is set by an option, so that nothing is ignored silently.
+it is not built, needs a number, is set by an option or sets the friction, so that nothing is ignored
+silently.
 """
+
+from collections.abc import Iterable, Iterator, Sequence
+
+from roadgpt.brief.words import SURFACES
 
 NOT_BUILT = {
     # networks
@@ -57,9 +62,6 @@ NEEDS_NUMBERS = {
 }
 """Names of wishes that are understood and that only numbers can express yet, with the remark."""
 OPTIONS = {
-    "wet": "a wet surface is set with --friction 0.6",
-    "snow": "snow on the road is set with --friction 0.35",
-    "ice": "ice on the road is set with --friction 0.1",
     "lanes": "the number of lanes is set with --lanes, such as --lanes 2+1",
     "lane_width": "the width of lanes is set with --lane-width, such as --lane-width 3",
     "bank": "superelevation is set with --bank, such as --bank auto",
@@ -67,11 +69,40 @@ OPTIONS = {
 }
 """Names of what an option sets and words do not, with the remark."""
 SAID_OTHERWISE = NEEDS_NUMBERS | OPTIONS
-BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE})
+BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
-def remark(name: str) -> str:
-    """Returns what the user should know about a thing of this name, as a sentence without a full stop."""
-    if name in NOT_BUILT:
-        return f"{NOT_BUILT[name]} is not built yet; the road is made without it"
-    return SAID_OTHERWISE[name]
+def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str]:
+    """Yields what the user should know about the things of these names, as sentences without full stops.
+
+    Args:
+        names: the names.
+        friction: the friction of the World; None: that of the surface that is named.
+    """
+    for name in names:
+        if name in NOT_BUILT:
+            yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
+        elif name not in SURFACES:
+            yield SAID_OTHERWISE[name]
+    if said := surface_remark(names, friction):
+        yield said
+
+
+def friction_of(names: Iterable[str]) -> float | None:
+    """Returns the friction of the slipperiest surface among the names; None if no surface is named."""
+    return min((SURFACES[name].friction for name in names if name in SURFACES), default=None)
+
+
+def surface_remark(names: Sequence[str], friction: float | None = None) -> str:
+    """Returns a sentence that says whether the surface that is named sets the friction; empty if no surface
+    is named. The arguments are those of ``remarks``.
+    """
+    own = friction_of(names)
+    if own is None:
+        return ""
+    *others, last = (f"'{name}'" for name in SURFACES if name in names)
+    said = f"{', '.join(others)} and {last}" if others else last
+    if friction not in (None, own):
+        return f"the words say {said}, but friction {friction:g} is set; the surface in the words is not used"
+    which = "the lowest friction counts, " if others else "friction is "
+    return f"the words say {said}: {which}{own:g}; --friction gives another"

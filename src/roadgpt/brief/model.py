@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
 
-from roadgpt.brief.beside import BESIDE
+from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.words import Range
 
 Side = Literal["left", "right"]
@@ -188,3 +188,8 @@ class Brief(Frozen):
     unused: tuple[str, ...] = ()
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0
+
+    @property
+    def friction(self) -> float | None:
+        """The friction of the slipperiest surface that the words name; None if they name none."""
+        return friction_of(self.beside)

@@ -1,8 +1,10 @@
-"""Writes a Brief as one plain English sentence, which the grammar reader reads back as the same Brief."""
+"""Writes a Brief as one plain English sentence, which the grammar reader reads back as the same Brief, except
+for surfaces such as ice: it does not read them.
+"""
 
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
-from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES
+from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
 
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 """The kinds whose name covers all their turns, so that a count is the number of turns."""
@@ -36,6 +38,7 @@ def _wishes(brief: Brief) -> list[str]:
         f"it starts with {clause_text(brief.starts)}" if brief.starts else "",
         f"it ends with {clause_text(brief.ends)}" if brief.ends else "",
         "hard for a lane keeper" if brief.hard else "",
+        *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]
 

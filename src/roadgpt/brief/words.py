@@ -227,9 +227,28 @@ WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
 """What the whole road does; it stands after 'the whole road' and 'a road that'."""
 
 
+class Surface(NamedTuple):
+    """A surface that the words name."""
+
+    said: str
+    """The surface as a sentence has it, behind the road: 'on an icy road'."""
+    friction: float
+    """The friction of the World."""
+    published: tuple[str, str, str]
+    """Friction coefficients between tyre and road, from the three sources that ``_surfaces`` names."""
+
+
+SURFACES = {
+    "wet": Surface("on a wet road", 0.6, ("0.55 to 0.65", "0.5", "0.45 to 0.55")),
+    "snow": Surface("on a snowy road", 0.35, ("-", "0.20 to 0.25", "0.25 to 0.35")),
+    "ice": Surface("on an icy road", 0.1, ("0.1 and less", "0.10 to 0.15", "0.05 to 0.15")),
+}
+"""The surfaces that set the friction of the World, by their names in ``Brief.beside``."""
+
+
 def table() -> str:
     """Returns the whole table as a Markdown page; ``docs/reference/words.md`` is this text."""
-    return "\n".join([*_top(), *_turns(), *_straights(), *_slopes(), *_numbers()]) + "\n"
+    return "\n".join([*_top(), *_turns(), *_straights(), *_slopes(), *_surfaces(), *_numbers()]) + "\n"
 
 
 def _top() -> list[str]:
@@ -298,6 +317,20 @@ def _slopes() -> list[str]:
         "Slopes change only as fast as a car can follow at its speed ([vertical radii](limits.md)): 40 m at"
         " 14 % between level straights is possible at 50 km/h, but not at 70. A crest, a dip or a hump that"
         " is asked for may be so abrupt that the wheels are almost unloaded.",
+    ]
+
+
+def _surfaces() -> list[str]:
+    rows = [(name, f"{each.friction:g}", *each.published) for name, each in SURFACES.items()]
+    return [
+        *_rows("Surfaces", ("name in a plan", "friction", "Bosch", "Noon", "Bohnenkamp"), rows),
+        "",
+        "The friction is that of `--friction`; 1 is dry asphalt. If the description names several surfaces,"
+        " the lowest friction counts. A friction that you set, by option, in a configuration file or in a"
+        " World, takes precedence. The last columns are published coefficients: Bosch, *Automotive Handbook*"
+        " (new tyres, 50 km/h, 1 to 0.2 mm of water); R. K. Noon, *Engineering Analysis of Vehicular"
+        " Accidents*, CRC Press 1994; a table of the tyre dealer Bohnenkamp (wet asphalt, packed snow, ice)."
+        " Snow thus stands for packed snow at the upper end of what is published.",
     ]
 
 

@@ -39,6 +39,8 @@ class CellStatus:
     goal: Goal | None
     closed: str | None
     """Why the cell was closed before all its tests had been requested; None if it was not."""
+    friction: float = 1.0
+    """Friction coefficient of the road."""
 
     @property
     def done(self) -> int:
@@ -90,6 +92,7 @@ def cell_statuses(record: Record) -> tuple[CellStatus, ...]:
             outcomes=counts.get(cell.name, {}),
             goal=cell.goal,
             closed=closed[cell.name],
+            friction=cell.request.world.site.friction,
             **dict(zip(measured, passed.get(cell.name, NOTHING), strict=True)),
         )
         for cell in record.cells()

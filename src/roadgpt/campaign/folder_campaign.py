@@ -172,7 +172,7 @@ def campaign(
         words: a description, or the Brief that was read from it.
         n: number of roads.
         seed: seed of the campaign; each road's own seed is derived from this seed and the road's index.
-        world: the map, the limits that the rules apply, and the road surface.
+        world: the map, the limits that the rules apply, and the friction, as for ``perform``.
         setup: the reader, designer, rules, simulator and driver.
         out: the folder. If it holds an interrupted campaign of the same request, that campaign is continued;
             a finished campaign is left unchanged. None makes a new folder under ``roadgpt-runs``.
@@ -185,9 +185,9 @@ def campaign(
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
+    request = Request(words=brief.words, seed=seed, world=world.on_surface_of(brief), setup=setup)
     designer_of(setup.designer, setup.chat)
-    check_parts(setup, world)
+    check_parts(setup, request.world)
     made = Campaign.opened(request, brief, n, out)
     made.draw, made.meter = draw, meter
     meter.add(made.spent)

@@ -29,6 +29,7 @@ from roadgpt.drive import refuse_ignored
 from roadgpt.drive.loading import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
+from roadgpt.road import World
 from roadgpt.run import Draw, Setup, brief_of
 from roadgpt.run.atomic import LOCK, alone_in, refuse_links, sweep
 from roadgpt.run.card import read_card
@@ -66,6 +67,7 @@ def begin(plan: Plan, folder: Path) -> bool:
         _drivers_come(plan)
         briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
+        _refuse_ignored(plan, *(plan.world.on_surface_of(brief) for brief in briefs.values()))
         for name in plan.generators:  # one that cannot use its settings says so now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
         versions = versions_of(cells[0].request.setup)
@@ -111,11 +113,17 @@ def _admit(plan: Plan) -> None:
 def _drivers_come(plan: Plan) -> None:
     """Reports a wrong name of a driver, and a setting that a simulator cannot obey, before anything is paid
     for."""
+    _refuse_ignored(plan, plan.world)
     if plan.drives:
-        for simulator in plan.simulators:
-            refuse_ignored(plugins.find("simulators", simulator), plan.world)
         for driver in dict.fromkeys(plan.drivers):
             driver_of(driver)
+
+
+def _refuse_ignored(plan: Plan, *worlds: World) -> None:
+    """Raises UsageError if a simulator of the plan cannot obey a setting of one of the Worlds."""
+    for simulator in plan.simulators if plan.drives else ():
+        for world in worlds:
+            refuse_ignored(plugins.find("simulators", simulator), world)
 
 
 def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
@@ -131,6 +139,11 @@ def _same(plan: Plan, folder: Path) -> None:
         there = store.plan()
         kept = there.essence()
         other = [USER_NAMES.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
+        if not other:  # the same plan, but a friction may have been set where it was that of the words
+            cells = store.cells()
+            briefs = {cell.request.words: cell.brief for cell in cells if cell.brief is not None}
+            asked = zip(cells, plan.cells(briefs), strict=True)
+            other = ["friction"] if any(a.request.world != b.request.world for a, b in asked) else []
         if other:
             raise UsageError(
                 f"{folder} holds another campaign (different {', '.join(other)}); "

@@ -141,18 +141,21 @@ class Plan(Frozen):
         plugins.find("readers", self.reader.partition(":")[0])
 
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
-        """Returns all cells; ``briefs`` maps each prompt to the Brief read from it."""
-        made = [*self.requests()]
+        """Returns all cells; ``briefs`` maps each prompt to the Brief read from it.
+
+        If the plan's World was given no friction, a surface that a Brief names sets that of its cells.
+        """
+        made = [(request, generator, briefs.get(request.words)) for request, generator in self.requests()]
         wide = max(2, len(str(len(made))))
         return [
             Cell(
                 name=f"c{number:0{wide}d}",
-                request=request,
-                brief=briefs.get(request.words),
+                request=request.model_copy(update={"world": request.world.on_surface_of(brief)}),
+                brief=brief,
                 generator=generator,
                 goal=self.goal if self._searches(generator) else None,
                 settings=self.settings,
                 budget=self.budget,
             )
-            for number, (request, generator) in enumerate(made, 1)
+            for number, (request, generator, brief) in enumerate(made, 1)
         ]

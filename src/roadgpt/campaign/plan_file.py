@@ -78,8 +78,8 @@ class WorldTable(_Strict):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World with these values."""
-        values = self.model_dump(exclude={"speed_limit_kmh"})
+        """Returns the World with these values, and without a friction if the file gives none."""
+        values = self.model_dump(exclude={"speed_limit_kmh", *({"friction"} - self.model_fields_set)})
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
 

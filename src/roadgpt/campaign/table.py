@@ -110,6 +110,7 @@ def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
         "passed_mostly_outside": status.mostly_outside,
         "passed_max_oob": status.max_oob,
         "passed_beyond_m": status.beyond,
+        "friction": status.friction,
     }
 
 

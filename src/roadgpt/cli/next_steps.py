@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from roadgpt.cli import options
 
 if TYPE_CHECKING:
+    from roadgpt.brief.model import Brief
     from roadgpt.campaign.status import Status
     from roadgpt.run.model import Request
 
 FEWEST = 5  # drives, below which nobody wonders that none failed
-FRICTIONS = ((0.6, "a wet road"), (0.35, "snow"))
+FRICTIONS = {"wet": "a wet road", "snow": "snow"}
 SPEEDS = (100.0, 130.0)  # km/h
 TOLERANCE = 0.5  # of the competition on test selection
 SEARCHED = 200  # tests of a search
@@ -36,6 +37,8 @@ class WithoutFailure:
     """What the campaign searched for, such as 'failures'; None if it did not search."""
     is_search: bool = False
     """Whether the tests are those of a campaign."""
+    brief: "Brief | None" = None
+    """What was read from the description."""
 
     @property
     def is_worth_it(self) -> bool:
@@ -66,6 +69,8 @@ def lines(quiet: WithoutFailure | None) -> Iterator[str]:
 
 
 def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
+    from roadgpt.brief.words import SURFACES
+
     world = quiet.request.world
     if not world.limits.lane_departure:
         why = "fail where a front tyre passes the lane marking (UN R157)"
@@ -77,9 +82,9 @@ def _steps(quiet: WithoutFailure) -> Iterator[tuple[str, str]]:
         if quiet.mostly:
             why += f", as it was on {quiet.mostly:,} of {quiet.passed:,} that passed"
         yield why, _command(quiet, oob_tolerance=TOLERANCE)
-    for friction, name in FRICTIONS:
-        if friction < world.site.friction:
-            yield name, _command(quiet, friction=friction)
+    for surface, name in FRICTIONS.items():
+        if SURFACES[surface].friction < world.site.friction:
+            yield name, _command(quiet, friction=SURFACES[surface].friction)
             break
     for speed in SPEEDS:
         if speed / 3.6 > world.limits.speed_limit * 1.001:
@@ -97,7 +102,7 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
     request = quiet.request.model_copy(update={"world": quiet.request.world.changed(**world)})
     verb = ["campaign", *(["--goal", quiet.goal] if quiet.goal else [])] if quiet.is_search else ["run"]
-    return shlex.join(["roadgpt", *verb, *request_words(request, quiet.tests)])
+    return shlex.join(["roadgpt", *verb, *request_words(request, quiet.tests, quiet.brief)])
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
@@ -114,10 +119,11 @@ def of_status(status: "Status") -> WithoutFailure | None:
     mostly = sum(cell.mostly_outside for cell in status.cells)
     tests, is_search = first.budget.tests or SEARCHED, not first.in_sequence
     passed = status.outcomes["PASS"]
-    return WithoutFailure(first.request, tests, passed, mostly, partly + mostly, first.goal, is_search)
+    outside = partly + mostly
+    return WithoutFailure(first.request, tests, passed, mostly, outside, first.goal, is_search, first.brief)
 
 
-def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
+def of_rows(request: "Request", brief: "Brief | None", roads: int, rows: Any) -> WithoutFailure | None:
     """Summarises result rows; returns None if any road failed."""
     from roadgpt.verdict.severity import MOSTLY
 
@@ -125,4 +131,4 @@ def of_rows(request: "Request", roads: int, rows: Any) -> WithoutFailure | None:
         return None
     shares = [row.max_oob or 0.0 for row in rows if row.test_outcome == "PASS"]
     outside, mostly = sum(share > 0 for share in shares), sum(share > MOSTLY for share in shares)
-    return WithoutFailure(request, roads, len(shares), mostly, outside)
+    return WithoutFailure(request, roads, len(shares), mostly, outside, brief=brief)

@@ -58,7 +58,8 @@ WORLD = (
     _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
     _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
-    _world("--friction", "Friction: dry 1.0, wet 0.6, snow 0.35.", measure(0, 2, above=True), 1.0),
+    _world("--friction", "Friction: dry 1, wet 0.6, snow 0.35; words may set it.",
+           measure(0, 2, above=True)),
 )
 """The options that set fields of the World."""
 
@@ -225,11 +226,14 @@ def formats_option(names: str, sentence: str, **more: Any) -> Option:
 
 
 def world_of(values: dict[str, Any]) -> "World":
-    """Returns the World that option values describe, and removes these options from ``values``."""
+    """Returns the World that option values describe, and removes these options from ``values``.
+
+    An option with the value None is not given: the World counts it as not set.
+    """
     from roadgpt.road import World
 
     given = {each.field: each.read(values.pop(each.field)) for each in WORLD if each.field in values}
-    return World().changed(**given)
+    return World().changed(**{name: value for name, value in given.items() if value is not None})
 
 
 def reader_of(values: dict[str, Any]) -> str:

@@ -3,9 +3,10 @@ road file.
 """
 
 import shlex
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from pathlib import Path
 
+from roadgpt.brief.model import Brief
 from roadgpt.cli import options
 from roadgpt.cli.configuration import keys_set
 from roadgpt.cli.option import Option, named, words_of
@@ -21,18 +22,24 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
     lines = []
     request = run.request
     if run.words:
-        lines.append(shlex.join(["roadgpt", "run", *request_words(request, run.index)]))
+        lines.append(shlex.join(["roadgpt", "run", *request_words(request, run.index, run.brief)]))
     if folder is not None and run.road is not None and request.setup.drives:
         again = ["roadgpt", "drive", str(folder / "road.json"), "--seed", str(run.seed)]
         lines.append(shlex.join(again + option_words(request.setup, request.world, OF_DRIVES, asks=False)))
     return lines
 
 
-def request_words(request: Request, roads: int) -> list[str]:
-    """Returns the arguments with which ``roadgpt run`` makes the first roads of a request; ``roads`` is their
-    number.
+def request_words(request: Request, roads: int, brief: Brief | None) -> list[str]:
+    """Returns the arguments with which ``roadgpt run`` makes the first roads of a request.
+
+    Args:
+        request: The request.
+        roads: The number of roads.
+        brief: What was read from the words. If it names a surface, the arguments always give the friction.
     """
-    rest = ["-n", str(roads), "--seed", str(request.seed), *option_words(request.setup, request.world)]
+    told = {"friction"} if brief is not None and brief.friction is not None else set[str]()
+    rest = ["-n", str(roads), "--seed", str(request.seed)]
+    rest += option_words(request.setup, request.world, also=told)
     if not request.setup.drives:
         rest.append("--no-drive")
     # words that begin with a dash would pass for an option
@@ -40,7 +47,11 @@ def request_words(request: Request, roads: int) -> list[str]:
 
 
 def option_words(
-    setup: Setup, world: World, of_setup: Sequence[Option] = options.SETUP, asks: bool = True
+    setup: Setup,
+    world: World,
+    of_setup: Sequence[Option] = options.SETUP,
+    asks: bool = True,
+    also: Set[str] = frozenset(),
 ) -> list[str]:
     """Returns the options that differ from their defaults or are set in a configuration file.
 
@@ -49,9 +60,11 @@ def option_words(
         world: The World to express by options.
         of_setup: The options of the command that set fields of the Setup.
         asks: Whether the command has options for language models.
+        also: Keys of options that are returned in any case.
     """
-    told = keys_set()
-    words = [*words_of(of_setup, dict(setup), told=told), *words_of(options.WORLD, world.values(), told=told)]
+    told = keys_set() | also
+    words = words_of(of_setup, dict(setup), told=told)
+    words += words_of(options.WORLD, world.values(), World().values(), told)
     if asks and setup.chat:
         words += words_of(options.CHAT, dict(setup.chat), dict(type(setup.chat)()))
     return words

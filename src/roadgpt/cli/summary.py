@@ -131,7 +131,8 @@ def _run_lines(run: Run, again: Sequence[str]) -> Iterator[str]:
         from roadgpt.brief import remarks, sentence
 
         yield f"  brief     {sentence(run.brief)}"
-        for remark in remarks(run.brief, run.world.site.map_size):
+        site = run.world.site
+        for remark in remarks(run.brief, site.map_size, site.friction):
             yield f"  note      {remark}"
     if run.road is not None:
         yield f"  road      {_road_line(run)}"

@@ -154,5 +154,5 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
             said = name.replace("_", " ")
             raise UsageError(
                 f"{said} {value:g} has no effect in this simulator, whose roads have a {said} of their own; "
-                f"leave out --{name.replace('_', '-')}, or drive in the simulator mujoco"
+                f"give --{name.replace('_', '-')} {usual[name]:g}, or drive in the simulator mujoco"
             )

@@ -59,7 +59,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
         world: values for fields of ``roadgpt.road.World``, such as ``{"friction": 0.6}``; all other fields
-            keep their defaults.
+            keep their defaults. Without a friction, a surface in the description sets it, such as a wet road.
         camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
         reader: name of the plug-in that reads the descriptions.
 
@@ -84,7 +84,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         if render_mode is not None and render_mode not in RENDER_MODES:
             raise UsageError(f"there is no render_mode '{render_mode}'; there are: {', '.join(RENDER_MODES)}")
         self.render_mode = render_mode
-        self._world = _world_of(world or {})
+        self._given = self._world = _world_of(world or {})
         self._setup = Setup(reader=reader, drives=False)
         self._camera = None if observation == "state" else (camera or CameraSpec(every=1))
         self.set_prompts([prompt] if isinstance(prompt, str) else prompt)
@@ -105,7 +105,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         """
         if not prompts:
             raise UsageError("there is no description; give one, such as 'a winding road'")
-        self._briefs = [brief_of(words, self._world, self._setup) for words in prompts]
+        self._briefs = [brief_of(words, self._given, self._setup) for words in prompts]
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -115,8 +115,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         super().reset(seed=seed)
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:
-            brief = brief_of(str(options["prompt"]), self._world, self._setup)
-        self._words = brief.words
+            brief = brief_of(str(options["prompt"]), self._given, self._setup)
+        self._words, self._world = brief.words, self._given.on_surface_of(brief)
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
         self._monitor = DriveMonitor(road, self._world, ETK_LIKE.box)

@@ -17,6 +17,9 @@ from roadgpt.road.profile import Profile
 from roadgpt.road.road import Road
 from roadgpt.road.superelevation import superelevation
 
+if TYPE_CHECKING:
+    from roadgpt.brief.model import Brief
+
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 STEEPEST = 0.12  # ratio, largest superelevation of bends
@@ -58,7 +61,11 @@ class Site(BaseModel):
     map_size: Annotated[float, Field(ge=50, le=10_000)] = 250.0
     """Side length of the square map in metres. One corner of the map is at (0, 0)."""
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
-    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, about 0.35 on snow."""
+    """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice.
+
+    A surface that the words name, such as "wet", sets it, unless a value is given here: see
+    ``World.on_surface_of``.
+    """
     z_floor: float = -28.0
     """Height in metres of the flat ground of the simulator's map."""
 
@@ -246,8 +253,23 @@ class World(BaseModel):
             pydantic.ValidationError: There is no such field, or its value is invalid.
         """
         named = {EARLIER.get(name, name) for name in values}
-        kept = {name: value for name, value in self.values().items() if name not in named}
+        kept = {
+            name: value
+            for name, value in self.values().items()
+            if name not in named and name in getattr(self, FIELDS[name]).model_fields_set
+        }
         return World.model_validate(kept | values)
+
+    def on_surface_of(self, brief: "Brief | None") -> "World":
+        """Returns the World with the friction of the surface that the words of a Brief name.
+
+        A friction that was given to this World is kept, even if it is the default value. Without a Brief or a
+        surface in it, the World is returned unchanged.
+        """
+        friction = brief.friction if brief is not None else None
+        if friction is None or "friction" in self.site.model_fields_set:
+            return self
+        return self.changed(friction=friction)
 
     def profile_of(self, road: Road) -> Profile:
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.

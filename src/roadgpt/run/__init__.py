@@ -72,7 +72,8 @@ def perform(
     Args:
         words: a description, or the Brief that was read from it.
         seed: seed of the campaign; the road's own seed is derived from this seed and the road's index.
-        world: the World, with the size of the map, the limits that the rules check, and the friction.
+        world: the World, with the size of the map, the limits that the rules check, and the friction. If it
+            was given no friction and the words name a surface, such as a wet road, this sets the friction.
         setup: the Setup, which names the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         earlier: designs of earlier roads, from which the new design has to differ.
@@ -89,7 +90,8 @@ def perform(
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world, setup=setup)
+    request = Request(words=brief.words, seed=seed, world=world.on_surface_of(brief), setup=setup)
+    check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
         made = _designed(brief, request, earlier, own)
@@ -142,7 +144,8 @@ def prove(
     Args:
         blueprint: the Design, or the Road.
         seed: seed of the drive; it is used unchanged.
-        world: the World, with the size of the map, the limits that the rules check, and the friction.
+        world: the World, with the size of the map, the limits that the rules check, and the friction. If it
+            was given no friction and ``brief`` names a surface, this sets the friction.
         setup: the Setup, which names the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         brief: the requirements that the road has to meet; None if there are no requirements.
@@ -153,6 +156,7 @@ def prove(
     Raises:
         UsageError: a plug-in is not installed, or the driver's file does not define a driver.
     """
+    world = world.on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
     design = blueprint if isinstance(blueprint, Design) else None

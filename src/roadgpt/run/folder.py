@@ -17,8 +17,8 @@ from typing import Annotated, Any, ClassVar, Protocol
 
 from pydantic import ConfigDict, Field, ValidationError
 
+from roadgpt.brief import remarks
 from roadgpt.brief.model import Brief
-from roadgpt.brief.motorway import remarks
 from roadgpt.chat import Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
@@ -107,7 +107,8 @@ def _files(run: Run) -> list[tuple[str, bytes]]:
 
 def _card(run: Run) -> dict[str, Any]:
     asked = {"designing": run.designing, "spent": run.spent}
-    noted = remarks(run.brief, run.world.site.map_size) if run.brief else ()
+    site = run.world.site
+    noted = remarks(run.brief, site.map_size, site.friction) if run.brief else ()
     return {
         "format": FORMAT,
         "index": run.index,

@@ -80,6 +80,8 @@ class RoadGPTTestGenerator:
         world = World(site=Site(map_size=float(self.map_size)))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))
         brief = brief_of(self.description, world, setup)
+        if brief.friction is not None:
+            log.warning("the competition's simulator sets the friction; the surface in the words is not used")
         earlier: deque[Design] = deque(maxlen=REMEMBERED)
         index = failures = 0
         while True:

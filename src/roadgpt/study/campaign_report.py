@@ -165,7 +165,9 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
 def _about(of: CellStatus) -> dict[str, str]:
     """Returns the settings of a cell, by the headings of a table."""
     words = of.words or "roads that were given"
-    return {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
+    friction = f"{of.friction:g}"
+    own = {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
+    return own | {"friction": friction}
 
 
 def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:

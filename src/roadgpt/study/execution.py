@@ -9,11 +9,12 @@ from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
+from roadgpt.brief.beside import surface_remark
 from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
 from roadgpt.errors import BriefError
-from roadgpt.run import Request, brief_of
+from roadgpt.run import Request, brief_of, check_parts
 from roadgpt.run.atomic import alone_in
 from roadgpt.run.folder import Draw, finished
 from roadgpt.study.plan import StudyPart, StudyPlan
@@ -22,6 +23,8 @@ AT_ONCE = 100  # parts whose folders are locked together: macOS lets a process o
 
 Tell = Callable[[int], object]
 """A function that is called with the number of finished roads of the study."""
+Note = Callable[[str], object]
+"""A function that is called with a sentence on the friction of a part."""
 
 
 class Problem(NamedTuple):
@@ -35,7 +38,12 @@ class Problem(NamedTuple):
 
 
 def work(
-    plan: StudyPlan, folder: Path, workers: int = 1, draw: Draw | None = None, tell: Tell = lambda _: None
+    plan: StudyPlan,
+    folder: Path,
+    workers: int = 1,
+    draw: Draw | None = None,
+    tell: Tell = lambda _: None,
+    note: Note = lambda _: None,
 ) -> list[Problem]:
     """Makes all roads of a study that do not exist yet.
 
@@ -46,6 +54,7 @@ def work(
             reader asks a language model are always made in this process, one after another.
         draw: function that draws pictures of a run into its folder; None: no pictures.
         tell: called after each road with the number of finished roads.
+        note: called for each part whose description names a surface, such as a wet road.
 
     Returns:
         One Problem for each study part that lacks roads; empty if all roads were made.
@@ -53,10 +62,11 @@ def work(
     Raises:
         GivenUpError: the simulator failed three times in a row; repeating the command makes the missing
             roads.
-        UsageError: a plug-in is not installed, or another process works in the folder.
+        UsageError: a plug-in is not installed, the simulator cannot apply the friction of a surface that the
+            words name, or another process works in the folder.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
-    session = _Session(plan, folder, draw, tell)
+    session = _Session(plan, folder, draw, tell, note)
     asking = {name for name in plan.designers if plan.setup_of(name).chat is not None}
     with alone_in(folder):
         others = [part for part in plan.parts() if part.designer not in asking]
@@ -69,8 +79,8 @@ def work(
 class _Session:
     """Makes the roads of parts, counts them, and keeps why some are missing."""
 
-    def __init__(self, plan: StudyPlan, folder: Path, draw: Draw | None, tell: Tell) -> None:
-        self.plan, self.folder, self.draw, self.tell = plan, folder, draw, tell
+    def __init__(self, plan: StudyPlan, folder: Path, draw: Draw | None, tell: Tell, note: Note) -> None:
+        self.plan, self.folder, self.draw, self.tell, self.note = plan, folder, draw, tell, note
         self.done = {part.name: len(finished(folder / part.name)) for part in plan.parts()}
         self.problems: dict[str, Problem] = {}
 
@@ -84,7 +94,11 @@ class _Session:
             except BriefError as error:
                 self.problems[part.name] = Problem(part.name, str(error))
                 continue
-            request = Request(words=brief.words, seed=plan.seed, world=plan.world, setup=setup)
+            world = plan.world.on_surface_of(brief)
+            check_parts(setup, world)
+            if said := surface_remark(brief.beside, world.site.friction):
+                self.note(f"{part.name}: {said}")
+            request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
             folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, self._place(part))
             if meter is not None:
                 meter.add(runs.spent)

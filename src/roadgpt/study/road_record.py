@@ -76,6 +76,8 @@ class RoadRecord:
     driven."""
     beyond: float | None = None
     """Largest distance of the car beyond the lane marking, metres; None if it is not known."""
+    friction: float | None = None
+    """Friction coefficient of the road; None if it is not known."""
 
     @property
     def is_driven(self) -> bool:
@@ -195,6 +197,7 @@ def _record_of(run: Run, part: StudyPart, home: str, features: Mapping[str, floa
         versions=run.versions,
         max_oob=verdict.max_oob if verdict is not None else None,
         beyond=verdict.beyond if verdict is not None else None,
+        friction=run.world.site.friction,
     )
 
 

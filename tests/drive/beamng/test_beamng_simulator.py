@@ -363,7 +363,7 @@ def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_dr
     tmp_path: Path, fake: FakeBeamNG
 ) -> None:
     slippery, setup = World(site=Site(friction=0.5)), Setup(reader="grammar", simulator="beamng")
-    said = r"friction 0\.5 has no effect in this simulator.*leave out --friction, or drive in"
+    said = r"friction 0\.5 has no effect in this simulator.*give --friction 1, or drive in"
     with pytest.raises(UsageError, match=said):
         simulate(SHORT, slippery, "reference", 0, simulator(fake))
     with pytest.raises(UsageError, match=said):

@@ -91,9 +91,12 @@ def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
 
 def _drive(file: Path, world: "World") -> str:
     """Returns the command that drives the road with the lanes and limits of the OpenDRIVE file."""
+    from roadgpt.road import World
+
     # as a sign shows it: files in m/s are no whole km/h to the last digit
     world = world.changed(speed_limit=round(world.limits.speed_limit * 3.6, 3) / 3.6)
-    return shlex.join(["roadgpt", "drive", str(file), *words_of(options.WORLD, world.values())])
+    words = words_of(options.WORLD, world.values(), World().values())
+    return shlex.join(["roadgpt", "drive", str(file), *words])
 
 
 def _new(folder: Path, stem: str) -> Path:

@@ -24,7 +24,7 @@ TEMPERATURE = 1.3  # of readings beside the likeliest one
 OPTIONS = (
     options.PLAN,
     *named(options.SETUP, "reader"),
-    *named(options.WORLD, "map_size"),
+    *named(options.WORLD, "map_size", "friction"),
     Option("--table as_table", "Print a row for each turn and straight.", bool),
     options.json_option("Print the interpretation as JSON."),
     Option("--alternatives number", "Show up to this many different interpretations.", FEW, 1),
@@ -46,13 +46,13 @@ def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, 
     world, reader = options.world_of(rest), options.reader_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
-        found = [_as_data(brief, world.site.map_size) for brief in briefs]
+        found = [_as_data(brief, world.on_surface_of(brief)) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
     if number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
         return
-    click.echo(understood(briefs[0], world.site.map_size))
+    click.echo(understood(briefs[0], world.on_surface_of(briefs[0])))
     if as_table:
         click.echo(_table(briefs[0]))
 
@@ -69,12 +69,13 @@ def _readings(
     return alternatives(words, number, reader, world.site.map_size, TEMPERATURE)
 
 
-def _as_data(brief: "Brief", map_size: float) -> dict[str, object]:
+def _as_data(brief: "Brief", world: "World") -> dict[str, object]:
     from roadgpt.brief import remarks, sentence
     from roadgpt.brief.plan import plan
 
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
-    told |= {"map_size": map_size, "remarks": remarks(brief, map_size)}
+    map_size, friction = world.site.map_size, world.site.friction
+    told |= {"map_size": map_size, "friction": friction, "remarks": remarks(brief, map_size, friction)}
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 

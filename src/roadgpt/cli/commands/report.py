@@ -61,7 +61,7 @@ def command_of(folder: Path) -> str:
         return ""
     if len(cells) > 1 or not only.request.words or n is None or only.settings:
         return shlex.join(["roadgpt", "resume", str(folder)])
-    words = request_words(only.request, n)
+    words = request_words(only.request, n, only.brief)
     words += ["--goal", only.goal] if only.goal else []
     if only.generator != (WITH_GOAL if only.goal else WITHOUT_GOAL):
         words += ["--generator", only.generator]

@@ -136,7 +136,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
         from roadgpt.cli.junit import junit_writer
 
         screen.junit = junit_writer(job.junit, work.request)
-    screen.say(understood(brief, job.world.site.map_size))
+    screen.say(understood(brief, work.request.world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -157,16 +157,19 @@ def _seed(job: RunJob) -> int:
     return secrets.randbelow(SEEDS) if there is None else there
 
 
-def understood(brief: "Brief", map_size: float = inf) -> str:
-    """Returns lines of text: how a description was read, a warning if that is uncertain, and what does not
-    fit on the map.
+def understood(brief: "Brief", world: "World | None" = None) -> str:
+    """Returns lines of text: how a description was read, a warning if that is uncertain, and remarks.
+
+    The remarks say what does not fit on the map of the World, and whether its friction is that of the words.
+    Without a World they say what a map of any size can hold.
     """
     from roadgpt.brief import remarks
 
+    map_size, friction = (world.site.map_size, world.site.friction) if world is not None else (inf, None)
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
         told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
-    return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size))])
+    return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size, friction))])
 
 
 def reading(brief: "Brief") -> str:
@@ -195,7 +198,9 @@ def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
         if screen.rows:
             screen.say(f"tests and tables: {work.folder}")
             is_whole = len(screen.rows) == work.roads
-            for line in lines(of_rows(work.request, work.roads, screen.rows) if is_whole else None):
+            for line in lines(
+                of_rows(work.request, work.brief, work.roads, screen.rows) if is_whole else None
+            ):
                 screen.say(line)
             if job.pictures:
                 kind = job.pictures[0]

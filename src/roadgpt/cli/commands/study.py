@@ -109,15 +109,16 @@ def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool,
             f"{plural(len(prompts), 'description')}, {plural(plan.roads, 'road')} each, "
             f"by {' and '.join(plan.designers)}, into {place}"
         )
-    begun = time.perf_counter()
+    begun, notes = time.perf_counter(), list[str]()
     try:
         with progress("roads", total, quiet) as tell:
-            problems = work(plan, place, workers, draw, tell)
+            problems = work(plan, place, workers, draw, tell, notes.append)
     except KeyboardInterrupt:
         warn("stopped; finished roads are complete, and the same command continues")
         raise
     keep_problems(place, problems)
     if not quiet:
+        click.echo("".join(f"note: {note}\n" for note in notes), nl=False)
         made = sum(len(finished(place / part.name)) for part in plan.parts())
         click.echo(f"{plural(made, 'road')} in {time.perf_counter() - begun:.0f} s; writing the report")
     page = write_study(place)
@@ -149,7 +150,8 @@ def _command(plan: "StudyPlan", place: Path) -> str:
 
     words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]
     words += ["--roads", str(plan.roads), "--seed", str(plan.seed), *DESIGNERS.written(plan.designers)]
-    words += option_words(plan.setup, plan.world, named(options.SETUP, *SHOWN))
+    told = {"friction"} & plan.world.site.model_fields_set
+    words += option_words(plan.setup, plan.world, named(options.SETUP, *SHOWN), also=told)
     if plan.setup.drives != (plan.kind == "thesis"):
         words.append("--drive" if plan.setup.drives else "--no-drive")
     return shlex.join([*words, "--out", str(place)])

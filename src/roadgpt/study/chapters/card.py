@@ -39,6 +39,9 @@ def card_of(
     if setup.chat is not None and setup.chat.model:
         out["language model"] = setup.chat.model
     out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())
+    surfaces = {f"{road.friction:g}" for part in parts for road in part.roads if road.friction is not None}
+    if surfaces - {f"{world.site.friction:g}"}:
+        out["friction of the roads"] = f"{' and '.join(sorted(surfaces))}, by what the words say"
     return out | {"versions": _versions(parts)}
 
 
