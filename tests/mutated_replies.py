@@ -12,9 +12,9 @@ import numpy as np
 from authorities import sbft_official_slow as slow
 from fake_chat import FakeChat
 from llm_like import random_list
+from planned import planned
 from roadgpt import check
 from roadgpt.brief import Brief
-from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.chat import ChatSettings
 from roadgpt.design.designers.chat import ChatDesigner
 from roadgpt.design.designers.thesis import ThesisDesigner
@@ -22,7 +22,11 @@ from roadgpt.errors import RoadGPTError
 from roadgpt.road import Road, World, build
 
 WORLD = World()
-BRIEFS = tuple(GrammarReader().read(words) for words in ("a road", "a road with 3 turns", "an uphill road"))
+BRIEFS = (
+    planned("| turns=1..", "a road"),
+    planned("turn x3", "a road with 3 turns"),
+    planned("| up turns=1..", "an uphill road"),
+)
 ODD = (
     *(
         "NaN",

@@ -130,4 +130,4 @@ def test_the_development_prompts_can_be_read(referee: ModuleType) -> None:
 def sensible() -> Any:
     from roadgpt.brief import read
 
-    return read("an uphill road with 3 turns", "grammar")
+    return read("turn x3 | up", "plan")

@@ -133,8 +133,8 @@ class Inline:
 def plan(tests: int, cells: int = 1, seconds: float = 0.0, **rest: Any) -> Plan:
     """A plan of quick tests."""
     return Plan(
-        prompts=("two hairpins",),
-        reader="grammar",
+        prompts=("hairpin x2",),
+        reader="plan",
         generators=("search",),
         seeds=tuple(range(cells)),
         budget=Budget(tests=tests),

@@ -69,7 +69,7 @@ def test_a_straight_road_goes_one_way() -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_mirror_swaps_left_and_right_and_nothing_else(seed: int) -> None:
-    elements = elements_of(draft(read("a winding road", reader="grammar"), WORLD, seed=seed).segments)
+    elements = elements_of(draft(read("winding", reader="plan"), WORLD, seed=seed).segments)
     place = MapPose(120.0, 120.0, 30.0)
     one = behaviour_of(build(design_of(elements, place, WORLD)), None)
     other = behaviour_of(build(design_of(mirrored(elements), place, WORLD)), None)
@@ -80,13 +80,13 @@ def test_a_mirror_swaps_left_and_right_and_nothing_else(seed: int) -> None:
 
 
 def test_turns_that_were_asked_for_have_features_of_their_own() -> None:
-    brief = read("an uphill road with 3 turns", reader="grammar")
+    brief = read("turn x3 | up", reader="plan")
     assert turns_asked(brief) == 3
     found = behaviour_of(build(draft(brief, WORLD, seed=3)), brief)
     radii = [found[f"RADIUS_{number}"] for number in (1, 2, 3)]
     assert min(radii) == pytest.approx(found["RADIUS"])
     assert sum(found[f"DEGREES_{number}"] for number in (1, 2, 3)) == pytest.approx(found["TURNED"], abs=3)
-    assert turns_asked(read("a road", reader="grammar")) == 0
+    assert turns_asked(read("| turns=1..", reader="plan")) == 0
     assert turns_asked(None) == 0
 
 

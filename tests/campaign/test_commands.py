@@ -47,7 +47,7 @@ def start(*words: object) -> "subprocess.Popen[str]":
 def driven(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small campaign with real drives, made by the command."""
     folder = tmp_path_factory.mktemp("driven") / "c"
-    words = ["a road with 2 turns", "-n", 3, "--reader", "grammar", "--seed", 7, "--out", folder, "--json"]
+    words = ["turn x2", "-n", 3, "--reader", "plan", "--seed", 7, "--out", folder, "--json"]
     done = roadgpt("campaign", *words)
     assert done.exit_code == 0, done.output
     assert json.loads(done.stdout)["done"] == 3
@@ -98,7 +98,7 @@ def gone(pids: list[int]) -> None:
 
 @unix
 def test_ctrl_c_keeps_what_is_done_and_says_how_to_go_on(tmp_path: Path) -> None:
-    words = ["campaign", "a road with 2 turns", "-n", "5000", "--reader", "grammar", "--no-drive", "--out"]
+    words = ["campaign", "turn x2", "-n", "5000", "--reader", "plan", "--no-drive", "--out"]
     process = subprocess.Popen(
         [sys.executable, "-c", "from roadgpt.cli import main; main()", *words, str(tmp_path / "c")],
         stdout=subprocess.PIPE,
@@ -132,7 +132,7 @@ def done_in(folder: Path) -> int:
 def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     said = roadgpt("status", driven)
     assert "finished, 3 of 3 tests" in said.output
-    assert "a road with 2 turns (beamng_like, words, seed 7)" in said.output
+    assert "turn x2 (beamng_like, words, seed 7)" in said.output
     told = json.loads(roadgpt("status", driven, "--json").stdout)
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
@@ -171,14 +171,14 @@ def test_a_test_is_driven_again_to_the_same_bytes(driven: Path, tmp_path: Path) 
         assert (one / name).read_bytes() == (other / name).read_bytes()
     run, kept = read_run(one), read_trace(driven, "c01", 2)
     assert run.drive is not None
-    assert run.words == "a road with 2 turns"
+    assert run.words == "turn x2"
     assert len(kept) == len(run.drive)
     assert np.abs(kept["x"] - run.drive["x"]).max() < 0.00051
     with (driven / "results.csv").open() as file:
         rows = [*csv.DictReader(file)]
     assert float(rows[1]["margin_m"]) == run.verdict.margin if run.verdict else None
     assert int(rows[1]["seed"]) == run.seed
-    assert "road with 2 turns" in roadgpt("show", one).output
+    assert "turn x2" in roadgpt("show", one).output
 
 
 def test_the_python_in_the_guide_runs(driven: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -232,7 +232,7 @@ def of_a_folder(folder: Path) -> dict[str, bytes]:
 def test_a_folder_of_roadgpt_run_is_resumed_as_a_campaign_is(tmp_path: Path) -> None:
     """Runs that were taken away or broken are made again, with pictures and road files like the others."""
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    words = ["a road with 2 turns", "-n", 4, "--seed", 7, "--reader", "grammar", "--format", "svg"]
+    words = ["turn x2", "-n", 4, "--seed", 7, "--reader", "plan", "--format", "svg"]
     assert roadgpt("run", *words, "--export", "opendrive", "--out", whole).exit_code == 0
     shutil.copytree(whole, broken)
     (broken / "test.0002.json").unlink()

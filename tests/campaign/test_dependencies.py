@@ -24,8 +24,8 @@ from roadgpt.campaign import Budget, Plan, Record, begin, read_trace, work
 
 folder = Path(sys.argv[1])
 settings = {{"batch": 3, "candidates": 1, "archive": sys.argv[2], "cells": 20}}
-plan = Plan(prompts=("a flat road",), generators=("quality_diversity",), goal="coverage",
-            settings=settings, budget=Budget(tests=15), reader="grammar")
+plan = Plan(prompts=("| flat turns=1..",), generators=("quality_diversity",), goal="coverage",
+            settings=settings, budget=Budget(tests=15), reader="plan")
 begin(plan, folder)
 for progress in work(folder):
     pass

@@ -24,7 +24,7 @@ from roadgpt.cli.progress import watched
 from roadgpt.errors import UsageError
 from roadgpt.run import Run
 
-WORDS = ["zig-zag downhill with 3 turns", "-n", 2, "--friction", 0.4, "--seed", 3, "--reader", "grammar"]
+WORDS = ["zigzag x3 | down", "-n", 2, "--friction", 0.4, "--seed", 3, "--reader", "plan"]
 
 
 def roadgpt(*words: object) -> Result:
@@ -53,7 +53,7 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign with more failures than faults."""
     folder = tmp_path_factory.mktemp("many") / "c"
-    words = ["a flat road", "--goal", "failures", "-n", 40, "--seed", 7, "--reader", "grammar", "-q"]
+    words = ["| flat turns=1..", "--goal", "failures", "-n", 40, "--seed", 7, "--reader", "plan", "-q"]
     roadgpt("campaign", *words, "--map-size", 200, "--oob-tolerance", 0.5, "--out", folder)
     return folder
 
@@ -302,7 +302,7 @@ def test_a_page_that_was_looked_into_is_read_as_it_was(looked: Path) -> None:
 
 
 def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:
-    words = ["zig-zag downhill with 3 turns", "-n", 3, "--friction", 0.4, "--seed", 3, "--reader", "grammar"]
+    words = ["zigzag x3 | down", "-n", 3, "--friction", 0.4, "--seed", 3, "--reader", "plan"]
     roadgpt("run", *words, "--no-plot", "-q", "--out", tmp_path / "runs")
     found = faults_in(tmp_path / "runs")
     assert found.failures >= 2

@@ -445,7 +445,7 @@ def test_a_fault_belongs_to_a_driver_and_a_world(tmp_path: Path, other: str) -> 
     from roadgpt.campaign.faults.failures import system_of
     from roadgpt.run import Setup
 
-    drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="grammar")}
+    drivers = {"driver": Setup(driver="pure_pursuit"), "world": Setup(), "same": Setup(reader="plan")}
     world = World(site=Site(friction=0.9)) if other == "world" else WORLD
     assert (system_of(WORLD, Setup()) == system_of(world, drivers[other])) is (other == "same")
 

@@ -465,8 +465,8 @@ def test_earlier_designs_come_in_their_order_also_when_a_gap_is_filled(
 
 def made_of(home: Path, workers: int, roads: int = 6, kills: bool = False) -> dict[str, bytes]:
     """The files of two folders, of roads that real workers design; or those of this process, without any."""
-    setup = Setup(reader="grammar", drives=False)
-    words = {"one": "a road with two turns", "other": "a hairpin, then a straight"}
+    setup = Setup(reader="plan", drives=False)
+    words = {"one": "turn x2", "other": "hairpin; straight"}
     briefs = {name: brief_of(text, setup=setup) for name, text in words.items()}
     folders = {
         name: RunFolder.opened(Request(words=text, seed=3, setup=setup), briefs[name], roads, home / name)
@@ -511,8 +511,8 @@ def test_a_folder_that_no_road_fits_is_removed_and_the_others_are_made(
 
 
 def test_workers_that_die_over_a_road_leave_one_error(tmp_path: Path) -> None:
-    setup = Setup(reader="grammar", drives=False)
-    request = Request(words="a straight road", seed=1, setup=setup)
+    setup = Setup(reader="plan", drives=False)
+    request = Request(words="straight | turns=0", seed=1, setup=setup)
     folder = RunFolder.opened(request, brief_of(request.words, setup=setup), 2, tmp_path / "c")
     ended = [one.result for _, one in work_in(tmp_path, {"c": folder}, Deadly(), workers=1)]
     assert [one.outcome for one in ended] == ["VALID", "ERROR"]

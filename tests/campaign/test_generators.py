@@ -28,7 +28,8 @@ WORLD = World(site=Site(map_size=200))
 SMALL = {"batch": 5}
 FEW = {"batch": 5, "candidates": 2}
 SEARCHES = ("random", "genetic", "quality_diversity")
-UPHILL = "an uphill road with 3 turns"
+UPHILL = "turn x3 | up"
+FLAT = "| flat turns=1.."
 
 
 class Here:
@@ -45,14 +46,14 @@ class Backwards(Here):
 
 @cache
 def brief_of(words: str) -> Brief:
-    return read(words, reader="grammar")
+    return read(words, reader="plan")
 
 
 def cell_for(
     generator: str, words: str = UPHILL, goal: Goal = "failures", seed: int = 1, **settings: Any
 ) -> Cell:
     usual = FEW if generator == "quality_diversity" else SMALL
-    request = Request(words=words, seed=seed, world=WORLD, setup=Setup(reader="grammar"))
+    request = Request(words=words, seed=seed, world=WORLD, setup=Setup(reader="plan"))
     brief = brief_of(words) if words else None
     return Cell("c01", request, brief, generator, goal, usual | settings, Budget(tests=100))
 
@@ -116,7 +117,7 @@ def test_told_again_it_goes_on_as_if_nothing_had_happened(name: str, goal: Goal)
 
 @pytest.mark.parametrize("name", SEARCHES)
 def test_every_road_that_is_asked_for_keeps_the_brief(name: str) -> None:
-    for words in (UPHILL, "a flat road"):
+    for words in (UPHILL, FLAT):
         cell = cell_for(name, words)
         for proposal in (one for batch in searched(cell, 3)[1] for one in batch if one.design):
             assert proposal.design is not None
@@ -132,7 +133,7 @@ def test_every_road_that_is_asked_for_keeps_the_brief(name: str) -> None:
 def test_a_search_finds_more_failures_in_more_cells_than_drafts_do() -> None:
     found = {}
     for name in SEARCHES:
-        results, _ = searched(cell_for(name, "a flat road", batch=8), 8)
+        results, _ = searched(cell_for(name, FLAT, batch=8), 8)
         cells = {cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results if r.failed}
         found[name] = sum(result.failed for result in results), len(cells)
     assert found["quality_diversity"][0] > 2 * found["random"][0]
@@ -142,7 +143,7 @@ def test_a_search_finds_more_failures_in_more_cells_than_drafts_do() -> None:
 
 def test_no_road_is_like_one_that_it_was_told_of() -> None:
     least = 8.0
-    _, asked = searched(cell_for("quality_diversity", "a flat road", apart=least, candidates=4), 5)
+    _, asked = searched(cell_for("quality_diversity", FLAT, apart=least, candidates=4), 5)
     shapes = [[plan_of(one.design) for one in batch if one.design] for batch in asked]
     assert sum(map(len, shapes)) > 20
     for batch, own in enumerate(shapes[2:], 2):
@@ -170,7 +171,7 @@ def best_fit(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def test_the_boundary_is_closed_in_on() -> None:
-    cell = cell_for("quality_diversity", "a flat road", goal="boundary", batch=8)
+    cell = cell_for("quality_diversity", FLAT, goal="boundary", batch=8)
     results, _ = searched(cell, 10)
     between = [result for result in results if result.proposal.origin.startswith("between")]
     assert between
@@ -188,7 +189,7 @@ def test_the_boundary_is_closed_in_on() -> None:
 def test_coverage_fills_the_map_faster_than_failures_do() -> None:
     reached = {}
     for goal in ("coverage", "failures"):
-        results, _ = searched(cell_for("quality_diversity", "a flat road", goal=goal, batch=8), 8)
+        results, _ = searched(cell_for("quality_diversity", FLAT, goal=goal, batch=8), 8)
         reached[goal] = len({cell_of(r.features, ("MAX_CURV", "STD_SA"), 25) for r in results})
     assert reached["coverage"] > reached["failures"]
 
@@ -251,7 +252,7 @@ def test_settings_that_cannot_be_are_told_of(name: str, settings: dict[str, Any]
 
 def test_splines_are_not_searched() -> None:
     cell = cell_for("genetic")
-    setup = Setup(reader="grammar", geometry="spline")
+    setup = Setup(reader="plan", geometry="spline")
     request = cell.request.model_copy(update={"setup": setup})
     with pytest.raises(UsageError, match="arcs"):
         plugins.find("generators", "genetic")(Cell("c01", request, cell.brief, "genetic", "failures"))

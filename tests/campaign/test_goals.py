@@ -11,7 +11,7 @@ from roadgpt.campaign.model import GOALS, Budget
 from roadgpt.campaign.plan import Plan
 from roadgpt.cli import app
 
-PLAN = Plan(prompts=("two hairpins",), reader="grammar", budget=Budget(tests=3))
+PLAN = Plan(prompts=("hairpin x2",), reader="plan", budget=Budget(tests=3))
 
 
 def roadgpt(*words: object) -> Result:
@@ -22,7 +22,7 @@ def roadgpt(*words: object) -> Result:
     ("generator", "goal"), [("words", "failures"), ("random", "hardest"), ("genetic", "coverage")]
 )
 def test_a_goal_that_nobody_searches_for_is_refused(tmp_path: Path, generator: str, goal: str) -> None:
-    words = ["two hairpins", "-n", 3, "--reader", "grammar", "--goal", goal, "--generator", generator]
+    words = ["hairpin x2", "-n", 3, "--reader", "plan", "--goal", goal, "--generator", generator]
     said = roadgpt("campaign", *words, "--out", tmp_path / "c")
     assert said.exit_code == 2
     sentence = f"the generator '{generator}' does not search for '{goal}'; leave out the goal"

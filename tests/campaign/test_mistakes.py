@@ -33,7 +33,7 @@ def roadgpt(*words: object) -> Result:
 def begin_quickly(folder: Path, patch: pytest.MonkeyPatch, wanted: Plan) -> None:
     """A campaign whose tests cost nothing."""
     put_on_shelves(patch.setattr)
-    patch.setattr("roadgpt.campaign.lifecycle.brief_of", lambda *_: read("two hairpins", "grammar"))
+    patch.setattr("roadgpt.campaign.lifecycle.brief_of", lambda *_: read("hairpin x2", "plan"))
     begin(wanted, folder)
 
 
@@ -114,7 +114,7 @@ def test_a_mistyped_driver_leaves_nothing_behind(tmp_path: Path, driver: str) ->
     mine.write_text(
         "class Raises:\n    def __init__(self): raise ValueError('no')\n    def steer(self, view): ..."
     )
-    words = ["a road with 2 turns", "-n", 2, "--reader", "grammar", "--driver", driver.format(here=mine)]
+    words = ["turn x2", "-n", 2, "--reader", "plan", "--driver", driver.format(here=mine)]
     said = roadgpt("campaign", *words, "--out", tmp_path / "c")
     assert said.exit_code == 2
     assert not (tmp_path / "c").exists()
@@ -145,7 +145,7 @@ def test_files_of_other_people_beside_the_drives_are_left_alone(
 def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def dear(words: str, world: World, setup: Setup, meter: Meter) -> Brief:
         meter.add(Spent(calls=1, usage=Usage(prompt=70, completion=30), seconds=1.0, cost=0.25))
-        return read(words, "grammar")
+        return read(words, "plan")
 
     put_on_shelves(monkeypatch.setattr)
     monkeypatch.setattr("roadgpt.campaign.lifecycle.brief_of", dear)
@@ -165,7 +165,7 @@ def test_what_reading_has_cost_counts_for_the_limit(tmp_path: Path, monkeypatch:
     ],
 )
 def test_a_plan_that_makes_no_sense_is_told(tmp_path: Path, text: str, sentence: str) -> None:
-    (tmp_path / "plan.toml").write_text(f"prompts = 'two hairpins'\ntests = 3\nreader = 'grammar'\n{text}\n")
+    (tmp_path / "plan.toml").write_text(f"prompts = 'hairpin x2'\ntests = 3\nreader = 'plan'\n{text}\n")
     said = roadgpt("campaign", tmp_path / "plan.toml", "--out", tmp_path / "c")
     assert said.exit_code == 2
     assert sentence in said.output

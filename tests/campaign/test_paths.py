@@ -56,7 +56,7 @@ def test_a_campaign_with_a_relative_driver_is_resumed_from_anywhere(
     there: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(there)
-    words = ["campaign", "a road with 2 turns", "-n", "1", "--reader", "grammar", "--driver", "mine.py:Mine"]
+    words = ["campaign", "turn x2", "-n", "1", "--reader", "plan", "--driver", "mine.py:Mine"]
     with monkeypatch.context() as patch:
         patch.setattr("roadgpt.campaign.lifecycle.work", lambda *_: iter(()))  # as if it was stopped at once
         begun = CliRunner().invoke(app, [*words, "--out", "c", "--json"])

@@ -63,17 +63,17 @@ def test_a_file_that_is_none_is_told(tmp_path: Path) -> None:
 def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
     path = tmp_path / "plan.toml"
     path.write_text(
-        "prompts = ['two hairpins', 'a straight']\ndrivers = ['beamng_like', 'reference']\n"
+        "prompts = ['hairpin x2', 'a straight']\ndrivers = ['beamng_like', 'reference']\n"
         "seeds = [3, 4, 5]\ntests = 9\n[world]\nspeed_limit_kmh = 36\nfriction = 0.6\n[settings]\nsize = 3\n"
     )
     plan = read_plan(path).plan
     plan.check()
     cells = plan.cells(BRIEFS)
     told = [(cell.request.words, cell.request.setup.driver, cell.request.seed) for cell in cells]
-    prompts, drivers = ("two hairpins", "a straight"), ("beamng_like", "reference")
+    prompts, drivers = ("hairpin x2", "a straight"), ("beamng_like", "reference")
     assert told == [(words, driver, seed) for words in prompts for driver in drivers for seed in (3, 4, 5)]
     assert [cell.name for cell in cells] == [f"c{number:02d}" for number in range(1, 13)]
-    assert cells[0].brief == BRIEFS["two hairpins"]
+    assert cells[0].brief == BRIEFS["hairpin x2"]
     assert cells[-1].brief is None
     assert cells[0].request.world.limits.speed_limit == pytest.approx(10.0)
     assert cells[0].settings == {"size": 3}

@@ -32,11 +32,11 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A campaign of two cells, one of one cell, and a folder of runs."""
     home = tmp_path_factory.mktemp("home")
     (home / "plan.toml").write_text(
-        'prompts = ["a flat road with 2 turns"]\nseeds = [3, 4]\ntests = 4\nreader = "grammar"\n'
+        'prompts = ["turn x2 | flat"]\nseeds = [3, 4]\ntests = 4\nreader = "plan"\n'
         "[world]\noob_tolerance = 0.3\nmap_size = 200\n"
     )
     lines("campaign", home / "plan.toml", "--out", home / "two", "-q")
-    words = ["a flat road with 2 turns", "--reader", "grammar", "--seed", 3, "--oob-tolerance", 0.3]
+    words = ["turn x2 | flat", "--reader", "plan", "--seed", 3, "--oob-tolerance", 0.3]
     lines("campaign", *words, "-n", 3, "--out", home / "one", "-q")
     lines("run", *words, "-n", 3, "--no-plot", "--out", home / "runs", "-q")
     return home
@@ -208,7 +208,7 @@ def test_what_cannot_be_meant_is_told(words: list[str], said: str) -> None:
 
 
 def test_where_nothing_failed_that_is_said(home: Path) -> None:
-    words = ["a straight road", "--reader", "grammar", "--seed", 1, "-n", 2, "-q"]
+    words = ["straight | turns=0", "--reader", "plan", "--seed", 1, "-n", 2, "-q"]
     lines("campaign", *words, "--out", "calm")
     for choice in ("--failures", "--faults"):
         done = roadgpt("export", "calm", choice, "--to", "csv")
@@ -253,7 +253,7 @@ def test_a_campaign_that_was_moved_needs_no_driver(tmp_path: Path, home: Path) -
         "from roadgpt.drive import Command\n"
         "class Mine:\n    def steer(self, view):\n        return Command(0.0, 1.0)\n"
     )
-    words = ["a flat road with 2 turns", "--reader", "grammar", "-n", 2, "-q", "--driver", "mine.py:Mine"]
+    words = ["turn x2 | flat", "--reader", "plan", "-n", 2, "-q", "--driver", "mine.py:Mine"]
     lines("campaign", *words, "--out", "own")
     shutil.move("own", "elsewhere")
     Path("mine.py").unlink()

@@ -32,7 +32,7 @@ from roadgpt.drive import COLUMNS, Box, Columns, Drive, simulate
 from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.road import World, build
 
-BRIEFS = {"two hairpins": Brief(words="two hairpins")}
+BRIEFS = {"hairpin x2": Brief(words="hairpin x2")}
 numbers = st.floats(allow_nan=False, allow_infinity=True, width=64)
 maybe = st.none() | numbers
 texts = st.text(st.characters(codec="utf-8"), max_size=20)

@@ -49,7 +49,7 @@ SPOILT = {
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("made") / "c"
-    begin(Plan(prompts=("a road with 2 turns",), budget=Budget(tests=2), reader="grammar"), place)
+    begin(Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan"), place)
     for _ in work(place):
         pass
     return place

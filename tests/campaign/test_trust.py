@@ -28,7 +28,7 @@ DRIVER = (
     "from roadgpt.drive import Command\n"
     "class Mine:\n    def steer(self, view):\n        return Command(0.0, 1.0, 0.0)\n"
 )
-PLAIN = Setup(reader="grammar")
+PLAIN = Setup(reader="plan")
 
 
 @pytest.fixture(autouse=True)
@@ -44,10 +44,10 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that fails, a finished campaign and an unfinished one."""
     place = tmp_path_factory.mktemp("made")
     slippery = World(site=Site(friction=0.2), limits=Limits(speed_limit=40.0))
-    run = perform("a road with 4 sharp turns", world=slippery, setup=PLAIN)
+    run = perform("turn x4 sharp", world=slippery, setup=PLAIN)
     assert run.outcome == "FAIL"
     write_run(run, place / "run")
-    plan = Plan(prompts=("a road with 2 turns",), budget=Budget(tests=2), reader="grammar")
+    plan = Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan")
     begin(plan, place / "done")
     for _ in work(place / "done"):
         pass
@@ -73,7 +73,7 @@ def shared(made: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
             db.execute("UPDATE tests SET outcome = 'FAIL' WHERE outcome = 'PASS'")
         db.close()
     Path("plan.toml").write_text(
-        'prompts = ["a road with 2 turns"]\ntests = 1\nreader = "grammar"\ndrivers = "mine.py:Mine"\n'
+        'prompts = ["turn x2"]\ntests = 1\nreader = "plan"\ndrivers = "mine.py:Mine"\n'
     )
     return tmp_path
 

@@ -28,31 +28,27 @@ from roadgpt.design.writing import design_of, segments_of
 from roadgpt.road import Design, Road, Segment, Site, World, build
 
 WORLD = World(site=Site(map_size=200))
-WORDS = (
-    "a flat road",
-    "an uphill road with 3 turns",
-    "a serpentine road",
-    "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
-)
+FLAT, UPHILL, SERPENTINE = "| flat turns=1..", "turn x3 | up", "serpentine"
+PLANS = (FLAT, UPHILL, SERPENTINE, "turn x2 up; straight down; turn left")
 SEEDS = st.integers(0, 2**40)
 
 
 @cache
-def setting(words: str) -> VariationContext:
-    return VariationContext(read(words, reader="grammar"), WORLD, "sbft")
+def setting(line: str) -> VariationContext:
+    return VariationContext(read(line, reader="plan"), WORLD, "sbft")
 
 
 @cache
-def drafts(words: str) -> tuple[Candidate, ...]:
-    made = (make_candidate(VariationTask("draft", (), "draft", (seed,), setting(words))) for seed in range(5))
+def drafts(line: str) -> tuple[Candidate, ...]:
+    made = (make_candidate(VariationTask("draft", (), "draft", (seed,), setting(line))) for seed in range(5))
     return tuple(one for one in made if one)
 
 
-def child(words: str, kind: Kind, seed: int) -> Candidate | None:
-    parents = drafts(words)
+def child(line: str, kind: Kind, seed: int) -> Candidate | None:
+    parents = drafts(line)
     chosen = {"vary": 1, "cross": 2}.get(kind, 0)
     own = tuple(parents[(seed + i) % len(parents)].design for i in range(chosen))
-    return make_candidate(VariationTask(kind, own, kind, (seed,), setting(words)))
+    return make_candidate(VariationTask(kind, own, kind, (seed,), setting(line)))
 
 
 def hands(road: Road) -> list[str]:
@@ -79,23 +75,23 @@ def slopes(road: Road) -> np.ndarray:
 
 
 @settings(max_examples=20)
-@given(SEEDS, st.sampled_from(WORDS), st.sampled_from(["vary", "cross", "wild"]))
-def test_every_variation_keeps_the_brief_and_every_rule(seed: int, words: str, kind: Kind) -> None:
-    one = child(words, kind, seed)
+@given(SEEDS, st.sampled_from(PLANS), st.sampled_from(["vary", "cross", "wild"]))
+def test_every_variation_keeps_the_brief_and_every_rule(seed: int, line: str, kind: Kind) -> None:
+    one = child(line, kind, seed)
     if one is None:
         return
     road = build(one.design)
-    assert not check.inspect(road, setting(words).brief, WORLD)
+    assert not check.inspect(road, setting(line).brief, WORLD)
     assert sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
     turns, grades = hands(road), slopes(road)
-    if words == "a flat road":
+    if line == FLAT:
         assert np.abs(grades).max() < 1
         assert turns
-    elif words.startswith("an uphill"):
+    elif line == UPHILL:
         assert len(turns) == 3
         assert grades.min() > -1
         assert road.at(road.length)[2] > road.at(0.0)[2]
-    elif words == "a serpentine road":
+    elif line == SERPENTINE:
         assert len(turns) >= 4
         assert all(a != b for a, b in pairwise(turns))
     else:
@@ -105,14 +101,14 @@ def test_every_variation_keeps_the_brief_and_every_rule(seed: int, words: str, k
 
 
 def test_nearly_every_variation_comes_to_something() -> None:
-    for words in WORDS:
-        made = [child(words, "vary", seed) for seed in range(6)]
+    for line in PLANS:
+        made = [child(line, "vary", seed) for seed in range(6)]
         assert sum(one is not None for one in made) >= 5
 
 
 def test_the_same_task_makes_the_same_road_and_another_seed_another() -> None:
     for kind in ("draft", "wild", "vary", "cross"):
-        one, again, other = (child(WORDS[1], kind, seed) for seed in (5, 5, 6))  # type: ignore[arg-type]
+        one, again, other = (child(PLANS[1], kind, seed) for seed in (5, 5, 6))  # type: ignore[arg-type]
         assert (one is None) == (again is None)
         if one is None or again is None:
             assert kind == "cross"  # what takes after two need not keep what both were asked for
@@ -124,22 +120,22 @@ def test_the_same_task_makes_the_same_road_and_another_seed_another() -> None:
 
 
 def test_parents_are_left_as_they_are() -> None:
-    before = [one.design.model_dump_json() for one in drafts(WORDS[0])]
-    child(WORDS[0], "cross", 3)
-    assert [one.design.model_dump_json() for one in drafts(WORDS[0])] == before
+    before = [one.design.model_dump_json() for one in drafts(PLANS[0])]
+    child(PLANS[0], "cross", 3)
+    assert [one.design.model_dump_json() for one in drafts(PLANS[0])] == before
 
 
 def test_a_road_is_seen_again_as_it_was_seen_first() -> None:
-    for one in drafts(WORDS[3]):
-        again = describe_known((one.design, setting(WORDS[3])))
+    for one in drafts(PLANS[3]):
+        again = describe_known((one.design, setting(PLANS[3])))
         assert again.features == one.features
         assert np.array_equal(again.surrogate_features, one.surrogate_features)
 
 
 @settings(max_examples=30)
-@given(st.integers(0, 4), st.sampled_from(WORDS))
-def test_elements_give_the_road_back(number: int, words: str) -> None:
-    design = drafts(words)[number % len(drafts(words))].design
+@given(st.integers(0, 4), st.sampled_from(PLANS))
+def test_elements_give_the_road_back(number: int, line: str) -> None:
+    design = drafts(line)[number % len(drafts(line))].design
     x, y, _ = design.starting_point
     again = design_of(elements_of(design.segments), MapPose(x, y, design.theta), WORLD)
     one, other = build(design), build(again)

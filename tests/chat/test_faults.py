@@ -114,7 +114,7 @@ OF_READERS = (
 
 
 def run(stub: Stub, *more: str, roads: int = 3) -> Result:
-    words = ["run", "a road with a left turn", "--reader", "grammar", "--designer", "chat", "-n", str(roads)]
+    words = ["run", "turn left", "--reader", "plan", "--designer", "chat", "-n", str(roads)]
     server = [
         "--base-url",
         stub.url,

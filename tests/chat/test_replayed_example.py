@@ -27,7 +27,7 @@ def offline(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def run(*words: str) -> None:
-    usual = ("--reader", "grammar", "--no-drive", "--no-plot", "--max-completion", "400")
+    usual = ("--no-drive", "--no-plot", "--max-completion", "400")
     done = CliRunner().invoke(app, ["run", *words, *usual, "--replay", str(EXAMPLE), "--out", "out"])
     assert done.exit_code == 0, done.output
 

@@ -199,7 +199,7 @@ def test_the_command_shows_origins_and_masks_keys(monkeypatch: pytest.MonkeyPatc
 
 
 def test_options_for_models_are_refused_where_none_is_asked() -> None:
-    result = invoke("run", "a road", "--reader", "grammar", "--max-cost", "1")
+    result = invoke("run", "| turns=1..", "--reader", "plan", "--max-cost", "1")
     assert result.exit_code == 2
     assert "--max-cost is for language models; give --designer chat or --reader chat" in result.stderr
 

@@ -39,7 +39,7 @@ def invoke(*words: str) -> Result:
 def plan_naming(url: str) -> Path:
     path = Path("plan.toml")
     path.write_text(
-        'prompts = ["a left turn"]\ntests = 1\ndrive = false\ndesigners = ["chat"]\nreader = "grammar"\n'
+        'prompts = ["turn left"]\ntests = 1\ndrive = false\ndesigners = ["chat"]\nreader = "plan"\n'
         f'[chat]\nmodel = "m"\nretries = 0\nbase_url = "{url}"\n'
     )
     return path
@@ -71,8 +71,8 @@ def test_a_server_of_a_plan_gets_the_key_only_from_who_names_it(
 def test_a_store_does_not_get_the_users_key_sent(stub: Stub, how: str) -> None:
     stub.play(says(GOOD))
     chat = ChatSettings(model="m", base_url=stub.url, retries=0)
-    setup = {"designers": ("chat",), "reader": "grammar", "drives": False, "chat": chat}
-    begin(Plan(prompts=("a left turn",), budget=Budget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
+    setup = {"designers": ("chat",), "reader": "plan", "drives": False, "chat": chat}
+    begin(Plan(prompts=("turn left",), budget=Budget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
     provenance.SERVERS.forget()
     given = {"resume": [], "resume with a flag": [stub.url], "resume another": [ELSEWHERE]}[how]
     result = invoke("resume", "c", "-q", *(word for url in given for word in ("--base-url", url)))
@@ -86,9 +86,9 @@ def test_a_store_does_not_get_the_users_key_sent(stub: Stub, how: str) -> None:
 
 
 def test_a_run_does_not_get_the_users_key_sent() -> None:
-    setup = Setup(reader="grammar", drives=False, chat=ChatSettings(model="m", base_url=ELSEWHERE))
-    run = perform("a left turn", setup=Setup(reader="grammar", drives=False))
-    asked = Asked(words="a left turn", setup=setup)
+    setup = Setup(reader="plan", drives=False, chat=ChatSettings(model="m", base_url=ELSEWHERE))
+    run = perform("turn left", setup=Setup(reader="plan", drives=False))
+    asked = Asked(words="turn left", setup=setup)
     folder = write_run(type(run)(**{**vars(run), "request": asked}), Path("c"))
     assert key_for(ELSEWHERE) is not None  # a program that names it itself
     read_run(folder)

@@ -21,7 +21,7 @@ OTHERWISE = {
 }  # fmt: skip
 WHOLE = """
 [run]
-reader = "grammar"
+reader = "plan"
 designer = "thesis"
 driver = "pure_pursuit"
 simulator = "beamng"
@@ -143,14 +143,14 @@ def test_what_a_file_sets_is_what_the_command_works_with(home: Path, monkeypatch
 
 
 def test_a_run_in_the_folder_is_made_as_its_file_says_and_says_so() -> None:
-    Path("roadgpt.toml").write_text('[world]\nfriction = 0.5\n[run]\nreader = "grammar"')
-    words = ("run", "a straight road", "--seed", "1", "--no-drive", "--no-plot")
+    Path("roadgpt.toml").write_text('[world]\nfriction = 0.5\n[run]\nreader = "plan"')
+    words = ("run", "straight | turns=0", "--seed", "1", "--no-drive", "--no-plot")
     result = invoke(*words, "--out", "one")
     assert result.exit_code == 0, result.output
-    assert result.stderr == "roadgpt: roadgpt.toml sets reader = grammar, friction = 0.5\n"
+    assert result.stderr == "roadgpt: roadgpt.toml sets reader = plan, friction = 0.5\n"
     assert read_run(Path("one/runs/0001")).world.site.friction == 0.5
     assert invoke(*words, "--out", "two", "--quiet").stderr == ""
-    assert invoke(*words, "--out", "three", "--friction", "0.7", "--reader", "grammar").stderr == ""
+    assert invoke(*words, "--out", "three", "--friction", "0.7", "--reader", "plan").stderr == ""
     assert read_run(Path("three/runs/0001")).world.site.friction == 0.7
 
 
@@ -174,7 +174,7 @@ def test_a_switch_that_a_file_sets_can_be_taken_back() -> None:
 
 
 def test_the_line_that_makes_a_run_again_holds_under_the_settings_of_the_folder() -> None:
-    words = ("run", "a straight road", "--seed", "1", "--no-drive", "--no-plot", "--reader", "grammar")
+    words = ("run", "straight | turns=0", "--seed", "1", "--no-drive", "--no-plot", "--reader", "plan")
     assert invoke(*words, "--out", "one").exit_code == 0
     (line,) = [line for line in invoke("show", "one/runs/0001").stdout.splitlines() if "roadgpt run" in line]
     assert "--friction" not in line
@@ -301,7 +301,7 @@ def test_the_key_of_a_plan_is_taken_too() -> None:
 
 
 def test_a_campaign_and_a_study_take_the_driver_and_the_designer_of_the_file(home: Path) -> None:
-    home.write_text('[run]\ndriver = "pure_pursuit"\ndesigner = "thesis"\nreader = "grammar"')
+    home.write_text('[run]\ndriver = "pure_pursuit"\ndesigner = "thesis"\nreader = "plan"')
     context = click.Context(app, **app.context_settings)
     campaign = app.get_command(context, "campaign")
     study = app.get_command(context, "study")

@@ -101,7 +101,7 @@ def test_the_ranges_in_the_docs_are_those_of_the_options() -> None:
 def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     from openai import _constants
 
-    from roadgpt.brief.readers.grammar import MOST_CHARACTERS
+    from roadgpt.brief.refusal import MOST_CHARACTERS
     from roadgpt.campaign.batch_scheduler import GIVE_UP
     from roadgpt.chat import conversation, response_limits, strict_json
     from roadgpt.chat.providers.openai import MOST_REQUESTS

@@ -83,7 +83,7 @@ def test_behind_two_dashes_a_word_is_no_option() -> None:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path("road.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110], [150, 140]]))
-    words = ("campaign", "a road with 2 turns", "-n", "2", "--seed", "3", "--reader", "grammar")
+    words = ("campaign", "turn x2", "-n", "2", "--seed", "3", "--reader", "plan")
     assert invoke(*words, "--out", "c", "--quiet").exit_code == 0
     return tmp_path
 

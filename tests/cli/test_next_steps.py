@@ -14,7 +14,7 @@ from roadgpt.cli.next_steps import HEAD, WithoutFailure, next_steps
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Request
 
-WORDS = ("a road with 2 turns", "--reader", "grammar", "--seed", "5")
+WORDS = ("turn x2", "--reader", "plan", "--seed", "5")
 REQUEST = Request(words="a road", seed=3)
 
 

@@ -26,7 +26,7 @@ def test_a_sentence_says_what_was_read() -> None:
 
 
 def test_json_holds_the_brief_and_how_sure_the_reader_is() -> None:
-    data = json.loads(_read(WORDS, "--json", "--reader", "grammar").output)
+    data = json.loads(_read(WORDS, "--json").output)
     assert data["plan"] == PLAN
     brief = Brief.model_validate(data["brief"])
     assert brief.clauses == read_plan(PLAN).clauses
@@ -34,23 +34,21 @@ def test_json_holds_the_brief_and_how_sure_the_reader_is() -> None:
 
 
 def test_a_table_has_a_row_for_each_thing() -> None:
-    lines = _read(WORDS + ", the whole road 200 m long", "--table", "--reader", "grammar").output.splitlines()
+    lines = _read(PLAN + " | len=200", "--table", "--reader", "plan").output.splitlines()
     cells = [line.split(maxsplit=2) for line in lines[1:]]
     assert cells[0] == ["what", "how"]
     assert [cell[0] for cell in cells[1:]] == ["1", "2", "whole"]
 
 
 def test_a_table_speaks_plain_words() -> None:
-    words = (
-        "three sharp left turns of 60 degrees uphill, then 80 m straight downhill, the whole road 300 m long"
-    )
-    lines = _read(words, "--table", "--reader", "grammar").output.splitlines()[2:]
+    line = "turn x3 left sharp up deg=60; straight down len=80 | len=300"
+    lines = _read(line, "--table", "--reader", "plan").output.splitlines()[2:]
     assert [re.split(r"\s{2,}", line.strip()) for line in lines] == [
         ["1", "3 turns", "sharp, uphill, left, 60 degrees"],
         ["2", "straight", "downhill, 80 metres"],
         ["whole road", "300 metres long"],
     ]
-    (row,) = _read("a road", "--table", "--reader", "grammar").output.splitlines()[2:]
+    (row,) = _read("| turns=1..", "--table", "--reader", "plan").output.splitlines()[2:]
     assert row.split(maxsplit=2) == ["whole", "road", "nothing is asked of it"]
 
 
@@ -82,8 +80,8 @@ def test_vague_words_have_several_readings_and_the_same_ones_again() -> None:
     assert 2 <= len(plans) == len({*plans}) <= 4
 
 
-def test_rules_know_one_reading() -> None:
-    done = _read("a road", "--alternatives", "3", "--reader", "grammar", "--json")
+def test_a_plan_has_one_reading() -> None:
+    done = _read("| turns=1..", "--alternatives", "3", "--reader", "plan", "--json")
     assert len(json.loads(done.output)) == 1
 
 

@@ -67,7 +67,7 @@ def test_a_line_names_only_what_differs() -> None:
 
 SETUPS = st.builds(
     Setup,
-    reader=st.sampled_from(["grammar", "own"]),
+    reader=st.sampled_from(["plan", "own"]),
     designer=st.sampled_from(["planner", "own"]),
     rules=st.sampled_from(["strict", "sbft"]),
     driver=st.sampled_from(["beamng_like", "my file.py:D"]),

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 import pytest
 
 from fake_chat import FakeChat
+from planned import planned
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
-from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.chat import BudgetError, ChatSettings, Message, RefusedError, UnparsableError
 from roadgpt.design.asking import demands, drawn_start, request, rules
 from roadgpt.design.designers.chat import ChatDesigner
@@ -41,8 +41,7 @@ def start(x: float = 60, y: float = 125, theta: float = 0) -> str:
 
 THREE_TURNS = answer((40, 0, 0), (40, 50, 0), (20, 0, 0), (40, -60, 0), (20, 0, 0), (40, 40, 0))
 TWO_TURNS = answer((40, 0, 0), (40, 50, 0), (20, 0, 0), (40, -60, 0))
-read = GrammarReader().read
-BRIEF = read("a road with 3 turns")
+BRIEF = planned("turn x3", "a road with 3 turns")
 
 
 def drafted(chat: FakeChat, brief: Brief = BRIEF, earlier: Sequence[Design] = (), **settings):
@@ -223,28 +222,28 @@ def test_model_text_is_data() -> None:
 
 
 @pytest.mark.parametrize(
-    "words", ["a road", "a straight flat road", "3 turns, up, ending in a hairpin, 300 m long"]
+    "line", ["| turns=1..", "straight | flat turns=0", "turn x2; straight up; hairpin | len=300"]
 )
-def test_demands_have_no_odd_words(words: str) -> None:
-    text = "\n".join(demands(outline(read(words), WORLD.site.map_size)))
+def test_demands_have_no_odd_words(line: str) -> None:
+    text = "\n".join(demands(outline(planned(line), WORLD.site.map_size)))
     assert not {"inf", "None", "nan", "-inf"} & {*text.replace(":", " ").split()}
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("line", "told"),
     [
-        ("an S-bend", "in this order: 2 S-bend turns: "),
-        ("a serpentine road", "in this order: 4 or more serpentine turns: "),
-        ("two hairpins", "in this order: 2 hairpins: "),
-        ("a hairpin to the left", "in this order: 1 hairpin: to the left, "),
-        ("a straight road", "in this order: 1 straight: 10 or more m long"),
-        ("a road that gains 20 m", "a climb of 17 to 23 m"),
-        ("a road with 3 turns; at most 2 right turns in all", "0 to 2 right turns"),
-        ("a flat road", "the whole road is level (mean slope -1 to 1 %)"),
+        ("s_bend", "in this order: 2 S-bend turns: "),
+        ("serpentine", "in this order: 4 or more serpentine turns: "),
+        ("hairpin x2", "in this order: 2 hairpins: "),
+        ("hairpin left", "in this order: 1 hairpin: to the left, "),
+        ("straight | turns=0", "in this order: 1 straight: 10 or more m long"),
+        ("| up turns=1.. climb=20", "a climb of 17 to 23 m"),
+        ("turn x3 | rights=..2", "0 to 2 right turns"),
+        ("| flat turns=1..", "the whole road is level (mean slope -1 to 1 %)"),
     ],
 )
-def test_demands_in_words(words: str, told: str) -> None:
-    demanded = demands(outline(read(words), WORLD.site.map_size))
+def test_demands_in_words(line: str, told: str) -> None:
+    demanded = demands(outline(planned(line), WORLD.site.map_size))
     assert any(line.startswith(told) for line in demanded), demanded
 
 

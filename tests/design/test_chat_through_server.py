@@ -10,13 +10,13 @@ from types import SimpleNamespace
 import pytest
 
 from chat.stub_server import Scene, Stub, drops, fails, floods, says, serving
-from roadgpt.brief.readers.grammar import GrammarReader
+from planned import planned
 from roadgpt.campaign import campaign
 from roadgpt.chat import ChatSettings, server_quirks
 from roadgpt.errors import RoadGPTError
 from roadgpt.run import Setup, perform
 
-BRIEF = GrammarReader().read("a road with 3 turns")
+BRIEF = planned("turn x3", "a road with 3 turns")
 SEGMENTS = [(40, 0), (40, 50), (20, 0), (40, -60), (20, 0), (40, 40)]
 SIDES = {1: "left", -1: "right", 0: "straight"}
 
@@ -89,7 +89,7 @@ def _alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 def setup(stub: Stub, designer: str = "chat", **more: object) -> Setup:
     told = {"model": "stub-model", "base_url": stub.url, "timeout": 5, "retries": 2, "rounds": 2, **more}
-    return Setup(reader="grammar", designer=designer, drives=False, chat=ChatSettings(**told))
+    return Setup(reader="plan", designer=designer, drives=False, chat=ChatSettings(**told))
 
 
 @pytest.mark.parametrize("fault", FAULTS)

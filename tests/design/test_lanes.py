@@ -11,7 +11,7 @@ from roadgpt.design.repair import repair
 from roadgpt.road import CrossSection, Design, Segment, World, build
 
 WORLD = World(section=CrossSection(lanes="3+2", lane_width=3.5, bank="auto"))
-BRIEF = read("a road with 3 turns", "grammar")
+BRIEF = read("turn x3", "plan")
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -13,7 +13,7 @@ from authorities import roadgpt_checks
 from llm_like import random_lists
 from roadgpt import check
 from roadgpt.brief.model import Brief, Clause, exactly
-from roadgpt.brief.readers.grammar import GrammarReader
+from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.repair import Repaired, repair
@@ -21,7 +21,7 @@ from roadgpt.road import Design, Segment, World, build, read_design
 from strategies import designs, worlds
 
 WORLD = World()
-read = GrammarReader().read
+read = PlanReader().read
 
 
 def road_of(*segments: tuple, start=(125.0, 125.0, 0.0), theta=0.0) -> Design:
@@ -104,7 +104,7 @@ HOWS = ("none", "place", "full")
 
 @pytest.mark.parametrize("how", HOWS)
 def test_what_is_right_already_comes_back_as_it_is(how: str) -> None:
-    brief = read("an uphill road with 3 turns")
+    brief = read("turn x3 | up")
     for seed in range(5):
         design = draft(brief, WORLD, seed=seed)
         assert repair(design, brief, WORLD, how) == Repaired(design, ())
@@ -210,7 +210,7 @@ def test_a_loop_over_itself_is_opened() -> None:
 
 
 def test_radii_of_a_design_of_ours_give_way_only_where_they_must() -> None:
-    brief = read("three sharp turns")
+    brief = read("turn x3 sharp")
     design = draft(brief, WORLD, seed=3)
     moved = design.model_copy(update={"starting_point": (240.0, 240.0, 0.0)})
     after = repair(moved, brief, WORLD, "full").design
@@ -219,29 +219,29 @@ def test_radii_of_a_design_of_ours_give_way_only_where_they_must() -> None:
 
 
 PROMISES = {
-    "a road that turns left 90 degrees, runs straight for 60 metres and turns right 45 degrees": road_of(
+    "turn left 90; straight 60; turn right 45": road_of(
         (50, 0, 0), (60, 70, 2), (40, 0, 0), (50, -60, 0), (30, 0, 0)
     ),
-    "an uphill road with 3 turns": road_of((30, 0, 0), (50, 60, 2), (45, -50, -4), (20, 0, 5), (50, 30, 1)),
-    "two gentle left turns, 5 percent uphill": road_of((25, 60, 1), (20, 0, 0), (30, 40, 9)),
-    "up, then down, then a right turn": road_of((40, 0, 6), (30, 0, 1), (45, 0, -9), (30, -45, 0)),
-    "a 250 metre road with 2 turns": road_of((80, 0, 0), (60, 60, 0), (90, -60, 0), (100, 0, 0)),
-    "a road with 2 turns that climbs 12 metres": road_of((60, 0, 2), (60, 50, 3), (50, -50, 2), (30, 0, 4)),
+    "turn x3 | up": road_of((30, 0, 0), (50, 60, 2), (45, -50, -4), (20, 0, 5), (50, 30, 1)),
+    "turn x2 left gentle | up pct=5": road_of((25, 60, 1), (20, 0, 0), (30, 40, 9)),
+    "straight up; straight down; turn right": road_of((40, 0, 6), (30, 0, 1), (45, 0, -9), (30, -45, 0)),
+    "turn x2 | len=250": road_of((80, 0, 0), (60, 60, 0), (90, -60, 0), (100, 0, 0)),
+    "turn x2 | up climb=12": road_of((60, 0, 2), (60, 50, 3), (50, -50, 2), (30, 0, 4)),
 }
 
 
-@pytest.mark.parametrize("words", PROMISES)
-def test_a_proposal_with_the_right_turns_is_made_true_to_its_brief(words: str) -> None:
-    brief = read(words)
-    assert not is_valid(PROMISES[words], brief)
-    after = repair(PROMISES[words], brief, WORLD, "full").design
+@pytest.mark.parametrize("line", PROMISES)
+def test_a_proposal_with_the_right_turns_is_made_true_to_its_brief(line: str) -> None:
+    brief = read(line)
+    assert not is_valid(PROMISES[line], brief)
+    after = repair(PROMISES[line], brief, WORLD, "full").design
     assert check.inspect(build(after), brief, WORLD) == ()
 
 
 @pytest.mark.parametrize("asked", [150, 210, 300])
 def test_turns_that_should_add_up_to_a_sum_are_made_to(asked: int) -> None:
     proposed = road_of((30, 0, 0), (30, 60, 0), (40, 0, 0), (30, -60, 0), (40, 0, 0), (30, 60, 0), (30, 0, 0))
-    brief = read(f"three turns; {asked} degrees of turning in all")
+    brief = read(f"turn x3 | turning={asked}")
     after = repair(proposed, brief, WORLD, "full").design
     assert is_valid(after, brief)
     assert sum(abs(segment.turn_degrees) for segment in after.segments) == pytest.approx(asked, rel=0.1)
@@ -258,7 +258,7 @@ def test_a_proposal_with_other_turns_than_asked_is_made_valid_and_stays_what_it_
 
 
 def test_an_open_count_is_shared_out_so_that_the_least_changes() -> None:
-    brief = read("at least one turn uphill, then at least one turn downhill")
+    brief = read("turn x1.. up; turn x1.. down")
     up, down = (30, 50, 5), (30, -50, -5)
     proposed = road_of((30, 0, 5), up, (30, 0, 5), (40, -50, 2), (30, 0, 5), up, (30, 0, 0), down)
     after = repair(proposed, brief, WORLD, "full").design

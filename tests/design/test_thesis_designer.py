@@ -5,15 +5,14 @@ import json
 import pytest
 
 from fake_chat import FakeChat
+from planned import planned
 from roadgpt import check
-from roadgpt.brief.readers.grammar import GrammarReader
 from roadgpt.chat import ChatError, ChatSettings, UnparsableError
 from roadgpt.design.designers.thesis import ThesisDesigner
 from roadgpt.errors import ReplyError
 from roadgpt.road import World, build
 
 WORLD = World()
-read = GrammarReader().read
 EXAMPLE = {  # the example of the thesis, whose left turn has a negative angle
     "starting_point": [50, 30, 0],
     "theta": 90,
@@ -26,7 +25,7 @@ EXAMPLE = {  # the example of the thesis, whose left turn has a negative angle
 def drafted(*lines):
     chat = FakeChat(*lines)
     designer = ThesisDesigner(ChatSettings(rounds=3, repair="full"), chat)
-    return designer.draft(read("a road with 3 turns"), WORLD, ("note",), (), 7), designer, chat
+    return designer.draft(planned("turn x3", "a road with 3 turns"), WORLD, ("note",), (), 7), designer, chat
 
 
 def test_one_question_and_nothing_is_repaired() -> None:

@@ -66,7 +66,7 @@ def test_a_reader_gets_its_row(tmp_path: Path) -> None:
     asked = ["evaluate", "--hand", str(tmp_path), "--split", "test", "--misses", "5"]
     done = CliRunner().invoke(command, asked)
     assert done.exit_code == 0, done.output
-    assert "| grammar | 3 | 66.7 |" in done.output
+    assert "| model | 3 | 66.7 |" in done.output
     assert "'a left bend'" in done.output
 
 

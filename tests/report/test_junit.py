@@ -101,7 +101,7 @@ def test_what_was_there_stays_where_the_file_cannot_be_written(tmp_path: Path) -
 
 def test_run_and_its_folder_write_the_same_tests(tmp_path: Path) -> None:
     own, again = tmp_path / "own.xml", tmp_path / "again.xml"
-    words = ["a road with 2 turns", "-n", 4, "--seed", 7, "--reader", "grammar", "--no-plot"]
+    words = ["turn x2", "-n", 4, "--seed", 7, "--reader", "plan", "--no-plot"]
     out = tmp_path / "runs"
     told = roadgpt("run", *words, "--friction", 0.35, "--out", out, "--junit", own, "--json")
     roadgpt("report", out, "--junit", again)
@@ -109,7 +109,7 @@ def test_run_and_its_folder_write_the_same_tests(tmp_path: Path) -> None:
     first, second = checked(own), checked(again)
     assert ET.tostring(first) == ET.tostring(second)
     (suite,) = first
-    assert suite.get("name") == "a road with 2 turns"
+    assert suite.get("name") == "turn x2"
     assert properties(suite)["friction"] == "0.35"
     assert properties(suite)["seed"] == "7"
     for row, case in zip(rows, suite.findall("testcase"), strict=True):
@@ -121,7 +121,7 @@ def test_run_and_its_folder_write_the_same_tests(tmp_path: Path) -> None:
         found = properties(case)
         assert float(found["max_oob"]) == pytest.approx(row["max_oob"], abs=1e-4)
         assert float(found["margin_m"]) == pytest.approx(row["margin_m"], abs=1e-4)
-        assert found["words"] == "a road with 2 turns"
+        assert found["words"] == "turn x2"
         assert found["seed"].isdecimal()
     assert {row["test_outcome"] for row in rows} >= {"FAIL"}
 
@@ -145,14 +145,14 @@ def test_drive_tells_invalid_roads_as_skipped_and_broken_files_as_errors(tmp_pat
 
 def test_a_campaign_writes_a_suite_for_each_cell(tmp_path: Path) -> None:
     plan = tmp_path / "plan.toml"
-    plan.write_text('prompts = ["a road with 2 turns", "a straight road"]\nreader = "grammar"\ntests = 2\n')
+    plan.write_text('prompts = ["turn x2", "straight | turns=0"]\nreader = "plan"\ntests = 2\n')
     first, second, third = (tmp_path / f"{n}.xml" for n in (1, 2, 3))
     roadgpt("campaign", plan, "--out", tmp_path / "c", "--junit", first, "--quiet")
     roadgpt("resume", tmp_path / "c", "--junit", second, "--quiet")
     roadgpt("report", tmp_path / "c", "--junit", third)
     root = checked(first)
     assert first.read_bytes() == second.read_bytes() == third.read_bytes()
-    assert [suite.get("name") for suite in root] == ["c01: a road with 2 turns", "c02: a straight road"]
+    assert [suite.get("name") for suite in root] == ["c01: turn x2", "c02: straight | turns=0"]
     for suite in root:
         assert suite.get("tests") == "2"
         assert properties(suite)["generator"] == "words"

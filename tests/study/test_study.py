@@ -28,7 +28,8 @@ from roadgpt.study.truth import Truth
 
 GOLDEN = Path(__file__).parent / "golden"
 CLOCK = ("seconds.json", "generation_stats.csv", "workers.log")  # what the clock and workers write
-QUICK = Setup(reader="grammar", drives=False)
+QUICK = Setup(reader="plan", drives=False)
+ANY = "| turns=1.."  # a road of any kind
 
 
 def content(folder: Path) -> dict[str, bytes]:
@@ -97,7 +98,7 @@ def test_the_report_is_written_again_from_the_folder_alone(study: Path) -> None:
 
 
 def test_pictures_of_a_study_are_of_the_format_that_is_asked_for(tmp_path: Path) -> None:
-    (tmp_path / "p.jsonl").write_text('{"id": "1", "prompt": "a straight road of 40 m"}\n')
+    (tmp_path / "p.jsonl").write_text('{"id": "1", "prompt": "straight | turns=0 len=40"}\n')
     words = [
         "study",
         "alignment",
@@ -105,7 +106,7 @@ def test_pictures_of_a_study_are_of_the_format_that_is_asked_for(tmp_path: Path)
         "-n",
         "1",
         "--reader",
-        "grammar",
+        "plan",
         "--workers",
         "1",
     ]
@@ -118,7 +119,7 @@ def test_pictures_of_a_study_are_of_the_format_that_is_asked_for(tmp_path: Path)
 
 
 def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
-    plan = small("a road", "two left turns", roads=2)
+    plan = small(ANY, "turn x2 left", roads=2)
     for name, workers in (("one", 1), ("two", 2)):
         open_folder(plan, tmp_path / name)
         heard: list[int] = []
@@ -137,7 +138,7 @@ def test_processes_and_a_pause_change_nothing(tmp_path: Path) -> None:
 
 
 def test_one_process_works_in_a_study(tmp_path: Path) -> None:
-    plan = small("a road")
+    plan = small(ANY)
     open_folder(plan, tmp_path)
     (part,) = plan.parts()
     for folder in (tmp_path, tmp_path / part.name):
@@ -147,11 +148,11 @@ def test_one_process_works_in_a_study(tmp_path: Path) -> None:
 
 
 def test_another_study_is_left_alone(tmp_path: Path) -> None:
-    plan = small("a road")
+    plan = small(ANY)
     open_folder(plan, tmp_path)
     before = content(tmp_path)
     for other, says in (
-        (small("two turns"), "other prompts"),
+        (small("turn x2"), "other prompts"),
         (plan.model_copy(update={"seed": 4}), "other seed"),
         (plan.model_copy(update={"designers": ("thesis",)}), "--designer planner"),
     ):
@@ -171,7 +172,7 @@ def test_another_study_is_left_alone(tmp_path: Path) -> None:
 
 def test_a_designer_that_asks_a_model_joins_a_study_in_which_none_was_asked(tmp_path: Path) -> None:
     """The second command of the guide 'Evaluate roads', in the folder of the first one."""
-    plan = small("a road")
+    plan = small(ANY)
     open_folder(plan, tmp_path)
     asking = QUICK.model_copy(update={"chat": ChatSettings(model="one")})
     both = plan.model_copy(update={"designers": ("planner", "thesis"), "setup": asking})
@@ -186,7 +187,7 @@ def test_a_plan_survives_its_file(tmp_path: Path) -> None:
     truth = Truth.model_validate(
         {"sequence": [{"kind": "turn", "dir": "left", "deg": [80, None]}], "hilly": 2}
     )
-    plan = small("a road").model_copy(update={"prompts": (Prompt(id="1", prompt="x", truth=truth),)})
+    plan = small(ANY).model_copy(update={"prompts": (Prompt(id="1", prompt="x", truth=truth),)})
     open_folder(plan, tmp_path)
     assert read_plan(tmp_path) == plan
     (tmp_path / "study.json").write_text("{")
@@ -199,7 +200,7 @@ def test_a_designer_that_nobody_answers_is_said_so(tmp_path: Path, monkeypatch: 
     chat = FakeChat(ChatError("the server does not answer; start it"))
     monkeypatch.setattr(thesis_designer, "open_chat", lambda settings: chat)
     setup = QUICK.model_copy(update={"chat": ChatSettings(model="fake")})
-    plan = small("a road", "two turns", designers=("thesis", "planner"), setup=setup)
+    plan = small(ANY, "turn x2", designers=("thesis", "planner"), setup=setup)
     open_folder(plan, tmp_path)
     problems = work(plan, tmp_path)
     assert [problem.is_of_chat for problem in problems] == [True, True]
@@ -215,12 +216,12 @@ def test_a_description_that_no_road_can_keep_costs_no_other(
     draft = Planner.draft
 
     def drafted(self: Planner, brief: Brief, *rest: Any) -> Any:
-        if brief.words == "two turns":
+        if brief.words == "turn x2":
             raise DesignError("no road keeps this")
         return draft(self, brief, *rest)
 
     monkeypatch.setattr(Planner, "draft", drafted)
-    plan = small("a road", "two turns", "an uphill road", roads=4)
+    plan = small(ANY, "turn x2", "| up turns=1..", roads=4)
     open_folder(plan, tmp_path)
     (problem,) = work(plan, tmp_path)
     assert problem.sentence == "no road keeps this"
@@ -239,7 +240,7 @@ def test_the_thesis_method_stands_beside_the_planner(tmp_path: Path, monkeypatch
     outside = {**sharp, "starting_point": [5, 5, 0], "theta": 200}
     chat = FakeChat(json.dumps(sharp), json.dumps(outside))
     monkeypatch.setattr(thesis_designer, "open_chat", lambda settings: chat)
-    setup = QUICK.model_copy(update={"chat": ChatSettings(model="another")})
+    setup = Setup(drives=False, chat=ChatSettings(model="another"))
     plan = StudyPlan(
         kind="thesis",
         prompts=thesis_prompts()[:1],
@@ -263,7 +264,7 @@ def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
     file = tmp_path / "prompts.jsonl"
     file.write_text('{"prompt": "a road", "truth": {"turns": [1, null]}}')
     replay = Path(__file__).resolve().parents[2] / "examples" / "chat-replay"
-    words = ["study", "alignment", str(file), "-n", "1", "--seed", "1", "--reader", "grammar", "--no-plot"]
+    words = ["study", "alignment", str(file), "-n", "1", "--seed", "1", "--no-plot"]
     words += ["--designer", "planner", "--designer", "chat", "--max-completion", "400", "--rounds", "1"]
     words += ["--replay", str(replay), "--workers", "1", "--out", str(tmp_path / "s"), "-q"]
     result = CliRunner().invoke(app, words)
@@ -274,7 +275,7 @@ def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
 
 
 def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
-    plan = small("a road", "a road of 9000 metres")
+    plan = small(ANY, "| turns=1.. len=9000")
     open_folder(plan, tmp_path)
     (problem,) = work(plan, tmp_path)
     assert problem.part.endswith("02-a-road-of-9000-metres")
@@ -294,7 +295,7 @@ def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
 
 
 def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> None:
-    plan = small("a road", "a road of 9000 metres", roads=3)
+    plan = small(ANY, "| turns=1.. len=9000", roads=3)
     open_folder(plan, tmp_path)
     keep_problems(tmp_path, work(plan, tmp_path))
     assert "3 of 6 (50.0 %) roads keep every word" in write_study(tmp_path).with_name("report.md").read_text()
@@ -303,11 +304,11 @@ def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> No
 def test_alignment_by_the_command(tmp_path: Path) -> None:
     file = tmp_path / "prompts.jsonl"
     lines = [
-        {"id": "u", "prompt": "a U-turn", "truth": {"turns": 1}},
-        {"id": "w", "prompt": "two left turns", "truth": {"left": 3}},
+        {"id": "u", "prompt": "u_turn", "truth": {"turns": 1}},
+        {"id": "w", "prompt": "turn x2 left", "truth": {"left": 3}},
     ]
     file.write_text("\n".join(map(json.dumps, lines)))
-    words = ["study", "alignment", str(file), "-n", "2", "--no-plot", "--workers", "1", "--reader", "grammar"]
+    words = ["study", "alignment", str(file), "-n", "2", "--no-plot", "--workers", "1", "--reader", "plan"]
     result = CliRunner().invoke(app, [*words, "--out", str(tmp_path / "s"), "-q"])
     assert result.exit_code == 0, result.output
     rows = list(csv.DictReader((tmp_path / "s" / "tables" / "alignment-planner.csv").open()))
@@ -317,19 +318,19 @@ def test_alignment_by_the_command(tmp_path: Path) -> None:
 
 def test_a_campaign_of_run_has_a_report_too(tmp_path: Path) -> None:
     place = tmp_path / "runs"
-    words = ["run", "two left turns", "-n", "2", "--seed", "4", "--no-plot", "--reader", "grammar", "-q"]
+    words = ["run", "turn x2 left", "-n", "2", "--seed", "4", "--no-plot", "--reader", "plan", "-q"]
     assert CliRunner().invoke(app, [*words, "--out", str(place)]).exit_code == 0
     result = CliRunner().invoke(app, ["report", str(place)])
     assert result.exit_code == 0, result.output
     page = (place / "report.html").read_text()
-    assert "two left turns" in page
-    assert "roadgpt run &#x27;two left turns&#x27; -n 2 --seed 4 --reader grammar" in page
+    assert "turn x2 left" in page
+    assert "roadgpt run &#x27;turn x2 left&#x27; -n 2 --seed 4 --reader plan" in page
     for target in re.findall(r'<a href="([^"#]+)"', page):
         assert (place / target).is_file(), target
 
 
 def test_a_report_names_the_lanes_and_banks_of_its_roads(tmp_path: Path) -> None:
-    words = ["run", "two left turns", "-n", "1", "--seed", "4", "--no-plot", "--reader", "grammar", "-q"]
+    words = ["run", "turn x2 left", "-n", "1", "--seed", "4", "--no-plot", "--reader", "plan", "-q"]
     for bank, said in (("auto", "bank auto"), ("5", "bank 5 %")):
         place = tmp_path / bank
         lanes = ["--lanes", "2+1", "--lane-width", "3.5", "--bank", bank, "--out", str(place)]

@@ -1,11 +1,15 @@
-"""Defines the messages with which descriptions are refused, and two errors that contain the Brief, since a
-larger map may hold the road.
+"""Defines the messages with which descriptions are refused, the length of the longest one that is read, and
+two errors that contain the Brief, since a larger map may hold the road.
 """
 
 from roadgpt.brief.beside import NOT_BUILT, SAID_OTHERWISE
 from roadgpt.brief.model import Brief
 from roadgpt.errors import BriefError
 
+MOST_CHARACTERS = 2000
+"""Longest description that is read."""
+EXAMPLE = "say for example 'an uphill road with 3 turns'"
+"""Ends refusals of what says nothing about a road."""
 ADVICE = {
     "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
     "!contradiction": "the description contradicts itself; leave something out, or say which part of"

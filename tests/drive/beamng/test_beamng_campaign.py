@@ -23,7 +23,7 @@ from roadgpt.sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION
 ROADS = 100
-SHORTEST = "a straight road of 22 m"  # messages are what such a test costs: 90 or so for this road
+SHORTEST = "straight | turns=0 len=22"  # messages are what such a test costs: 90 or so for this road
 # Every kind, in the middle of driving and while a road is laid; what is made anew counts as a scenario too.
 FAULTS = [
     Fault("hang", "SensorRequest", 6, 20),
@@ -58,7 +58,7 @@ def test_a_hundred_roads_and_ten_faults_lose_nothing(
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
     settings(monkeypatch, home, port, recycle=40)
-    setup = Setup(reader="grammar", simulator="beamng")
+    setup = Setup(reader="plan", simulator="beamng")
     made = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
     outcomes = [run.outcome for run in made]
     assert outcomes == ["PASS"] * ROADS
@@ -73,7 +73,7 @@ def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
 ) -> None:
     faults = [Fault("die", "Step", 2, 9), Fault("drop", "SensorRequest", 3, 9)]
     settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS, faults=faults), port)
-    setup = Setup(reader="grammar", simulator="beamng")
+    setup = Setup(reader="plan", simulator="beamng")
     runs = list(campaign(SHORTEST, 4, 5, World(), setup, tmp_path / "out"))
     assert [run.outcome for run in runs] == ["PASS", "ERROR", "PASS", "PASS"]
     assert "BeamNG failed 2 times on this road" in runs[1].description
@@ -139,7 +139,7 @@ def test_a_dead_simulator_is_given_up_and_no_road_is_lost(
 ) -> None:
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    setup, out = Setup(reader="grammar", simulator="beamng"), tmp_path / "out"
+    setup, out = Setup(reader="plan", simulator="beamng"), tmp_path / "out"
     with pytest.raises(
         GivenUpError,
         match=r"failed 3 times in a row .*nobody listens on .*continue with: roadgpt resume .*out",
@@ -163,7 +163,7 @@ def test_roads_before_a_simulator_died_are_kept(
 ) -> None:
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    setup, out, told = Setup(reader="grammar", simulator="beamng"), tmp_path / "out", []
+    setup, out, told = Setup(reader="plan", simulator="beamng"), tmp_path / "out", []
     fake = FakeBeamNG(port, protocol=OURS)
     runs = iter(campaign(SHORTEST, 9, 5, World(), setup, out))
     told += [next(runs).outcome, next(runs).outcome]
@@ -183,7 +183,7 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
     budget = Budget(tests=8)
-    plan = Plan(prompts=(SHORTEST,), reader="grammar", simulators=("beamng",), budget=budget, seeds=(5,))
+    plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*continue with: roadgpt resume .*c"):
         list(work(tmp_path / "c", 2))

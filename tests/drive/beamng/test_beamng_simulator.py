@@ -362,12 +362,12 @@ def test_the_first_road_may_take_longer_to_load_and_the_screen_says_so(
 def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_driven(
     tmp_path: Path, fake: FakeBeamNG
 ) -> None:
-    slippery, setup = World(site=Site(friction=0.5)), Setup(reader="grammar", simulator="beamng")
+    slippery, setup = World(site=Site(friction=0.5)), Setup(reader="plan", simulator="beamng")
     said = r"friction 0\.5 has no effect in this simulator.*give --friction 1, or drive in"
     with pytest.raises(UsageError, match=said):
         simulate(SHORT, slippery, "reference", 0, simulator(fake))
     with pytest.raises(UsageError, match=said):
-        campaign("a road", 3, 0, slippery, setup, tmp_path / "runs")
+        campaign("| turns=1..", 3, 0, slippery, setup, tmp_path / "runs")
     with pytest.raises(UsageError, match=said):
         prove(SHORT, 0, slippery, setup)
     plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=Budget(tests=3))

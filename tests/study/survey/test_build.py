@@ -11,6 +11,7 @@ import pytest
 from click.testing import CliRunner
 from matplotlib.image import imread
 
+from planned import planned
 from roadgpt.brief import read
 from roadgpt.brief.model import Amount
 from roadgpt.cli.commands.survey_ import command
@@ -27,18 +28,18 @@ from roadgpt.study.survey.plan import plan_text, read_plan
 from roadgpt.study.survey.sampling import plan_from_runs
 from roadgpt.study.survey.survey import Survey, read_survey
 
-SETUP = Setup(reader="grammar", drives=False)
+SETUP = Setup(drives=False)
 NAMES = ("path", "view", "settings")
-PROMPTS = ("an uphill road with 3 turns", "a serpentine road")
+PROMPTS = {"an uphill road with 3 turns": "turn x3 | up", "a serpentine road": "serpentine"}
 
 
 @pytest.fixture(scope="module")
 def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Two campaigns of two roads each, nobody drove."""
     folder = tmp_path_factory.mktemp("study")
-    for number, words in enumerate(PROMPTS, 1):
+    for number, (words, line) in enumerate(PROMPTS.items(), 1):
         campaign = folder / "planner" / f"{number:02d}"
-        made = [perform(words, 5, setup=SETUP, index=index) for index in (1, 2)]
+        made = [perform(planned(line, words), 5, setup=SETUP, index=index) for index in (1, 2)]
         for run in made:
             assert run.is_valid
             write_run(run, campaign)
@@ -141,12 +142,12 @@ def test_axes_are_the_thesis_where_all_roads_fit_and_one_for_all_where_not() -> 
 )  # fmt: skip
 def test_criteria_are_those_that_the_thesis_asked_for(words: str, criteria: tuple[str, ...]) -> None:
     """Its figures 6.9, 6.12, 6.15 and 6.18."""
-    assert criteria_of(read(words, "grammar")) == criteria
+    assert criteria_of(read(words)) == criteria
 
 
 def test_that_there_are_turns_is_no_number_of_turns() -> None:
     """The reader by default reads one turn or more out of "a road"; raters are not asked about that."""
-    brief = read("a road", "grammar")
+    brief = read("a road")
     assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1)})) == ()
     assert criteria_of(brief.model_copy(update={"turns": Amount(lo=1, hi=1)})) == ("turns",)
     assert criteria_of(brief.model_copy(update={"turns": Amount(lo=4)})) == ("turns",)

@@ -13,7 +13,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import KINDS, read_plan
-from roadgpt.brief.readers.grammar import EXAMPLE, MOST_CHARACTERS
+from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.chat import Chat, ChatSettings, Message, configured, open_chat
 from roadgpt.chat.json_schema import fixed_description
 from roadgpt.errors import BriefError

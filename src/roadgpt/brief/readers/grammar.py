@@ -11,10 +11,9 @@ from roadgpt.brief.grammar.quantities import Term, quantities
 from roadgpt.brief.grammar.tokens import Token, tokens
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal
+from roadgpt.brief.refusal import EXAMPLE, MOST_CHARACTERS
 from roadgpt.errors import BriefError
 
-MOST_CHARACTERS = 2000
-EXAMPLE = "say for example 'an uphill road with 3 turns'"
 SURE = TURNING | {
     "road",
     "straight+",
