@@ -94,7 +94,7 @@ def made(words: str, way: str, number: int, folder: Path, base_url: str | None) 
     chat = ReplayFirst(settings, folder, base_url)
     is_thesis = designer_name == "thesis"
     seed, index = (1, number) if is_thesis else (number, 1)
-    brief, world = read(words, "grammar"), World()
+    brief, world = read(words), World()
     try:
         with counting(Meter(), f"road {index}"):
             designer = (ThesisDesigner if is_thesis else ChatDesigner)(settings, chat)

@@ -21,15 +21,15 @@ from roadgpt.design.edit import edit
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World
 
-DESCRIPTIONS = (
-    "a road with 4 turns",
-    "a winding uphill road",
-    "5 turns, hilly",
-    "two hairpins and a left turn",
-    "a downhill road with 6 turns",
-    "a serpentine",
-    "a chicane then a hairpin",
-    "3 sharp turns",
+PLANS = (
+    "turn x4",
+    "winding | up",
+    "turn x5 | hills=3..",
+    "hairpin x2; turn left",
+    "turn x6 | down",
+    "serpentine",
+    "chicane; hairpin",
+    "turn x3 sharp",
 )
 USUAL = (
     "make the second turn sharper",
@@ -89,9 +89,9 @@ def main() -> None:
     count = int(sys.argv[1]) if len(sys.argv) > 1 else 40
     begun, counts = time.perf_counter(), Counter[str]()
     for number in range(count):
-        words = DESCRIPTIONS[number % len(DESCRIPTIONS)]
-        seed = 1000 + 10 * (number // len(DESCRIPTIONS)) + number % len(DESCRIPTIONS)
-        design = draft(read(words, "grammar"), World(), seed=seed)
+        line = PLANS[number % len(PLANS)]
+        seed = 1000 + 10 * (number // len(PLANS)) + number % len(PLANS)
+        design = draft(read(line, "plan"), World(), seed=seed)
         counts.update(outcome(design, request) for request in USUAL)
     seconds = (time.perf_counter() - begun) / max(counts.total(), 1)
     told = ", ".join(f"{number} {what}" for what, number in counts.most_common())

@@ -20,22 +20,22 @@ from roadgpt.errors import DesignError
 from roadgpt.export import save
 from roadgpt.road import CrossSection, Limits, Road, Site, World, build, in_short_segments, read_opendrive
 
-WORDS = (
-    "an uphill road with 3 turns",
-    "a road with 2 hairpins",
-    "a winding road downhill",
-    "a straight road",
-    "an S-bend then a long straight",
-    "a flat road with 4 left turns",
-    "a serpentine up a hill",
-    "a gentle left turn of 60 degrees",
-    "three hills",
-    "a u-turn to the right",
-    "a chicane after a long straight",
-    "a zigzag road",
-    "a road with a crest and a dip",
-    "5 sharp turns alternating",
-    "steep climb with a hairpin, then steep descent",
+PLANS = (
+    "turn x3 | up",
+    "hairpin x2",
+    "winding | down",
+    "straight | turns=0",
+    "s_bend; straight long",
+    "turn x4 left | flat",
+    "serpentine | up",
+    "turn left gentle deg=60",
+    "| turns=1.. hills=3..",
+    "u_turn right",
+    "straight long; chicane",
+    "zigzag",
+    "crest; dip | turns=0..",
+    "turn x5 sharp alternating",
+    "hairpin steeply_up; straight steeply_down",
 )
 MAPS = (250.0, 250.0, 400.0, 600.0)
 FRICTIONS = (1.0, 0.6, 0.35)
@@ -68,7 +68,7 @@ def drawn() -> Iterator[tuple[Road, World, str]]:
     """Roads without end, each with its world and "s" for a spline or "a" for arcs."""
     number = 0
     while True:
-        words, map_size = WORDS[number % len(WORDS)], MAPS[number // len(WORDS) % len(MAPS)]
+        line, map_size = PLANS[number % len(PLANS)], MAPS[number // len(PLANS) % len(MAPS)]
         speed_limit, verge = LIMITS[number % len(LIMITS)], VERGES[number % len(VERGES)]
         friction = FRICTIONS[number % len(FRICTIONS)]
         world = World(
@@ -78,7 +78,7 @@ def drawn() -> Iterator[tuple[Road, World, str]]:
         )
         number += 1
         try:
-            design = draft(read(words, "grammar"), world, seed=number)
+            design = draft(read(line, "plan"), world, seed=number)
         except DesignError:
             continue
         is_spline = number % SPLINES == 0

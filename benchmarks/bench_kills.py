@@ -21,7 +21,7 @@ from roadgpt.campaign.status import status_of
 from roadgpt.errors import UsageError
 from roadgpt.run.folder import finished
 
-WORDS = "an uphill road with 3 turns"
+ROAD = "turn x3 | up"
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
 EVERY = 3
 
@@ -34,7 +34,7 @@ def roadgpt(*words: object) -> "subprocess.Popen[bytes]":
 def begin(folder: Path, tests: int, workers: int) -> "subprocess.Popen[bytes]":
     """A campaign of so many tests: drafted and checked by real workers."""
     return roadgpt(
-        "campaign", WORDS, "-n", tests, "--no-drive", "--reader", "grammar", "--seed", 7, "-j", workers,
+        "campaign", ROAD, "-n", tests, "--no-drive", "--reader", "plan", "--seed", 7, "-j", workers,
         "--out", folder,
     )  # fmt: skip
 
@@ -82,7 +82,7 @@ def killed(folder: Path, tests: int, kills: int) -> tuple[int, int]:
 def killed_run(folder: Path, roads: int, kills: int) -> int:
     """Make a folder of runs under kills; how many hit."""
     rng, hits = random.Random(7), 0
-    command = ("run", WORDS, "-n", roads, "--no-drive", "--no-plot", "--quiet", "--reader", "grammar")
+    command = ("run", ROAD, "-n", roads, "--no-drive", "--no-plot", "--quiet", "--reader", "plan")
     for kill in range(kills + 1):
         is_resumed = kill % 2 == 1 and finished(folder)
         begun = (*command, "--seed", 7, "--out", folder)

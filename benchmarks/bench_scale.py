@@ -38,7 +38,7 @@ from roadgpt.campaign.traces import STEPS, Trace
 from roadgpt.drive import COLUMNS
 from roadgpt.road import Design, Segment
 
-WORDS = "an uphill road with 3 turns"
+ROAD = "turn x3 | up"
 SEGMENT = Segment(
     distance=51.25, direction="left", incline=3.5, turn_degrees=40.125, radius=35.5, transition=12.25
 )
@@ -151,7 +151,7 @@ def workers() -> None:
     for count in (1, 2):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name) / "c"
-            begin(Plan(prompts=(WORDS,), reader="grammar", budget=Budget(tests=tests), seeds=(7,)), folder)
+            begin(Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=tests), seeds=(7,)), folder)
             before = time.process_time()
             for _ in work(folder, count):
                 pass
@@ -199,9 +199,7 @@ def leaks() -> None:
     real = 800
     print("\nReal tests: drafted, driven, judged.\n")
     with tempfile.TemporaryDirectory() as name:
-        begin(
-            Plan(prompts=(WORDS,), reader="grammar", budget=Budget(tests=real), seeds=(7,)), Path(name) / "c"
-        )
+        begin(Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=real), seeds=(7,)), Path(name) / "c")
         curve(work(Path(name) / "c", 2), real)
 
 
@@ -221,7 +219,7 @@ def million() -> None:
     tests = 1_000_000
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        plan = Plan(prompts=(WORDS,), budget=Budget(tests=tests // 4), seeds=(0, 1, 2, 3))
+        plan = Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=tests // 4), seeds=(0, 1, 2, 3))
         Store.new(folder, plan.model_dump_json(), plan.cells({}), {}).close()
         _fill(folder, tests)
         size = (folder / STORE).stat().st_size

@@ -53,7 +53,7 @@ GLOBAL_BOUND, LOCAL_BOUND = 0.07, 0.05  # 1/m: of a curvature, and of its change
 
 TOLERANCE = 0.85
 WORLD = World(site=Site(map_size=200.0, z_floor=0.0), limits=Limits(oob_tolerance=TOLERANCE))
-USUAL = Setup(reader="grammar", rules="sbft")
+USUAL = Setup(rules="sbft")
 
 
 METHODS: dict[str, Callable[[Cell], Any]] = {

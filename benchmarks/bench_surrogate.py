@@ -34,7 +34,7 @@ Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 
 def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
     """Features of a road, its margin in metres, and whether the car failed."""
-    brief = brief_of("a flat road", WORLD, Setup(reader="grammar"))
+    brief = brief_of("| flat turns=1..", WORLD, Setup(reader="plan"))
     road = make_candidate(VariationTask("wild", (), "", (seed,), VariationContext(brief, WORLD, "sbft")))
     if road is None:
         return None
