@@ -3,7 +3,10 @@
 import pytest
 
 from roadgpt.brief import Brief, Clause, at_least, at_most, check, exactly, read
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST
 from roadgpt.errors import BriefError
+from roadgpt.road import World
+from roadgpt.road.design import MAX_INCLINE
 
 
 def turns(number: int, **more: object) -> Clause:
@@ -91,25 +94,58 @@ def test_a_larger_map_holds_more() -> None:
 
 
 @pytest.mark.parametrize(
-    ("words", "reason"),
+    ("line", "reason"),
     [
-        ("three turns but no turns", "no turns"),
-        ("a 40 % climb", "too steep"),
-        ("60 hairpins", "no room"),
-        ("an uphill road that goes downhill", "uphill and downhill"),
-        ("a flat road with a crest", "flat"),
-        ("a 100 metre road with 20 turns", "too short for all that"),
-        ("a 360 degree turn", "cross itself"),
-        ("a full circle", "cross itself"),
-        ("a turn with a radius of 5 metres", "too tight"),
-        ("a 90 degree hairpin", "140 degrees"),
-        ("-3 turns", "whole number"),
-        ("2.5 turns", "whole number"),
-        ("an uphill road, the first turn downhill, then two turns uphill", "downhill"),
-        ("99999999999999 turns", "200"),
-        ("an S-bend: left, then left", "both sides"),
+        ("turn x3 | turns=0", "no turns"),
+        ("| up turns=1.. pct=40", "too steep"),
+        ("hairpin x60", "no room"),
+        ("crest | flat", "flat"),
+        ("turn x20 | len=100", "too short for all that"),
+        ("turn 360", "cross itself"),
+        ("turn r5", "too tight"),
+        ("hairpin 90", "140 degrees"),
+        ("turn x2.5", "whole number"),
+        ("turn down; turn x2 up | up", "downhill"),
+        ("turn x99999999999999", "200"),
     ],
 )
-def test_words_that_ask_for_the_impossible(words: str, reason: str) -> None:
+def test_plans_that_ask_for_the_impossible(line: str, reason: str) -> None:
     with pytest.raises(BriefError, match=reason):
-        read(words, "grammar")
+        read(line, "plan")
+
+
+@pytest.mark.parametrize(
+    ("line", "reason"),
+    [
+        ("| turns=1.. len=200 climb=-100", "cannot fall 100 m"),
+        ("| up turns=1.. len=200 climb=100", "cannot climb 100 m"),
+    ],
+)
+def test_a_road_too_short_for_its_heights_is_refused_both_ways(line: str, reason: str) -> None:
+    with pytest.raises(BriefError, match=reason):
+        read(line, "plan")
+
+
+def test_limits_are_those_of_the_world() -> None:
+    world = World()
+    assert (world.limits.min_radius, world.limits.max_grade, MAX_INCLINE) == (
+        LEAST_RADIUS,
+        STEEPEST / 100,
+        STEEPEST,
+    )
+
+
+def test_the_limits_of_another_world_count() -> None:
+    tight = Brief(clauses=(Clause(kind="turn", radius=exactly(20)),))
+    check(tight)
+    with pytest.raises(BriefError, match="ask for 30 m or more"):
+        check(tight, min_radius=30.0)
+    tighter = Brief(clauses=(Clause(kind="turn", radius=exactly(9)),))
+    with pytest.raises(BriefError, match="too tight"):
+        check(tighter)
+    check(tighter, min_radius=8.0)
+    assert read("turn r=9", "plan", min_radius=8.0).clauses == tighter.clauses
+    with pytest.raises(BriefError, match="ask for 6 percent or less"):
+        read("| up turns=1.. pct=10", "plan", max_grade=0.06)
+    with pytest.raises(BriefError, match="ask for 15 percent or less"):
+        read("| up turns=1.. pct=20", "plan", max_grade=0.3)  # designs have no more

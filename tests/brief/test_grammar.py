@@ -190,3 +190,43 @@ def test_a_number_word_is_a_number() -> None:
     for said, meant in {"seventeen": 17, "twenty-one": 21, "eleven": 11}.items():
         (clause,) = GrammarReader().read(f"{said} turns").clauses
         assert clause.count == exactly(meant)
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("three turns but no turns", "no turns"),
+        ("a 40 % climb", "too steep"),
+        ("60 hairpins", "no room"),
+        ("an uphill road that goes downhill", "uphill and downhill"),
+        ("a flat road with a crest", "flat"),
+        ("a 100 metre road with 20 turns", "too short for all that"),
+        ("a 360 degree turn", "cross itself"),
+        ("a full circle", "cross itself"),
+        ("a turn with a radius of 5 metres", "too tight"),
+        ("a 90 degree hairpin", "140 degrees"),
+        ("-3 turns", "whole number"),
+        ("2.5 turns", "whole number"),
+        ("an uphill road, the first turn downhill, then two turns uphill", "downhill"),
+        ("99999999999999 turns", "200"),
+        ("an S-bend: left, then left", "both sides"),
+        ("a 200 m road with a net drop of 100 m", "cannot fall 100 m"),
+        ("a 200 m road that gains 100 m of height", "cannot climb 100 m"),
+    ],
+)
+def test_words_that_ask_for_the_impossible_are_refused(words: str, reason: str) -> None:
+    with pytest.raises(BriefError, match=reason):
+        read(words, "grammar")
+
+
+def test_words_that_are_refused_are_cut_with_a_sign() -> None:
+    with pytest.raises(BriefError, match=r"^'the quick brown fox jumps over the lazy \.\.\.' does not"):
+        GrammarReader().read("the quick brown fox jumps over the lazy dog and runs from the other animals")
+    with pytest.raises(BriefError, match=r"^'the quick brown fox' does not describe"):
+        GrammarReader().read("the quick brown fox")
+
+
+def test_degrees_of_all_turns_together_are_read() -> None:
+    brief = GrammarReader().read("three turns; 270 degrees of turning in all")
+    assert brief.turning == exactly(270)
+    assert brief.unused == ()

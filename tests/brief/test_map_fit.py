@@ -71,6 +71,6 @@ def test_other_readings_of_a_long_road_are_asked_of_the_same_map() -> None:
 @pytest.mark.parametrize("size", [300, 1000, 4000])
 def test_a_single_straight_is_held_against_the_diagonal(size: float) -> None:
     fits, large = 1.2 * size, 2 * size
-    read(f"a straight of {fits:.0f} m, then a left turn", "grammar", map_size=size)
+    read(f"straight {fits:.0f}; turn left", "plan", map_size=size)
     with pytest.raises(BriefError, match=f"map of {size} m, which is .* from corner to corner"):
-        read(f"a straight of {large:.0f} m, then a left turn", "grammar", map_size=size)
+        read(f"straight {large:.0f}; turn left", "plan", map_size=size)

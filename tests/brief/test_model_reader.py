@@ -101,4 +101,4 @@ def test_weights_of_ones_own_are_named_with_their_folder(tmp_path: Path) -> None
     with pytest.raises(PartError, match=r"no encoder\.onnx in .*roadgpt learn export"):
         reader_of(f"model:{tmp_path}")
     with pytest.raises(PartError, match="takes no folder"):
-        reader_of(f"grammar:{tmp_path}")
+        reader_of(f"plan:{tmp_path}")

@@ -77,22 +77,15 @@ def test_a_road_that_is_none_breaks_the_promise() -> None:
     assert any("600" in finding.sentence for finding in check.inspect(tight, brief, world))
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "a motorway with a hairpin",
-        "a motorway with 3 sharp turns",
-        "a motorway with a turn of 50 m radius",
-    ],
-)
-def test_what_is_said_of_the_turns_wins_and_is_named(words: str) -> None:
-    brief = read(words, "grammar", map_size=4000)
+@pytest.mark.parametrize("line", ["hairpin | motorway", "turn x3 sharp | motorway", "turn r=50 | motorway"])
+def test_what_is_said_of_the_turns_wins_and_is_named(line: str) -> None:
+    brief = read(line, "plan", map_size=4000)
     assert "tighter ones are asked for" in remarks(brief, 4000)[0]
     assert draft(brief, World(site=Site(map_size=4000)), seed=2)
 
 
 def test_a_short_road_is_too_short_for_one() -> None:
-    brief = read("a motorway 200 m long", "grammar", map_size=4000)
+    brief = read("| sweeping motorway turns=1.. len=200", "plan", map_size=4000)
     assert "200 m of road cannot hold one" in remarks(brief, 4000)[0]
     assert draft(brief, World(site=Site(map_size=4000)), seed=2)
 
@@ -114,11 +107,12 @@ def test_its_names_are_known(words: str) -> None:
 
 
 def test_the_sentence_and_the_plan_hold_it() -> None:
-    brief = read("a motorway with 3 curves", "grammar")
+    brief = read("a motorway with 3 curves")
     assert sentence(brief) == "A motorway with 3 sweeping turns."
-    assert read(sentence(brief), "grammar").model_copy(update={"words": brief.words}) == brief
+    again = read(sentence(brief))
+    assert (plan(again), again.unused) == (plan(brief), ()) == ("turn x3 sweeping | motorway", ())
     assert read_plan(plan(brief)).motorway
-    assert not read("a road with 3 curves", "grammar").motorway
+    assert not read("a road with 3 curves").motorway
 
 
 def test_a_turn_that_was_asked_to_be_wide_is_seen_as_one() -> None:
