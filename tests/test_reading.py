@@ -114,7 +114,7 @@ def test_names_that_cannot_be_are_told(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     Path("loop.json").symlink_to("loop.json")
-    more = {"compare": [name], "edit": ["make it longer"]}.get(words, [])
+    more = {"compare": [name], "edit": ["--plan", "road: length more"]}.get(words, [])
     result = CliRunner().invoke(app, [*words.split(), name, *more], prog_name="roadgpt")
     assert result.exit_code in (1, 2), result.output
     assert "should not happen" not in result.stderr

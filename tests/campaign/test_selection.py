@@ -238,8 +238,8 @@ def test_a_run_is_driven_again_as_a_test_of_a_campaign_is() -> None:
             assert first == second, name
 
 
-def test_a_test_of_a_campaign_is_changed_by_words() -> None:
-    roadgpt("edit", "one/2", "make it 20 m longer", "--no-drive", "--no-plot", "--out", "edited")
+def test_a_test_of_a_campaign_is_changed() -> None:
+    roadgpt("edit", "one/2", "--plan", "road: length +20", "--no-drive", "--no-plot", "--out", "edited")
     card = json.loads(Path("edited/runs/0001/edit.json").read_text(encoding="utf-8"))
     assert card["of"] == "one/2"
     again, _ = run_again(Path("one"), "c01", 2)

@@ -83,7 +83,7 @@ def invoke(*words: str) -> Result:
 
 
 COMMANDS: dict[str, tuple[str, ...]] = {
-    "edit": ("edit", "run/runs/0001", "make it 20 m longer", "--no-plot", "--out", "edited"),
+    "edit": ("edit", "run/runs/0001", "--plan", "road: length +20", "--no-plot", "--out", "edited"),
     "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot", "-j", "2"),
     "faults of a campaign": ("faults", "done", "--repeat", "1", "--no-plot"),
     "drive": ("drive", "--again", "done", "1", "--no-plot"),

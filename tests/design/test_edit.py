@@ -11,10 +11,11 @@ from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
-from roadgpt.design.edit import edit
+from roadgpt.design.edit import Edited, edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Segment, Site, World, build, in_short_segments
+from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments
 
 WORLD = World()
 ROADS = roads()
@@ -25,9 +26,14 @@ def seen(design: Design) -> Measures:
     return measure(build(design).centreline())
 
 
-def changed(road: str, words: str) -> Design:
-    """The road of that name after a change."""
-    return edit(ROADS[road], words, WORLD).design
+def edited(design: Design, plan: str, world: World = WORLD, geometry: Geometry = "arcs") -> Edited:
+    """A design after the changes of a plan."""
+    return edit(design, read_change_plan(plan), world, geometry)
+
+
+def changed(road: str, plan: str) -> Design:
+    """The road of that name after the changes of a plan."""
+    return edited(ROADS[road], plan).design
 
 
 @pytest.mark.parametrize("name", sorted(ROADS))
@@ -46,14 +52,14 @@ def test_blocks_are_the_segments_in_order_and_the_turns_that_are_seen(name: str)
 def test_segments_that_make_one_turn_count_as_one() -> None:
     design = ROADS["h05"]  # three segments to the left in a row, 180 degrees
     assert len(seen(design).turns) == 1
-    after = changed("h05", "make the turn 150 degrees")
+    after = changed("h05", "turn: angle =150")
     assert seen(after).turns[0].degrees == pytest.approx(150, abs=1.5)
     with pytest.raises(EditError, match="there is no second turn; the road has one"):
-        changed("h05", "make the second turn sharper")
+        changed("h05", "turn 2: angle more")
 
 
 def test_what_was_not_spoken_of_keeps_every_number() -> None:
-    before, after = ROADS["r06"], changed("r06", "make the third turn sharper by 10 degrees")
+    before, after = ROADS["r06"], changed("r06", "turn 3: angle +10")
     assert changed_besides(before, after, [7]) == []
     pairs = zip(before.to_json().items(), after.to_json().items(), strict=True)
     other = [key for (key, one), (_, two) in pairs if one != two]
@@ -61,82 +67,83 @@ def test_what_was_not_spoken_of_keeps_every_number() -> None:
 
 
 def test_a_turn_beyond_what_one_segment_may_turn_is_written_as_several() -> None:
-    after = changed("h11", "make the second turn a hairpin")
+    after = changed("h11", "turn 2: shape hairpin")
     assert seen(after).turns[1].degrees >= 140
     assert all(abs(segment.turn_degrees) <= 70 for segment in after.segments)
 
 
 def test_the_mirror_image_of_the_mirror_image_is_the_road() -> None:
     for name in ("r01", "h08"):
-        twice = edit(changed(name, "mirror the road"), "mirror the road", WORLD).design
+        twice = edited(changed(name, "road: mirror"), "road: mirror").design
         assert twice.segments == ROADS[name].segments
         assert twice.theta == pytest.approx(ROADS[name].theta)
         assert twice.starting_point == pytest.approx(ROADS[name].starting_point)
 
 
 def test_what_is_added_can_be_removed_again() -> None:
-    more = changed("h01", "add a right turn after the second turn")
+    more = changed("h01", "add turn right after(turn 2)")
     assert [turn.side for turn in seen(more).turns] == ["left", "right", "right"]
-    less = edit(more, "remove the third turn", WORLD).design
+    less = edited(more, "turn 3: remove").design
     assert [turn.side for turn in seen(less).turns] == ["left", "right"]
 
 
 def test_numbers_count_on_the_road_as_it_was_before() -> None:
-    after = changed("h14", "remove the first turn and make the second turn sharper")
+    after = changed("h14", "turn 1: remove; turn 2: angle more")
     turns = seen(after).turns
     assert [turn.side for turn in turns] == ["left", "left", "right"]
     assert turns[0].degrees > 33
 
 
 def test_turns_to_one_hand_do_not_run_into_each_other() -> None:
-    after = changed("h14", "make the first turn a left turn")
+    after = changed("h14", "turn 1: side left")
     assert [turn.side for turn in seen(after).turns] == ["left", "left", "left", "right"]
 
 
 @pytest.mark.parametrize(
-    ("road", "words", "advice"),
+    ("road", "plan", "advice"),
     [
-        ("r01", "make the fifth turn sharper", "no fifth turn; the road has 3 turns"),
-        ("r09", "make the last turn sharper", "no turn"),
-        ("h01", "make the hairpin tighter", "no hairpin"),
-        ("h01", "make the turn sharper", "could be any of 2"),
-        ("h01", "make the second turn with a radius of 5 m", "tighter than the 14.3 m"),
-        ("h01", "make the road climb at 40 %", "steeper than the 15 %"),
-        ("h01", "make the first turn a left turn", "is so already"),
-        ("h07", "make the road level", "is so already"),
-        ("h01", "make the first straight 900 m long", "leaves the map"),
-        ("h01", "make the road 5 m long", "too short"),
-        ("h01", "make the middle turn sharper", "none is in the middle"),
-        ("h07", "mirror the road", "mirror image is the same"),
-        ("h01", "make the second turn a chicane", "cannot be made several"),
-        ("h01", "add a left turn of 500 degrees", "cannot be added"),
-        ("h01", "make the first straight tighter", "does not bend; name a turn"),
-        ("h01", "make the first straight a left turn", "has no side; name a turn"),
-        ("h01", ", ".join(["make the first turn sharper"] * 13), "too many"),
+        ("r01", "turn 5: angle more", "no fifth turn; the road has 3 turns"),
+        ("r09", "turn -1: angle more", "no turn"),
+        ("h01", "hairpin: radius less", "no hairpin"),
+        ("h01", "turn: angle more", "could be any of 2"),
+        ("h01", "turn 2: radius =5", "tighter than the 14.3 m"),
+        ("h01", "road: slope up =40", "steeper than the 15 %"),
+        ("h01", "turn 1: side left", "is so already"),
+        ("h12", "road: remove", "no road would be left"),
+        ("h07", "road: slope flat", "is so already"),
+        ("h01", "straight 1: length =900", "leaves the map"),
+        ("h01", "road: length =5", "too short"),
+        ("h01", "turn middle: angle more", "none is in the middle"),
+        ("h07", "road: mirror", "mirror image is the same"),
+        ("h01", "turn 2: shape chicane", "cannot be made several"),
+        ("h01", "add turn left deg=500 at_end", "cannot be added"),
+        ("h01", "straight 1: radius less", "does not bend; name a turn"),
+        ("h01", "straight 1: side left", "has no side; name a turn"),
+        ("h01", "; ".join(["turn 1: angle more"] * 13), "too many"),
     ],
 )
-def test_what_cannot_be_is_refused_with_the_reason(road: str, words: str, advice: str) -> None:
+def test_what_cannot_be_is_refused_with_the_reason(road: str, plan: str, advice: str) -> None:
     with pytest.raises(EditError, match=advice) as caught:
-        edit(ROADS[road], words, WORLD)
+        changed(road, plan)
     assert "\n" not in str(caught.value)
 
 
 def test_a_straight_between_turns_of_one_hand_goes_and_the_turns_stay_two() -> None:
     before = seen(ROADS["h13"])
-    after = seen(changed("h13", "remove the second straight"))
+    after = seen(changed("h13", "straight 2: remove"))
     assert len(before.straights) - len(after.straights) == 1
     assert [turn.side for turn in after.turns] == ["left", "left"]
 
 
 def test_an_angle_and_a_radius_may_both_be_said() -> None:
-    turn = seen(changed("h01", "second turn: 80 degrees, radius 25 m")).turns[1]
+    turn = seen(changed("h01", "turn 2: angle =80; turn 2: radius =25")).turns[1]
     assert turn.degrees == pytest.approx(80, abs=2)
     assert turn.radius == pytest.approx(25, rel=0.08)
 
 
 def test_turns_that_are_excepted_by_number_stay() -> None:
     before, after = (seen(road).turns for road in
-                     (ROADS["h08"], changed("h08", "make turns 1 to 3 gentler except turn 2")))  # fmt: skip
+                     (ROADS["h08"], changed("h08", "turn 1,2,3 but(turn 2): angle less")))  # fmt: skip
     same = [(one.degrees, one.radius) == pytest.approx((other.degrees, other.radius), rel=0.03)
             for one, other in zip(before, after, strict=True)]  # fmt: skip
     assert same == [False, True, False, True]
@@ -144,20 +151,20 @@ def test_turns_that_are_excepted_by_number_stay() -> None:
 
 def test_half_of_a_road_has_turns_of_its_own() -> None:
     before, after = (seen(road).turns for road in
-                     (ROADS["h08"], changed("h08", "make the turns tighter in the second half")))  # fmt: skip
+                     (ROADS["h08"], changed("h08", "turn all half2: radius less")))  # fmt: skip
     assert after[0].radius == pytest.approx(before[0].radius, rel=0.03)
     assert after[-1].radius < 0.95 * before[-1].radius
 
 
 def test_a_changed_road_is_told_as_it_measures() -> None:
-    made = edit(ROADS["h01"], "make the second turn 80 degrees", WORLD)
+    made = edited(ROADS["h01"], "turn 2: angle =80")
     assert any("turn 2: 60 -> 80 degrees" in sentence for sentence in made.changes)
     assert made.unused == ()
 
 
 def test_a_road_of_hops_and_splines_is_changed_as_it_is_seen() -> None:
     design = in_short_segments(ROADS["h01"])
-    after = edit(design, "make the second turn sharper by 20 degrees", WORLD, "spline").design
+    after = edited(design, "turn 2: angle +20", geometry="spline").design
     before, now = (measure(build(one, "spline").centreline()).turns for one in (design, after))
     assert now[1].degrees - before[1].degrees == pytest.approx(20, abs=2)
     assert now[0].degrees == pytest.approx(before[0].degrees, abs=1.5)
@@ -167,31 +174,43 @@ def test_a_road_of_hops_and_splines_is_changed_as_it_is_seen() -> None:
 def test_roads_on_other_maps_keep_inside() -> None:
     world = World(site=Site(map_size=120))
     design = draft(Brief(), world, seed=3)
-    after = edit(design, "add a left turn at the end", world).design
+    after = edited(design, "add turn left at_end", world).design
     assert check.inspect(build(after), None, world) == ()
 
 
+@pytest.mark.parametrize(
+    ("words", "plan"),
+    [
+        ("make the second turn sharper", "turn 2: angle more"),
+        ("remove the last turn", "turn -1: remove"),
+        ("make the second turn 80 degrees", "turn 2: angle =80"),
+    ],
+)
+def test_words_make_the_road_of_their_plan(words: str, plan: str) -> None:
+    assert edit(ROADS["h01"], words, WORLD).design == changed("h01", plan)
+
+
 def test_the_same_request_gives_the_same_road() -> None:
-    words = "make the second turn sharper and add a left turn at the end"
-    assert edit(ROADS["h12"], words, WORLD) == edit(ROADS["h12"], words, WORLD)
+    plan = "turn 2: angle more; add turn left at_end"
+    assert edited(ROADS["h12"], plan) == edited(ROADS["h12"], plan)
 
 
 CHANGES = [
-    "make the first turn sharper",
-    "make the last turn gentler",
-    "make the first turn 45 degrees",
-    "make the last turn with a radius of 30 m",
-    "flip the last turn",
-    "make the last straight 20 m longer",
-    "make the end downhill",
-    "make the start uphill at 6 %",
-    "add a left turn at the end",
-    "add a sharp right turn after the first turn",
-    "remove the first turn",
-    "remove the last turn",
-    "make all turns gentler",
-    "make the whole road level",
-    "mirror the road",
+    "turn 1: angle more",
+    "turn -1: angle less",
+    "turn 1: angle =45",
+    "turn -1: radius =30",
+    "turn -1: side other",
+    "straight -1: length +20",
+    "end: slope down",
+    "start: slope up =6",
+    "add turn left at_end",
+    "add turn right sharp after(turn 1)",
+    "turn 1: remove",
+    "turn -1: remove",
+    "turn all: angle less",
+    "road: slope flat",
+    "road: mirror",
 ]
 
 
@@ -201,7 +220,7 @@ def test_any_edit_gives_a_valid_road_or_a_reason(seed: int, some: list[str]) -> 
     design = draft(Brief(), WORLD, seed=seed)
     before = design.model_copy(deep=True)
     with suppress(EditError):
-        made = edit(design, ", ".join(some), WORLD)
+        made = edited(design, "; ".join(some))
         assert check.inspect(build(made.design), None, WORLD) == ()
         assert made.changes
         assert made.design != design
@@ -209,7 +228,7 @@ def test_any_edit_gives_a_valid_road_or_a_reason(seed: int, some: list[str]) -> 
 
 
 def test_a_segment_without_a_radius_keeps_what_its_writer_left_open() -> None:
-    after = changed("h01", "make the second turn sharper by 5 degrees")
+    after = changed("h01", "turn 2: angle +5")
     assert all(segment.radius is None for segment in after.segments)
     assert after.segments[0] == Segment(distance=60, direction="straight")
 
@@ -220,38 +239,38 @@ def test_blocks_are_named_for_what_they_were() -> None:
 
 
 def test_turns_are_made_to_alternate_as_the_first_one_begins() -> None:
-    assert [turn.side for turn in seen(changed("h13", "alternate the turns")).turns] == ["left", "right"]
+    assert [turn.side for turn in seen(changed("h13", "turn all: alternate")).turns] == ["left", "right"]
     with pytest.raises(EditError, match="so already"):
-        changed("h01", "alternate the turns")
+        changed("h01", "turn all: alternate")
 
 
 def test_a_bound_changes_only_what_is_beyond_it() -> None:
-    old, new = ROADS["h08"], changed("h08", "cap the slope at 3 %")
+    old, new = ROADS["h08"], changed("h08", "road: slope ..3")
     for one, other in zip(old.segments, new.segments, strict=True):
         assert other.incline == pytest.approx(min(max(one.incline, -3.0), 3.0))
     with pytest.raises(EditError, match="so already"):
-        changed("h08", "no slope over 14 %")
+        changed("h08", "road: slope ..14")
 
 
 def test_a_road_ends_with_one_straight_of_the_length_that_was_said() -> None:
-    new = seen(changed("r14", "end with a 60 m straight"))
+    new = seen(changed("r14", "add straight len=60 whole at_end"))
     assert new.features[-1].kind == "straight"
     assert new.features[-1].length == pytest.approx(60, abs=2)
 
 
 def test_turns_that_are_to_lie_apart_have_a_straight_between_them() -> None:
-    new = seen(changed("h06", "separate the two turns by 40 m"))
+    new = seen(changed("h06", "add straight len=40 whole between(turn 1, turn -1)"))
     assert [feature.kind for feature in new.features] == ["straight", "turn", "straight", "turn", "straight"]
     assert new.features[2].length == pytest.approx(40, abs=3)
 
 
 def test_what_is_removed_cannot_be_changed_as_well() -> None:
     with pytest.raises(EditError, match="turn 1 is to go and to be changed at once"):
-        changed("h14", "remove the first turn and make the first turn sharper")
+        changed("h14", "turn 1: remove; turn 1: angle more")
 
 
 def test_all_straights_get_shorter_where_one_of_them_can_hardly_be() -> None:
-    old, new = seen(ROADS["r12"]), seen(changed("r12", "make all straights shorter"))
+    old, new = seen(ROADS["r12"]), seen(changed("r12", "straight all: length less"))
     assert len(new.straights) == len(old.straights)
     for one, other in zip(old.straights, new.straights, strict=True):
         assert other.length <= one.length + 0.6
@@ -259,6 +278,6 @@ def test_all_straights_get_shorter_where_one_of_them_can_hardly_be() -> None:
 
 
 def test_the_two_tightest_are_two() -> None:
-    old, new = seen(ROADS["r12"]).turns, seen(changed("r12", "widen the two tightest turns a bit")).turns
+    old, new = seen(ROADS["r12"]).turns, seen(changed("r12", "turn sharpest x2: radius slightly more")).turns
     wider = {i for i, (a, b) in enumerate(zip(old, new, strict=True)) if b.radius > 1.05 * a.radius}
     assert wider == set(sorted(range(len(old)), key=lambda i: old[i].radius)[:2])

@@ -1,4 +1,4 @@
-"""Change requests with truths written by hand: how many are honoured, and is the rest left alone?"""
+"""Plans of changes with truths written by hand: how many are honoured, and is the rest left alone?"""
 
 import importlib.util
 from contextlib import suppress
@@ -12,6 +12,7 @@ import pytest
 from edit_truth import changed_besides, misses, ours, requests, roads, theirs
 from roadgpt import check
 from roadgpt.design.edit import edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 
@@ -21,12 +22,14 @@ HONOURED, LEFT_ALONE = 0.95, 0.99
 
 @cache
 def answers() -> tuple[tuple[dict[str, Any], Design, Design | str], ...]:
-    """Every request with its road, and the changed one or the refusal."""
+    """Every request that has a plan, with its road, and the changed one or the refusal."""
     known, out = roads(), []
     for row in requests():
+        if row["plan"] == "!":
+            continue
         old = known[row["road"]]
         try:
-            out.append((row, old, edit(old, row["request"], World()).design))
+            out.append((row, old, edit(old, read_change_plan(row["plan"]), World()).design))
         except EditError as error:
             out.append((row, old, str(error)))
     return tuple(out)

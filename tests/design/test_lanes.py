@@ -7,6 +7,7 @@ from roadgpt.brief import read
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.repair import repair
 from roadgpt.road import CrossSection, Design, Segment, World, build
 
@@ -26,7 +27,7 @@ def test_drafts_leave_room_for_all_lanes(seed: int) -> None:
 
 def test_a_change_of_a_banked_road_is_valid_and_changes_what_was_named() -> None:
     design = draft(BRIEF, WORLD, seed=4)
-    edited = edit(design, "make the first turn sharper", WORLD)
+    edited = edit(design, read_change_plan("turn 1: angle more"), WORLD)
     assert inspect(WORLD.lay(build(edited.design)), None, WORLD) == ()
     changed = [a != b for a, b in zip(design.segments, edited.design.segments, strict=True)]
     assert sum(changed) >= 1

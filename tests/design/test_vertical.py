@@ -16,6 +16,7 @@ from roadgpt.campaign.variation import VariationContext, VariationTask, make_can
 from roadgpt.check.measures import measure
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.elements import elements_of
 from roadgpt.design.layout import MapPose
 from roadgpt.design.repair import repair
@@ -130,13 +131,13 @@ def test_repair_makes_lists_of_language_models_gentle_enough() -> None:
 
 
 @pytest.mark.parametrize(
-    "words",
-    ["make the second turn downhill at 6 %", "make the first straight uphill at 8 %", "make the end steep"],
+    "plan",
+    ["turn 2: slope down =6", "straight 1: slope up =8", "end: slope more"],
 )
-def test_changes_of_slope_are_gentle_enough(words: str) -> None:
+def test_changes_of_slope_are_gentle_enough(plan: str) -> None:
     for seed in range(4):
         before = draft(read("a road with 3 turns, level"), WORLD, seed=seed)
-        after = edit(before, words, WORLD).design
+        after = edit(before, read_change_plan(plan), WORLD).design
         assert felt(before) <= 0.52
         assert felt(after) <= 3.05
 
