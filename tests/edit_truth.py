@@ -25,7 +25,7 @@ def roads() -> dict[str, Design]:
 
 
 def requests() -> list[dict[str, Any]]:
-    """Requests with their plans and their truths; the plan of a request that must be refused unread is '!'."""
+    """Requests with their plans and truths; the plan of one that cannot be read is '!'."""
     return [*map(json.loads, (HERE / "edits.jsonl").read_text(encoding="utf-8").splitlines())]
 
 

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,9 +13,12 @@ from edit_truth import roads
 from fake_chat import FakeChat
 from roadgpt.cli import app
 from roadgpt.design import edit as edit_room
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.run import read_run
 
-WORDS = "make the second turn sharper and the end downhill"
+WORDS = "make the second turn sharper"
+LINE = "turn 2: angle more; end: slope down"
+CHANGE = ("--plan", LINE)
 
 
 @pytest.fixture(autouse=True)
@@ -38,7 +42,7 @@ def invoke(*words: str) -> Result:
 
 def made(*more: str) -> Path:
     """The folder of a run with three turns."""
-    words = ["run", "a road with 3 turns", "--seed", "5", "--out", "old", "--no-drive", "--no-plot"]
+    words = ["run", "--plan", "turn x3", "--seed", "5", "--out", "old", "--no-drive", "--no-plot"]
     assert invoke(*words, *more).exit_code == 0
     return Path("old", "runs", "0001")
 
@@ -50,14 +54,14 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_a_run_is_changed_into_a_new_folder() -> None:
     old = made()
     before = contents(Path("old"))
-    result = invoke("edit", str(old), WORDS, "--out", "new")
+    result = invoke("edit", str(old), *CHANGE, "--out", "new")
     assert result.exit_code == 0
     assert contents(Path("old")) == before
     assert "turn 2: " in result.stdout
     assert "changed road: " in result.stdout
     run = read_run("new/runs/0001")
     card = json.loads(Path("new/runs/0001/edit.json").read_text())
-    assert card["request"] == WORDS
+    assert card["request"] == LINE
     assert card["of"] == str(old)
     assert card["design_before"] == json.loads((old / "design.json").read_text())
     assert run.design is not None
@@ -69,12 +73,12 @@ def test_a_run_is_changed_into_a_new_folder() -> None:
 
 def test_pictures_show_the_road_before_and_after() -> None:
     made()
-    assert invoke("edit", "old", WORDS, "--out", "new").exit_code == 0
+    assert invoke("edit", "old", *CHANGE, "--out", "new").exit_code == 0
     for name in ("birds_eye.png", "height.png", "curvature_grade.png"):
         after, before = Path("new/runs/0001", name), Path("new/runs/0001/before", name)
         assert after.read_bytes()[:4] == before.read_bytes()[:4] == b"\x89PNG"
         assert after.read_bytes() != before.read_bytes()
-    assert invoke("edit", "old", WORDS, "--out", "plain", "--no-plot").exit_code == 0
+    assert invoke("edit", "old", *CHANGE, "--out", "plain", "--no-plot").exit_code == 0
     assert not [*Path("plain").rglob("*.png")]
 
 
@@ -90,12 +94,12 @@ def test_pictures_of_a_changed_road_are_headed_by_the_change(monkeypatch: pytest
 
 
 def test_a_design_from_a_file_is_changed_and_driven() -> None:
-    result = invoke("edit", "design.json", "make the first turn a right turn", "--json", "--no-plot")
+    result = invoke("edit", "design.json", "--plan", "turn 1: side right", "--json", "--no-plot")
     assert result.exit_code == 0
     (line,) = result.stdout.splitlines()
     row = json.loads(line)
     assert row["test_outcome"] == "PASS"
-    assert row["request"] == "make the first turn a right turn"
+    assert row["request"] == "turn 1: side right"
     assert any("to the right" in sentence for sentence in row["changes"])
     assert Path(row["file"]).is_file()
     assert read_run(row["file"]).drive is not None
@@ -103,8 +107,8 @@ def test_a_design_from_a_file_is_changed_and_driven() -> None:
 
 def test_a_changed_road_can_be_changed_again() -> None:
     options = ("--no-drive", "--no-plot", "--out")
-    assert invoke("edit", "design.json", "make the second turn 80 degrees", *options, "one").exit_code == 0
-    assert invoke("edit", "one", "make the second turn 60 degrees", *options, "two").exit_code == 0
+    assert invoke("edit", "design.json", "--plan", "turn 2: angle =80", *options, "one").exit_code == 0
+    assert invoke("edit", "one", "--plan", "turn 2: angle =60", *options, "two").exit_code == 0
     one, two = (read_run(f"{name}/runs/0001").design for name in ("one", "two"))
     assert one is not None
     assert two is not None
@@ -114,23 +118,25 @@ def test_a_changed_road_can_be_changed_again() -> None:
 @pytest.mark.parametrize(
     ("words", "advice"),
     [
-        (["design.json", "make the fifth turn sharper"], "no fifth turn; the road has 2 turns"),
-        (["design.json", "paint it blue"], "not understood"),
-        (["nowhere.json", WORDS], "there is no nowhere.json"),
-        (["design.json", WORDS, "--designer", "gpt"], "gpt"),
+        (["design.json", "--plan", "turn 5: angle more"], "no fifth turn; the road has 2 turns"),
+        (["design.json", "--plan", "turn 2: colour blue"], "'colour' is not expected"),
+        (["design.json", "paint it blue"], "roadgpt: "),
+        (["nowhere.json", *CHANGE], "there is no nowhere.json"),
+        (["design.json", *CHANGE, "--designer", "gpt"], "gpt"),
+        (["design.json", *CHANGE, "--designer", "chat"], "--plan needs no language model"),
         (["design.json"], "Say what to change"),
         ([], "Name the folder of a run"),
-        (["design.json", WORDS, "--out", "full"], "not empty"),
-        (["points.json", WORDS], "no design"),
-        (["many", WORDS], "many holds 2 roads; name one, as many/1"),
-        (["design.json", WORDS, "--model", "x"], "--model"),
+        (["design.json", *CHANGE, "--out", "full"], "not empty"),
+        (["points.json", *CHANGE], "no design"),
+        (["many", *CHANGE], "many holds 2 roads; name one, as many/1"),
+        (["design.json", *CHANGE, "--model", "x"], "--model"),
     ],
 )
 def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], advice: str) -> None:
     Path("full").mkdir()
     Path("full", "note.txt").write_text("mine")
     Path("points.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110]]))
-    invoke("run", "a road with 2 turns", "-n", "2", "--seed", "1", "--no-drive", "--no-plot", "--out", "many")
+    invoke("run", "--plan", "turn x2", "-n", "2", "--seed", "1", "--no-drive", "--no-plot", "--out", "many")
     before = contents(Path())
     result = invoke("edit", *words)
     assert result.exit_code == 2
@@ -138,15 +144,17 @@ def test_what_cannot_be_done_is_told_and_nothing_is_written(words: list[str], ad
     assert contents(Path()) == before
 
 
-def test_words_that_are_not_understood_are_told() -> None:
-    result = invoke("edit", "design.json", "make the second turn sharper pronto", "--no-drive", "--no-plot")
+def test_words_that_are_not_understood_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    read = replace(read_change_plan(LINE), unused=("pronto",))
+    monkeypatch.setattr(edit_room, "read_request", lambda words: read)
+    result = invoke("edit", "design.json", f"{WORDS} pronto", "--no-drive", "--no-plot")
     assert "not understood: 'pronto'" in result.stdout
 
 
 def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: Stub) -> None:
     stub.play(says("Sure, done!"))
     more = ("--designer", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
-    result = invoke("edit", "design.json", "make the second turn sharper", *more)
+    result = invoke("edit", "design.json", WORDS, *more)
     assert result.exit_code == 4
     assert "language model: " in result.stdout
     assert "tokens" in result.stdout
@@ -155,7 +163,7 @@ def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: Stub) -> 
 
 def test_options_that_an_edit_does_not_heed_are_refused() -> None:
     for option, advice in (("--repair", "No such option"), ("--model", "give --designer chat as well")):
-        result = invoke("edit", "design.json", WORDS, option, "none")
+        result = invoke("edit", "design.json", *CHANGE, option, "none")
         assert result.exit_code == 2
         assert advice in result.stderr
 
@@ -170,6 +178,6 @@ def test_the_chat_designer_changes_roads_too(monkeypatch: pytest.MonkeyPatch) ->
     chat = FakeChat(json.dumps({"touched": [4], "theta": 0, "segments": segments}))
     monkeypatch.setattr(edit_room, "open_chat", lambda settings: chat)
     more = ("--designer", "chat", "--model", "m", "--no-drive", "--no-plot", "--json")
-    result = invoke("edit", "design.json", "make the second turn sharper", *more)
+    result = invoke("edit", "design.json", WORDS, *more)
     assert result.exit_code == 0, result.output
     assert any("60 -> 70 degrees" in sentence for sentence in json.loads(result.stdout)["changes"])

@@ -1,6 +1,7 @@
 """Edits by a language model: whatever it answers, segments that nobody spoke of stay as they were."""
 
 import json
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -10,7 +11,8 @@ from fake_chat import FakeChat
 from roadgpt import check
 from roadgpt.chat import BudgetError, ChatSettings, UnparsableError
 from roadgpt.check.measures import measure
-from roadgpt.design.edit import edit
+from roadgpt.design.edit import EditRequest, edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 
@@ -30,7 +32,17 @@ def answer(touched: list[int], more: dict[int, dict[str, Any]] | None = None, le
     return json.dumps({"touched": touched, "theta": OLD.theta, "segments": segments})
 
 
-def edited(chat: FakeChat, words: str = WORDS, **settings: Any) -> tuple[Design, tuple[str, ...]]:
+def request(words: str, plan: str) -> EditRequest:
+    """Words that are read as this plan says."""
+    return replace(read_change_plan(plan), words=words)
+
+
+SECOND = request(WORDS, "turn 2: angle more")
+
+
+def edited(
+    chat: FakeChat, words: str | EditRequest = SECOND, **settings: Any
+) -> tuple[Design, tuple[str, ...]]:
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr("roadgpt.design.edit.open_chat", lambda _: chat)
         after = edit(OLD, words, WORLD, designer="chat", chat=ChatSettings(**settings))
@@ -62,14 +74,29 @@ def test_it_may_not_name_more_than_the_request_speaks_of() -> None:
     assert changed_besides(OLD, design, [5]) == []
 
 
-def test_where_rules_cannot_read_the_request_the_model_says_what_it_is_about() -> None:
+def test_a_request_in_words_is_read_for_what_it_is_about() -> None:
+    more = {**SHARPER, 1: {"distance": 25.0}}
+    design, _ = edited(FakeChat(answer([1, 5], more)), WORDS)
+    assert changed_besides(OLD, design, [5]) == []
+
+
+def test_where_the_request_cannot_be_read_the_model_says_what_it_is_about(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def refuse(words: str) -> EditRequest:
+        raise EditError("not understood")
+
+    monkeypatch.setattr("roadgpt.design.edit.read_request", refuse)
     design, _ = edited(FakeChat(answer([5], SHARPER)), "spice up the second turn, would you")
     assert changed_besides(OLD, design, [5]) == []
     assert design.segments[4] != OLD.segments[4]
 
 
 def test_only_its_slope_changed_a_turn_keeps_radius_and_transition() -> None:
-    design, _ = edited(FakeChat(answer([5], {5: {"incline": 8.0}})), "make the second turn steeper")
+    design, _ = edited(
+        FakeChat(answer([5], {5: {"incline": 8.0}})),
+        request("make the second turn steeper", "turn 2: slope more"),
+    )
     assert design.segments[4] == OLD.segments[4].model_copy(update={"incline": 8.0})
 
 
@@ -96,7 +123,7 @@ def test_what_is_wrong_goes_back_in_a_sentence(bad: str, said: str) -> None:
 def test_it_ends_after_its_rounds_with_the_reason() -> None:
     chat = FakeChat(answer([4], {4: {"distance": 900.0}}))
     with pytest.raises(EditError, match=r"will not do: .*leaves the map"):
-        edited(chat, "make the second straight longer", rounds=2)
+        edited(chat, request("make the second straight longer", "straight 2: length more"), rounds=2)
     assert len(chat.questions) == 2
     with pytest.raises(UnparsableError):
         edited(FakeChat("no road"), rounds=1)
