@@ -1,10 +1,10 @@
-"""Change requests: how many are honoured, and what becomes of 26 usual ones on random roads.
+"""Change requests: how many are honoured, and what becomes of 26 usual changes on random roads.
 
     python benchmarks/bench_edit.py [ROADS]
 
-The first figures are of the requests with truths in tests/design/edits.jsonl. Then every one of the usual
-requests below is made of ROADS (default 40) random roads: changed, so already, refused, or changed with the
-help of a repair of the rest of the road.
+The first figures are of the requests with truths in tests/design/edits.jsonl, read from their words. Then
+every one of the usual changes below, given as plans, is made of ROADS (default 40) random roads: changed, so
+already, refused, or changed with the help of a repair of the rest of the road.
 """
 
 import sys
@@ -18,6 +18,7 @@ from edit_truth import changed_besides, misses, ours, requests, roads
 from roadgpt.brief import read
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
+from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World
 
@@ -32,39 +33,39 @@ PLANS = (
     "turn x3 sharp",
 )
 USUAL = (
-    "make the second turn sharper",
-    "make the first turn gentler",
-    "make the last turn a bit sharper",
-    "make the second turn 90 degrees",
-    "make the second turn tighter",
-    "make the last turn with a radius of 40 m",
-    "flip the second turn",
-    "make the first turn go the other way",
-    "make the second straight 20 m longer",
-    "make the longest straight shorter",
-    "make the end downhill",
-    "make the start uphill at 5 %",
-    "make the second turn level",
-    "add a left turn at the end",
-    "add a right turn after the first turn",
-    "add a hairpin at the start",
-    "add a gentle turn between the first and the second turn",
-    "remove the second turn",
-    "remove the first turn",
-    "remove the last turn",
-    "make the road 40 m longer",
-    "make the road 30 m shorter",
-    "mirror the road",
-    "make all turns gentler",
-    "make all turns sharper",
-    "make the whole road level",
+    "turn 2: angle more",
+    "turn 1: angle less",
+    "turn -1: angle slightly more",
+    "turn 2: angle =90",
+    "turn 2: radius less",
+    "turn -1: radius =40",
+    "turn 2: side other",
+    "turn 1: side other",
+    "straight 2: length +20",
+    "straight longest: length less",
+    "end: slope down",
+    "start: slope up =5",
+    "turn 2: slope flat",
+    "add turn left at_end",
+    "add turn right after(turn 1)",
+    "add hairpin at_start",
+    "add turn gentle between(turn 1, turn 2)",
+    "turn 2: remove",
+    "turn 1: remove",
+    "turn -1: remove",
+    "road: length +40",
+    "road: length -30",
+    "road: mirror",
+    "turn all: angle less",
+    "turn all: angle more",
+    "road: slope flat",
 )
 
 
-def outcome(design: Design, words: str) -> str:
-    """What becomes of one request."""
+def outcome(design: Design, plan: str) -> str:
+    """What becomes of one plan of changes."""
     try:
-        made = edit(design, words, World())
+        made = edit(design, read_change_plan(plan), World())
     except EditError as error:
         return "so already" if "so already" in str(error) else "refused"
     repaired = any(sentence.startswith("to keep it valid") for sentence in made.changes)
@@ -92,10 +93,10 @@ def main() -> None:
         line = PLANS[number % len(PLANS)]
         seed = 1000 + 10 * (number // len(PLANS)) + number % len(PLANS)
         design = draft(read(line, "plan"), World(), seed=seed)
-        counts.update(outcome(design, request) for request in USUAL)
+        counts.update(outcome(design, change) for change in USUAL)
     seconds = (time.perf_counter() - begun) / max(counts.total(), 1)
     told = ", ".join(f"{number} {what}" for what, number in counts.most_common())
-    print(f"usual requests on {count} random roads: {counts.total()}: {told}; {1000 * seconds:.0f} ms each")
+    print(f"usual changes on {count} random roads: {counts.total()}: {told}; {1000 * seconds:.0f} ms each")
 
 
 if __name__ == "__main__":
