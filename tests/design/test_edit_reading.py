@@ -3,9 +3,12 @@
 Rows are compared by meaning, so that any reader can be measured on them.
 """
 
+import json
+import re
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import pytest
 from hypothesis import given
@@ -17,6 +20,7 @@ from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest, Target
 from roadgpt.errors import EditError
 
+TRAINING = Path(__file__).resolve().parents[2] / "data" / "changes" / "train"
 RIGHT = 0.95
 """Share of all rows that must be read right."""
 
@@ -57,7 +61,6 @@ PLACES = [
     ("make the sixth turn sharper", "turn 6: angle more"),
     ("make the last curve sharper", "turn -1: angle more"),
     ("make the second to last corner sharper", "turn -2: angle more"),
-    ("make the last two turns sharper", "turn -2,-1: angle more"),
     ("make the first and the third turn sharper", "turn 1,3: angle more"),
     ("make turns 2 to 4 sharper", "turn 2,3,4: angle more"),
     ("make turns 2-4 sharper", "turn 2,3,4: angle more"),
@@ -330,6 +333,13 @@ def test_rows_are_plans_and_some_mean_the_same() -> None:
         ("turn 1: angle more", "turn 1: angle more; end: slope up"),
     ):
         assert meaning(one) != meaning(other)
+
+
+def test_no_row_is_one_that_a_reader_is_trained_on() -> None:
+    lines = [line for path in TRAINING.glob("*.jsonl") for line in path.read_text("utf-8").splitlines()]
+    taught = {" ".join(re.findall(r"\w+", json.loads(line)["text"].lower())) for line in lines}
+    assert len(taught) > 1000
+    assert not taught & {" ".join(re.findall(r"\w+", words.lower())) for words, _ in ROWS}
 
 
 @pytest.mark.parametrize("words", ["", *REFUSED])
