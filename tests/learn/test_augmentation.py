@@ -7,7 +7,6 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.augmentation import joined, recounted
 from roadgpt.learn.generator import Pair, pairs
-from roadgpt.learn.labels import REFUSALS
 
 
 def test_hardly_any_generated_plan_has_a_number_that_its_text_has_not() -> None:
@@ -15,7 +14,7 @@ def test_hardly_any_generated_plan_has_a_number_that_its_text_has_not() -> None:
     stream = pairs(5)
     for _ in range(1000):
         pair = next(stream)
-        if pair.plan not in REFUSALS:
+        if not pair.plan.startswith("!"):
             lost += tokens_of(pair.plan, slotted(pair.text).slots) is None  # a number word hidden by a slip
     assert lost < 30
 

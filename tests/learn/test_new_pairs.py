@@ -1,4 +1,4 @@
-"""Pairs for the next reader: every label is a plan, and no text is one of a test."""
+"""Pairs of changes and contrasts: every label is a plan, and no text is one of a test."""
 
 import json
 import re
@@ -19,6 +19,8 @@ JUDGED = [
     *(DATA / "fresh").glob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),
     *(DATA / "descriptions" / "exam").glob("*.jsonl"),
+    *(DATA / "descriptions" / "contrasts_validation").glob("*.jsonl"),
+    *(DATA / "changes" / "validation").glob("*.jsonl"),
     DATA.parent / "tests" / "design" / "edits.jsonl",
 ]
 
@@ -49,10 +51,10 @@ def test_every_label_is_in_the_language_of_plans(path: Path) -> None:
 
 
 def test_there_are_as_many_as_the_pages_say() -> None:
-    assert sum(len(rows(path)) for path in CHANGES) == 1079
-    assert sum(len(rows(path)) for path in CONTRASTS) == 815
-    assert "1,079 pairs" in (DATA / "changes" / "README.md").read_text(encoding="utf-8")
-    assert "815 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
+    assert sum(len(rows(path)) for path in CHANGES) == 1949
+    assert sum(len(rows(path)) for path in CONTRASTS) == 1272
+    assert "1,949 pairs" in (DATA / "changes" / "README.md").read_text(encoding="utf-8")
+    assert "1,272 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
 
 
 def test_no_text_is_one_of_a_test_or_stands_twice() -> None:

@@ -11,6 +11,7 @@ from roadgpt.errors import LearnError
 from roadgpt.learn.onnx_weights import exported_weights
 from roadgpt.learn.pretrained import begin
 
+LAYERS = 6  # of the first network's decoder
 onnxruntime = pytest.importorskip("onnxruntime")
 pytest.importorskip("onnx", reason="comes with the extra 'learn'")
 
@@ -51,7 +52,7 @@ def _keys_and_values(numbers: np.ndarray, weights: dict[str, np.ndarray]) -> np.
         x = _layer_norm(x + _linear(wide, weights, f"{own}.narrow"), weights, f"{own}.last_norm", 1e-12)
     made = [
         _heads(_linear(x, weights, f"decoder.{layer}.across.{part}"), 6)
-        for layer in range(3)
+        for layer in range(LAYERS)
         for part in ("key", "value")
     ]
     return np.stack(made).ravel()
@@ -74,7 +75,9 @@ def test_every_parameter_of_the_network_is_there(weights: dict[str, np.ndarray])
     from roadgpt.brief.readers.model.vocabulary import TOKENS
     from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 
-    reader = ReaderNetwork(NetworkSizes(pieces=len(weights["pieces.weight"]), tokens=len(TOKENS)))
+    reader = ReaderNetwork(
+        NetworkSizes(pieces=len(weights["pieces.weight"]), tokens=len(TOKENS), decoder_layers=LAYERS)
+    )
     reader.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 
 

@@ -4,6 +4,7 @@ pairs, or adds a requirement.
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,6 +19,14 @@ from roadgpt.learn.noise import noisy, tidy
 from roadgpt.learn.standard import makes_sense, standard
 
 LANGUAGES = frozenset({"en", "de", "fr", "es", "it"})
+JOINTS = {
+    "en": (". ", "; ", ", and ", ", then ", "\n", ". Also, "),
+    "de": (". ", "; ", ", und ", ", dann ", "\n"),
+    "fr": (". ", "; ", ", et ", ", puis ", "\n"),
+    "es": (". ", "; ", ", y ", ", luego ", "\n"),
+    "it": (". ", "; ", ", e ", ", poi ", "\n"),
+}
+"""What stands between two change requests that are joined."""
 LONGEST = 420  # letters of a joined text
 
 
@@ -31,23 +40,44 @@ def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.G
     """
     if rng.random() < 0.5:
         pair = _made(pair, mirrored(pair.text, pair.plan))
-    if rng.random() < 0.4:
-        pair = _made(pair, recounted(pair, rng))
-    way = rng.random()
-    if way < 0.18 and others.get(pair.lang):
-        its = others[pair.lang]
-        pair = _made(pair, joined(pair, its[int(rng.integers(len(its)))], rng))
-    elif way < 0.28:
-        pair = _made(pair, with_requirement(pair, rng))
-    pair = sometimes_spoiled(pair, rng)
+    other = _one_of(others.get(pair.lang, ()), rng)
+    if pair.is_change:
+        pair = _made(pair, both_changes(pair, other, rng)) if other and rng.random() < 0.2 else pair
+    else:
+        pair = _description(pair, other, rng)
     if rng.random() < 0.35:
         language = pair.lang if pair.lang in LANGUAGES else "en"
         pair = _made(pair, (noisy(pair.text, language, rng), pair.plan))
     return pair
 
 
+def _description(pair: Pair, other: Pair | None, rng: np.random.Generator) -> Pair:
+    if rng.random() < 0.4:
+        pair = _made(pair, recounted(pair, rng))
+    way = rng.random()
+    if way < 0.18 and other:
+        pair = _made(pair, joined(pair, other, rng))
+    elif way < 0.28:
+        pair = _made(pair, with_requirement(pair, rng))
+    return sometimes_spoiled(pair, rng)
+
+
+def both_changes(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
+    """Returns the text and plan of two change requests as one; None if one of them is a refusal."""
+    if any(pair.plan.startswith("!") for pair in (one, other)) or len(one.text + other.text) > LONGEST:
+        return None
+    joints = JOINTS[one.lang if one.lang in JOINTS else "en"]
+    joint = joints[int(rng.integers(len(joints)))]
+    second = other.text if joint.endswith((". ", "\n")) else f"{other.text[:1].lower()}{other.text[1:]}"
+    return f"{one.text.rstrip(' .!')}{joint}{second}", f"{one.plan}; {other.plan}"
+
+
+def _one_of(pairs: Sequence[Pair], rng: np.random.Generator) -> Pair | None:
+    return pairs[int(rng.integers(len(pairs)))] if pairs else None
+
+
 def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
-    return Pair(*new, pair.family, pair.lang) if new else pair
+    return replace(pair, text=new[0], plan=new[1]) if new else pair
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
@@ -97,7 +127,7 @@ def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] 
     first, second = one.text.rstrip(" .!"), other.text
     if second[:1].isupper() and not second[1:2].isupper() and one.lang != "de":
         second = second[:1].lower() + second[1:]
-    return tidy(f"{first} {link} {second}"), standard(brief)
+    return tidy(f"{first} {link} {second}", one.lang), standard(brief)
 
 
 def with_requirement(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
@@ -109,4 +139,4 @@ def with_requirement(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | 
         plan = assembled(f"{pair.plan} {wish}")
     except (BriefError, Discarded):
         return None
-    return (tidy(f"{pair.text.rstrip(' .!')} {tail}"), plan) if plan else None
+    return (tidy(f"{pair.text.rstrip(' .!')} {tail}", pair.lang), plan) if plan else None

@@ -1,4 +1,4 @@
-"""Fits a reader's confidence to how often the reader was right on descriptions held back from training."""
+"""Fits a reader's confidence to how often the reader was right on texts held back from training."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -8,65 +8,78 @@ import numpy.typing as npt
 
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.coverage import Coverage
-from roadgpt.brief.readers.model.network import Network
-from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.test_time_augmentation import refusal, scored_plans
-from roadgpt.brief.readers.model.vocabulary import REFUSALS
-from roadgpt.errors import BriefError
+from roadgpt.brief.readers.model import Looks, ModelReader
+from roadgpt.brief.readers.model.test_time_augmentation import refusal
+from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.004  # share of these valid descriptions that may be refused; for new ones it will be higher
-STEPS = 4000
-RATE = 0.05
-PULL = 0.01  # weight decay, so that few pairs do not lead to extreme weights
+STEPS = 30
+PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
     """The content of ``settings.json``: the lowest probability at which a refusal is accepted, and the
-    weights of the confidence model.
+    weights of the confidence models for descriptions and for change requests.
     """
 
     refuse_from: float
     confidence: dict[str, float]
+    changes: dict[str, float]
 
 
-def calibrated(network: Network, coverage: Coverage, pairs: Sequence[Pair]) -> Calibration:
-    """Returns settings fitted to ``pairs``, on which the network must not have been trained."""
-    honest = [pair for pair in pairs if pair.plan not in REFUSALS]
-    threshold = _threshold(network, honest)
-    rows, rights = [], []
-    for pair in honest:
-        draft = scored_plans(network, pair.text, refuse_from=2.0)[0]
-        unused = len(coverage.unused(slotted(pair.text), draft.tokens))
-        rows.append((1.0, *draft.features.values(), float(unused)))
-        rights.append(_plan(draft.line) == _plan(pair.plan))
-    fitted = _fitted(np.array(rows), np.array(rights, dtype=float))
-    names = ("bias", *draft.features, "unused")
-    weights = {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
-    return Calibration(threshold, weights)
+def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
+    """Returns settings fitted to ``pairs``, on which the networks must not have been trained."""
+    honest = [pair for pair in pairs if not pair.plan.startswith("!")]
+    words = [pair for pair in honest if not pair.is_change]
+    changes = [pair for pair in honest if pair.is_change]
+    threshold = _threshold(reader, words)
+    read = [(reader.looked_at(pair.text, 2.0), _bare(pair.plan)) for pair in words]
+    asked = [
+        (reader.looked_at_change(pair.text, normal_change), normal_change(pair.plan)) for pair in changes
+    ]
+    return Calibration(
+        threshold,
+        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks]),
+        _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
+    )
 
 
-def _threshold(network: Network, honest: Sequence[Pair]) -> float:
+def normal_change(line: str) -> str:
+    """Returns the normal form of a plan of changes."""
+    return change_plan(read_change_plan(line))
+
+
+def _threshold(reader: ModelReader, honest: Sequence[Pair]) -> float:
     """Returns the probability from which a refusal is accepted; hardly any valid description reaches it."""
-    chances = [refusal(network, pair.text) for pair in honest]
+    chances = [refusal(reader.networks, pair.text) for pair in honest]
     most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
     return round(min(max(most, 0.5), 0.95), 3)
 
 
-def _plan(line: str) -> str:
-    try:
-        return plan(normal(read_plan(line)))
-    except BriefError:
-        return "?"
+def _bare(line: str) -> str:
+    """Returns the normal form of a plan without what is beside the road, which older pairs do not label."""
+    return plan(normal(read_plan(line)).model_copy(update={"beside": ()}))
+
+
+def _weights(found: Sequence[tuple[Looks, bool]]) -> dict[str, float]:
+    """Returns the weights of a confidence model by the names of its inputs."""
+    names = ("bias", *(found[0][0].features if found else ()))
+    if not found:
+        return {"bias": 0.0}
+    rows = np.array([(1.0, *looks.features.values()) for looks, _ in found])
+    fitted = _fitted(rows, np.array([is_right for _, is_right in found], dtype=float))
+    return {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
 
 
 def _fitted(rows: Floats, rights: Floats) -> Floats:
-    """Fits a logistic regression by gradient descent."""
+    """Fits a logistic regression by Newton's method."""
     weights = np.zeros(rows.shape[1])
+    pull = PULL * np.eye(rows.shape[1])
     for _ in range(STEPS):
         chances = 1 / (1 + np.exp(-rows @ weights))
-        weights -= RATE * (rows.T @ (chances - rights) / len(rights) + PULL * weights)
+        curvature = rows.T @ (rows * (chances * (1 - chances))[:, None]) + pull
+        weights += np.linalg.solve(curvature, rows.T @ (rights - chances) - pull @ weights)
     return weights

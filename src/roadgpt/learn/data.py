@@ -1,7 +1,7 @@
 """Converts generated and hand-written pairs to batches of numbers for training."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,12 +12,28 @@ from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, token
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
-from roadgpt.learn.generator import Pair, pairs
+from roadgpt.learn.generator import Pair, changed, contrasted, pairs
 from roadgpt.learn.held_out import is_held_out
+from roadgpt.learn.mentions import with_mention
 from roadgpt.learn.shared_values import with_shared_values
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
+SHARES = {
+    "hand": 0.42,
+    "contrasts": 0.08,
+    "changes": 0.08,
+    "generated": 0.12,
+    "generated contrasts": 0.12,
+    "generated changes": 0.18,
+}
+"""Shares of hand-written and generated pairs: descriptions, contrasts, change requests."""
+CONTRASTS = "x_"
+"""How the families of contrasts begin."""
+MENTIONS = 0.15
+"""Share of descriptions to which a mention or denial of something beside the road is added."""
+CAUSED = ("!contradiction", "!impossible")
+"""Refusals that have a cause; without one, the cause is not labelled."""
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 
@@ -36,17 +52,20 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     """Returns a pair as numbers; None if its plan is too long or has a number that is not in the text.
 
     A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
-    the network learns all of them equally well.
+    the network learns all of them equally well. A refusal whose cause is not labelled gets no end token, so
+    that nothing is learnt about what follows.
     """
-    taken = slotted(pair.text)
-    tokens = tokens_of(with_shared_values(pair.plan, taken.slots), taken.slots)
+    taken = slotted(pair.text, pair.is_change)
+    plan = pair.plan if pair.is_change else with_shared_values(pair.plan, taken.slots)
+    tokens = tokens_of(plan, taken.slots)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
     words = [word.text for word in taken.words]
     if rng is not None and taken.slots:
         words, tokens = _reslotted(words, tokens, taken.slots, rng)
     numbers, _ = pieces.encode(words)
-    return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), 2))
+    end = () if plan in CAUSED else (2,)
+    return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), *end))
 
 
 def _reslotted(
@@ -59,29 +78,54 @@ def _reslotted(
     return [names.get(word, word) for word in words], [written.get(token, token) for token in tokens]
 
 
-def examples(seed: int, hand: Sequence[Pair], hand_share: float, pieces: WordPieces) -> Iterator[Example]:
-    """Yields an endless series of examples; a fraction ``hand_share`` (0 to 1) of them are variations of
-    hand-written pairs.
+def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Example]:
+    """Yields an endless series of examples: a fixed mixture of variations of the hand-written pairs and of
+    generated ones.
     """
+    streams = _streams(seed, hand)
+    names = [name for name in SHARES if name in streams]
     rng = np.random.default_rng([seed, 7])
-    generated = pairs(seed)
-    by_language: dict[str, list[Pair]] = {}
-    for pair in hand:
-        by_language.setdefault(pair.lang, []).append(pair)
+    shares = np.cumsum([SHARES[name] for name in names])
     while True:
-        if hand and rng.random() < hand_share:
-            pair = hand[int(rng.integers(len(hand)))]
-            pair = _said_back(pair) if rng.random() < SAID_BACK else augmented(pair, by_language, rng)
-        else:
-            pair = next(generated)
+        at = int(np.searchsorted(shares, rng.random() * shares[-1], side="right"))
+        pair = next(streams[names[at]])
+        if not pair.is_change and rng.random() < MENTIONS:
+            more = with_mention(pair.text, pair.plan, pair.lang, rng)
+            pair = replace(pair, text=more[0], plan=more[1]) if more else pair
         made = None if is_held_out(pair.text) else example(pair, pieces, rng)
         if made:
             yield made
 
 
+def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
+    """Returns the series of pairs by name; without hand-written pairs of a kind, theirs are missing."""
+    changes = [pair for pair in hand if pair.is_change]
+    contrasts = [pair for pair in hand if not pair.is_change and pair.family.startswith(CONTRASTS)]
+    others = [pair for pair in hand if not pair.is_change and not pair.family.startswith(CONTRASTS)]
+    found = {
+        "generated": pairs(seed),
+        "generated contrasts": contrasted(seed),
+        "generated changes": changed(seed),
+    }
+    for name, its in (("hand", others), ("contrasts", contrasts), ("changes", changes)):
+        if its:
+            found[name] = _varied(its, np.random.default_rng([seed, len(name)]))
+    return found
+
+
+def _varied(hand: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
+    """Yields variations of random pairs."""
+    by_language: dict[str, list[Pair]] = {}
+    for pair in hand:
+        by_language.setdefault(pair.lang, []).append(pair)
+    while True:
+        pair = hand[int(rng.integers(len(hand)))]
+        yield _said_back(pair) if rng.random() < SAID_BACK else augmented(pair, by_language, rng)
+
+
 def _said_back(pair: Pair) -> Pair:
     """Replaces the text by RoadGPT's own sentence for the plan."""
-    if pair.plan.startswith("!"):
+    if pair.plan.startswith("!") or pair.is_change or "beside(" in pair.plan:
         return pair
     return Pair(sentence(read_plan(pair.plan)), pair.plan, pair.family, "en")
 

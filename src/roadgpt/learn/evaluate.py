@@ -8,7 +8,6 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import BUMPS, normal
 from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.errors import BriefError
 from roadgpt.learn.generator import Pair
 
@@ -82,13 +81,15 @@ def readings(pairs: Iterable[Pair], read: Read) -> list[Reading]:
 
 
 def _reading(pair: Pair, read: Read) -> Reading:
-    wanted = None if pair.plan in REFUSALS else normal(read_plan(pair.plan))
+    wanted = None if pair.plan.startswith("!") else normal(read_plan(pair.plan))
     try:
         brief = read(pair.text)
     except BriefError as error:
         everything = frozenset(PARTS) if wanted is None else frozenset()
         return Reading(pair, "!refused", 1.0, str(error), wanted is None, everything)
     got = normal(brief)
+    if wanted is None or not wanted.beside:  # older labels do not name what is beside the road
+        got = got.model_copy(update={"beside": ()})
     parts = frozenset() if wanted is None else frozenset(_parts(wanted, got))
     return Reading(pair, plan(got), brief.confidence, "", got == wanted, parts)
 
@@ -153,7 +154,7 @@ def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
         if reading.right:
             continue
         if reading.was_refused or not reading.is_honest:
-            wanted = "a road" if reading.is_honest else reading.pair.plan
+            wanted = "a road" if reading.is_honest else reading.pair.plan.split()[0]
             table[wanted, "refused" if reading.was_refused else "a road"] += 1
             continue
         wants, gots = Counter(_words(reading.pair.plan)), Counter(_words(reading.got))

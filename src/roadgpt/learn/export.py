@@ -5,27 +5,22 @@ import tempfile
 from collections.abc import Sequence
 from dataclasses import asdict
 from hashlib import sha256
-from itertools import islice
 from pathlib import Path
 
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import FILES
-from roadgpt.brief.readers.model.coverage import Coverage
-from roadgpt.brief.readers.model.network import Network
+from roadgpt.brief.readers.model import SECOND, ModelReader
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
-from roadgpt.learn.generator import Pair, pairs
-from roadgpt.learn.known_words import known_words
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.growing import decoder_layers
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 from roadgpt.learn.piece_vocabulary import read_vocabulary
 from roadgpt.learn.pretrained import NOTICE
 
 OPSET = 17
-COUNTED = 20_000
-"""Number of generated pairs in which words are counted to find those that the reader has learnt."""
 
 
 class EncoderGraph(nn.Module):
@@ -71,8 +66,14 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: ReaderNetwork, folder: Path) -> None:
-    """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8."""
+def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
+    """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8.
+
+    Args:
+        reader: the network.
+        folder: where the files are written.
+        ending: what follows "encoder" and "decoder" in the names of the files.
+    """
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
 
@@ -87,8 +88,8 @@ def export(reader: ReaderNetwork, folder: Path) -> None:
             )  # fmt: skip
             quant_pre_process(str(raw), str(ready), skip_symbolic_shape=True)
             quantize_dynamic(
-                str(ready), str(folder / f"{name}.onnx"), weight_type=QuantType.QInt8, per_channel=True,
-                op_types_to_quantize=["MatMul", "Gather", "Gemm"],
+                str(ready), str(folder / f"{name}{ending}.onnx"), weight_type=QuantType.QInt8,
+                per_channel=True, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
             )  # fmt: skip
 
 
@@ -113,33 +114,37 @@ def _graphs(
     )  # fmt: skip
 
 
-def export_checkpoint(
-    checkpoint: Path, folder: Path, train_pairs: Sequence[Pair], held_back: Sequence[Pair], seed: int
+def export_checkpoints(
+    checkpoints: Sequence[Path], folder: Path, held_back: Sequence[Pair], fillers: Sequence[str]
 ) -> None:
-    """Writes all files that the reader needs, from the checkpoint of a training run.
+    """Writes all files that the reader needs, from the checkpoints of one or two training runs.
 
     Args:
-        checkpoint: folder with ``checkpoint.pt`` and ``pieces.txt``.
-        folder: where the graphs, the pieces, the learnt words and the settings are written.
-        train_pairs: hand-written pairs that the model was trained on.
-        held_back: pairs that the model was not trained on, for the calibration of the confidence.
-        seed: seed of the generated pairs from which the learnt words are determined.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``; the first network is the one whose
+            words are checked.
+        folder: where the graphs, the pieces, the function words and the settings are written.
+        held_back: pairs that the networks were not trained on, for the calibration of the confidence.
+        fillers: function words, which no plan depends on.
 
     Raises:
         LearnError: there is no checkpoint.
     """
-    if not (checkpoint / "checkpoint.pt").exists():
-        raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
-    pieces = read_vocabulary(checkpoint / "pieces.txt")
-    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS)))
-    state = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)
-    reader.load_state_dict(state["reader"])
-    export(reader, folder)
-    (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
-    words = known_words([*islice(pairs(seed), COUNTED), *train_pairs])
-    (folder / "words.txt").write_text("\n".join(words), encoding="utf-8")
-    settings = calibrated(Network(folder), Coverage(frozenset(words)), held_back)
+    for checkpoint, name in zip(checkpoints, ("", SECOND), strict=False):
+        if not (checkpoint / "checkpoint.pt").exists():
+            raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
+        pieces = read_vocabulary(checkpoint / "pieces.txt")
+        state = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)
+        layers = decoder_layers(state["reader"])
+        reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
+        reader.load_state_dict(state["reader"])
+        export(reader, folder, name)
+        (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
+    (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
+    settings = calibrated(ModelReader(folder), held_back)
     (folder / "settings.json").write_text(json.dumps(asdict(settings), indent=2) + "\n", encoding="utf-8")
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
-    sums = {name: sha256((folder / name).read_bytes()).hexdigest() for name in FILES}
+    files = sorted(
+        path for path in folder.iterdir() if path.suffix in (".onnx", ".txt") or path.name == "settings.json"
+    )
+    sums = {path.name: sha256(path.read_bytes()).hexdigest() for path in files if path.name != "training.txt"}
     (folder / "sums.json").write_text(json.dumps(sums, indent=2) + "\n", encoding="utf-8")

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.errors import BriefError
+from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.errors import BriefError, EditError
 from roadgpt.learn.compositions import composed
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of
 from roadgpt.learn.held_out import is_held_out
@@ -22,7 +23,10 @@ SPOILED = 0.045
 COMPOSED = 0.6
 """Share of the English pairs that come from ``compositions`` instead of a grammar."""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
-WISH = re.compile(r"\|\s*(?:(?:starts|ends)\([^()]*\)|[^\s;|]+)")
+EVEN = {"en": 0.44, "de": 0.14, "fr": 0.14, "es": 0.14, "it": 0.14}
+"""Shares of the languages in pairs that are hard in each of them: contrasts and changes."""
+WISH = re.compile(r"\|\s*(?:(?:starts|ends|beside)\([^()]*\)|[^\s;|]+)")
+REFUSAL = re.compile(r"![a-z]+(?: +[a-z_]+)*")
 KIND = re.compile(
     r"straight|crest|dip|turn|hairpin|switchback|u_turn|s_bend|chicane|slalom|serpentine|zigzag|winding"
 )
@@ -30,25 +34,47 @@ KIND = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A description and its plan."""
+    """A description, or a change request, and its plan."""
 
     text: str
     plan: str
     family: str
     lang: str
+    is_change: bool = False
 
 
 def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
     """Yields an endless series of pairs; the same seed gives the same pairs."""
     rng = np.random.default_rng(seed)
-    shares = languages or SHARES
-    codes, weights = list(shares), np.cumsum(list(shares.values()))
     while True:
-        code = codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
+        code = _language(languages or SHARES, rng)
         is_composed = code == "en" and rng.random() < COMPOSED
         pair = _composed(rng) if is_composed else draw(code, rng)
         if pair:
             yield sometimes_spoiled(pair, rng)
+
+
+def contrasted(seed: int) -> Iterator[Pair]:
+    """Yields an endless series of descriptions that deny, exchange, limit or compare something."""
+    rng = np.random.default_rng([seed, 1])
+    while True:
+        pair = draw(_language(EVEN, rng), rng, "contrast", "contrasts")
+        if pair:
+            yield pair
+
+
+def changed(seed: int) -> Iterator[Pair]:
+    """Yields an endless series of change requests."""
+    rng = np.random.default_rng([seed, 2])
+    while True:
+        pair = draw_change(_language(EVEN, rng), rng)
+        if pair:
+            yield pair
+
+
+def _language(shares: dict[str, float], rng: np.random.Generator) -> str:
+    codes, weights = list(shares), np.cumsum(list(shares.values()))
+    return codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
 
 
 def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
@@ -56,31 +82,46 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
     impossible to satisfy.
     """
     way = rng.random()
-    if way < SPOILED / 2:
-        text, plan = contradicted(pair.text, pair.plan, pair.lang, rng), "!contradiction"
-    elif way < SPOILED:
-        text, plan = overdone(pair.text, pair.plan, pair.lang, rng), "!impossible"
-    else:
-        return pair
-    return Pair(text, plan, pair.family, pair.lang) if text else pair
+    spoil = contradicted if way < SPOILED / 2 else overdone if way < SPOILED else None
+    found = spoil(pair.text, pair.plan, pair.lang, rng) if spoil else None
+    return Pair(*found, pair.family, pair.lang) if found else pair
 
 
-def draw(language: str, rng: np.random.Generator, symbol: str = "top") -> Pair | None:
+def draw(language: str, rng: np.random.Generator, symbol: str = "top", phrases: str = "") -> Pair | None:
     """Returns a random description and its plan, made with a grammar; None if they make no sense, or if the
     description is too long or held out.
+
+    Args:
+        language: code of the language, such as "en".
+        rng: source of randomness.
+        symbol: the symbol of the grammar to begin with.
+        phrases: more phrases that the grammar has, such as "contrasts".
     """
     try:
-        text, raw = Speaker(grammar_of(language), rng).say(symbol)
+        text, raw = Speaker(grammar_of(language, phrases), rng).say(symbol)
         plan = assembled(raw)
     except (Discarded, BriefError):
         return None
     if plan is None or not 1 <= len(text) <= 500:
         return None
-    text = tidy(text)
+    text = tidy(text, language)
     typed = noisy(text, language, rng)
     if is_held_out(text) or is_held_out(typed):
         return None
     return Pair(typed, plan, f"generated-{language}", language)
+
+
+def draw_change(language: str, rng: np.random.Generator) -> Pair | None:
+    """Returns a random change request and its plan; None if they do not fit together, or are too long."""
+    try:
+        text, raw = Speaker(grammar_of(language, "changes"), rng).say("top")
+        plan = " ".join(raw.split())
+        if not plan.startswith("!"):
+            plan = change_plan(read_change_plan(plan))
+    except (Discarded, EditError):
+        return None
+    text = noisy(tidy(text, language), language, rng)
+    return Pair(text, plan, f"changes-{language}", language, True) if 1 <= len(text) <= 500 else None
 
 
 def _composed(rng: np.random.Generator) -> Pair | None:
@@ -92,8 +133,9 @@ def _composed(rng: np.random.Generator) -> Pair | None:
 
 def assembled(raw: str) -> str | None:
     """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense."""
-    if "!" in raw:
-        return "!" + raw.split("!")[1].split()[0]
+    refusal = REFUSAL.search(raw)
+    if refusal:
+        return refusal[0]
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
     clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
     line = "; ".join(part for part in clauses if part)

@@ -200,10 +200,24 @@ def _filled(part: str, plans: Mapping[str, str]) -> str:
 
 
 @cache
-def grammar_of(language: str) -> Grammar:
-    """Returns RoadGPT's grammar of a language: en, de, fr, es or it."""
+def grammar_of(language: str, phrases: str = "") -> Grammar:
+    """Returns RoadGPT's grammar of a language: en, de, fr, es or it.
+
+    Args:
+        language: code of the language.
+        phrases: empty for descriptions, "contrasts" for descriptions with further symbols, "changes" for
+            change requests.
+
+    Raises:
+        LearnError: there are no phrases in this language.
+    """
     folder = files("roadgpt.learn") / "phrases"
-    names = sorted(path.name for path in folder.iterdir() if path.name.startswith(language))
+    own = (
+        []
+        if phrases == "changes"
+        else [path.name for path in folder.iterdir() if path.name.startswith(language)]
+    )
+    names = [*sorted(own), *([f"{phrases}_{language}.txt"] if phrases else [])]
     if not names:
         raise LearnError(f"there are no phrases in the language '{language}'; there are: de, en, es, fr, it")
     return read_grammar("\n".join((folder / name).read_text(encoding="utf-8") for name in names), language)

@@ -8,7 +8,9 @@ import numpy as np
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
-from roadgpt.errors import BriefError, LearnError
+from roadgpt.brief.refusal import refused
+from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.errors import LearnError, RoadGPTError
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.standard import standard
@@ -18,8 +20,13 @@ LONGEST = 2000  # letters
 SPLITS = ("train", "validation", "test")
 
 
-def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
-    """Returns all usable pairs of JSON-lines files, and one sentence for each line that is not usable."""
+def read_pairs(paths: Iterable[Path], is_change: bool = False) -> tuple[list[Pair], list[str]]:
+    """Returns all usable pairs of JSON-lines files, and one sentence for each line that is not usable.
+
+    Args:
+        paths: the files.
+        is_change: whether the texts are change requests instead of descriptions.
+    """
     good: list[Pair] = []
     problems: list[str] = []
     seen: dict[str, str] = {}
@@ -29,7 +36,7 @@ def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
             if not line.strip():
                 continue
             try:
-                pair = read_pair(line)
+                pair = read_pair(line, is_change)
             except LearnError as error:
                 problems.append(f"{place}: {error}")
                 continue
@@ -45,7 +52,7 @@ def read_pairs(paths: Iterable[Path]) -> tuple[list[Pair], list[str]]:
     return good, problems
 
 
-def read_pair(line: str) -> Pair:
+def read_pair(line: str, is_change: bool = False) -> Pair:
     """Returns the pair in one line of JSON, with its plan in standard form.
 
     Raises:
@@ -62,14 +69,23 @@ def read_pair(line: str) -> Pair:
         ) from error
     if not text.strip() or len(text) > LONGEST:
         raise LearnError(f"a text has {len(text)} characters; write 1 to {LONGEST}")
-    if written.strip() not in REFUSALS:
-        try:
-            brief = read_plan(written)
-            plan(brief)
-        except BriefError as error:
-            raise LearnError(f"'{text[:40]}': {error}") from error
-        written = standard(brief)
-    return Pair(text, written.strip(), family, language)
+    try:
+        written = _standard(written.strip(), is_change)
+    except RoadGPTError as error:
+        raise LearnError(f"'{text[:40]}': {error}") from error
+    return Pair(text, written, family, language, is_change)
+
+
+def _standard(written: str, is_change: bool) -> str:
+    if written.startswith("!"):
+        if not written.startswith(REFUSALS) or "has no refusal" in str(refused(written)):
+            raise LearnError(f"'{written[:40]}' is no refusal of the language of plans")
+        return written
+    if is_change:
+        return change_plan(read_change_plan(written))
+    brief = read_plan(written)
+    plan(brief)
+    return standard(brief)
 
 
 def split(

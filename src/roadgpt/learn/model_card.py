@@ -36,8 +36,9 @@ def card(
             "# Model card: the trained reader",
             "",
             "Reads a description of a road in English, German, French, Spanish or Italian and writes a plan:"
-            " the Brief on one line. Encoder: MiniLM, 6 layers, fine-tuned; decoder: 3 layers, trained"
-            " from random weights; both in int8.",
+            " the Brief on one line; reads a change request as well, and writes a plan of changes. Two"
+            " networks read every text. Their encoders are MiniLM, 6 layers, fine-tuned; their decoders,"
+            " with 6 and 3 layers, began from random weights; all in int8.",
             "",
             *_files(weights),
             *_data(data),

@@ -19,20 +19,32 @@ BEYOND: dict[str, list[str]] = WORDS["beyond"]
 """Texts, by language, with requirements that no road can meet."""
 
 
-def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with a contradicting requirement added; None if no suitable wording is
-    available.
+CAUSES = {"turning": "turns", "many": "turns", "straight": "turns", "left": "sides", "right": "sides"}
+"""The cause of a contradiction with each requirement; of the others it is the slope."""
+BEYOND_BY = {
+    "{grade}": "grade", "{far}": "length", "{near}": "radius", "{much}": "turns", "vertical": "grade",
+    "loop": "loop", "circle": "degrees",
+}  # fmt: skip
+"""The cause of an impossible requirement, by a part of its text."""
+
+
+def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
+    """Returns the description with a contradicting requirement added, and the refusal; None if no suitable
+    wording is available.
     """
     kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
     if not kinds:
         return None
-    ways = CONFLICTS[kinds[int(rng.integers(len(kinds)))]][language]
-    return _with(text, ways[int(rng.integers(len(ways)))], rng)
+    kind = kinds[int(rng.integers(len(kinds)))]
+    ways = CONFLICTS[kind][language]
+    return _with(
+        text, ways[int(rng.integers(len(ways)))], language, rng
+    ), f"!contradiction {CAUSES.get(kind, 'slope')}"
 
 
-def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> str | None:
-    """Returns the description with an impossible requirement added; None if no suitable wording is
-    available.
+def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
+    """Returns the description with an impossible requirement added, and the refusal; None if no suitable
+    wording is available.
     """
     if language not in BEYOND or plan.startswith("!"):
         return None
@@ -47,15 +59,18 @@ def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> s
         "radius" in way or "Radius" in way or "rayon" in way or "radio" in way or "raggio" in way
     ) and not TURNING.search(plan):
         return None
-    return _with(text, way.format(**said), rng)
+    cause = next(cause for part, cause in BEYOND_BY.items() if part in way)
+    if "within {near}" in way:
+        cause = "length"
+    return _with(text, way.format(**said), language, rng), f"!impossible {cause}"
 
 
-def _with(text: str, wish: str, rng: np.random.Generator) -> str:
+def _with(text: str, wish: str, language: str, rng: np.random.Generator) -> str:
     body = text.rstrip(" .!?")
     if rng.random() < 0.15:
         wish = re.sub(r"^(?:and|but|yet|aber|und|mais|et|pero|y|ma|e) ", "", wish)
-        return tidy(f"{wish[:1].upper()}{wish[1:]}: {body}")
-    return tidy(f"{body}{', ' if rng.random() < 0.7 else ' '}{wish}")
+        return tidy(f"{wish[:1].upper()}{wish[1:]}: {body}", language)
+    return tidy(f"{body}{', ' if rng.random() < 0.7 else ' '}{wish}", language)
 
 
 def _holds(plan: str) -> list[str]:

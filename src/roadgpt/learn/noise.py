@@ -20,13 +20,14 @@ AFTER: dict[str, list[str]] = WORDS["after"]
 """Polite phrases to add after a description, by language."""
 
 
-def tidy(text: str) -> str:
-    """Corrects the spaces and articles in a text that was put together by grammar rules."""
+def tidy(text: str, language: str = "en") -> str:
+    """Corrects the spaces, and in English the articles, in a text that was put together by grammar rules."""
     text = re.sub(r"\s+", " ", text)
     text = re.sub(r"\s+([,.;:!?])(?!\d)", r"\1", text)
     text = re.sub(r"([,.;:])(?:\s*[,;])+", r"\1", text)
     text = re.sub(r"\.\s*\.", ".", text)
-    text = re.sub(r"\b([Aa]) (?=[aeiouAEIO])(?!one|u-|U-|uturn|uni)", r"\1n ", text)
+    if language == "en":
+        text = re.sub(r"\b([Aa]) (?=[aeiouAEIO])(?!one|u-|U-|uturn|uni)", r"\1n ", text)
     return text.strip(" ,;:")
 
 

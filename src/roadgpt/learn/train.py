@@ -16,6 +16,7 @@ from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import Numbers, batches, examples
 from roadgpt.learn.generator import Pair
+from roadgpt.learn.growing import grown
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
 from roadgpt.learn.onnx_weights import exported_weights
 
@@ -40,7 +41,7 @@ class TrainingSettings:
     """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
     zero.
     """
-    hand_share: float = 0.6
+    decoder_layers: int = 3
     seed: int = 1
     save_every: int = 100
     workers: int = 1
@@ -76,16 +77,16 @@ def train(
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     torch.manual_seed(plan.seed)
-    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS)))
+    layers = plan.decoder_layers
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
     checkpoint = folder / "checkpoint.pt"
     state: dict[str, Any] = {}
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
         reader.load_state_dict(state["reader"])
     elif weights and weights.is_dir():
-        reader.load_state_dict(
-            {name: torch.from_numpy(array) for name, array in exported_weights(weights).items()}
-        )
+        found = {name: torch.from_numpy(array) for name, array in exported_weights(weights).items()}
+        reader.load_state_dict(grown(found, len(TOKENS), layers, plan.seed))
     elif weights:
         load_minilm(reader, weights, pieces)
     reader.to(device)
@@ -95,7 +96,7 @@ def train(
     first = int(state.get("step", 0))
     # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
-    stream = batches(examples(seed, hand, plan.hand_share, WordPieces(pieces)), plan.size, POOL, seed)
+    stream = batches(examples(seed, hand, WordPieces(pieces)), plan.size, POOL, seed)
     began, losses = time.monotonic(), []
     reader.train()
     for step in range(first, plan.steps):

@@ -1,0 +1,55 @@
+"""Makes trained weights fit a larger network, so that training goes on instead of beginning anew.
+
+New tokens get small random embeddings. A new decoder layer is a copy of the one before it whose outputs are
+zero, so that the larger network first writes what the smaller one wrote.
+"""
+
+import re
+from collections.abc import Mapping
+
+import torch
+from torch import Tensor
+
+LAYER = re.compile(r"decoder\.(\d+)\.(.+)")
+SILENT = ("own.out.", "across.out.", "narrow.")
+"""The outputs of a decoder layer: those that are zero in a new one."""
+SPREAD = 0.02
+
+
+def decoder_layers(weights: Mapping[str, Tensor]) -> int:
+    """Returns the number of decoder layers that the weights have."""
+    return 1 + max(int(match[1]) for name in weights if (match := LAYER.match(name)))
+
+
+def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0) -> dict[str, Tensor]:
+    """Returns the weights of a network with more tokens, and with a multiple of the decoder layers.
+
+    Args:
+        weights: by parameter names.
+        tokens: the number of tokens of the new network; at least as many as there are.
+        layers: the number of decoder layers of the new network: a multiple of the present number.
+        seed: seed of the new tokens' embeddings.
+
+    Raises:
+        ValueError: the new network is smaller, or its number of layers is no multiple.
+    """
+    present, old = decoder_layers(weights), weights["bias"].shape[0]
+    times, rest = divmod(layers, present)
+    if rest or not times or tokens < old:
+        raise ValueError(f"{present} decoder layers and {old} tokens cannot grow to {layers} and {tokens}")
+    out: dict[str, Tensor] = {}
+    for name, value in weights.items():
+        match = LAYER.match(name)
+        if match is None:
+            out[name] = value
+            continue
+        for copy in range(times):
+            is_silent = copy > 0 and match[2].startswith(SILENT)
+            out[f"decoder.{int(match[1]) * times + copy}.{match[2]}"] = (
+                torch.zeros_like(value) if is_silent else value.clone()
+            )
+    generator = torch.Generator().manual_seed(seed)
+    new = torch.randn((tokens - old, weights["tokens.weight"].shape[1]), generator=generator) * SPREAD
+    out["tokens.weight"] = torch.cat([weights["tokens.weight"], new])
+    out["bias"] = torch.cat([weights["bias"], torch.zeros(tokens - old)])
+    return out

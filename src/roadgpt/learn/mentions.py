@@ -1,0 +1,77 @@
+"""Adds mentions of things beside the road to descriptions, such as "in the rain", with their names in the
+plan, and denials of such things ("no traffic"), which leave the plan as it is.
+"""
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from importlib.resources import files
+
+import numpy as np
+
+from roadgpt.learn.noise import tidy
+
+Phrases = Mapping[str, Mapping[str, Mapping[str, Sequence[str]]]]
+WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(encoding="utf-8"))
+SAID: Phrases = WORDS["said"]
+"""By language, then by names: phrases that can stand "before" and "after" a description."""
+DENIED: Phrases = WORDS["denied"]
+NAMED = re.compile(r" ?beside\(([^()]*)\)")
+MOST_NAMES = 4
+BEFORE = 0.25
+NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
+"""The range of the number that a phrase for each of these names can have."""
+
+
+def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
+    """Returns the text and plan with one more thing beside the road, or with one denied; None if the plan is
+    a refusal, or names the thing already.
+    """
+    is_said = rng.random() < 0.7
+    table = (SAID if is_said else DENIED).get(language)
+    if plan.startswith("!") or not table:
+        return None
+    names = list(table)[int(rng.integers(len(table)))]
+    there = names_in(plan)
+    new = [name.strip() for name in names.split(",")]
+    if {*there} & {*new} or len(there) + len(new) > MOST_NAMES:
+        return None
+    is_before = rng.random() < BEFORE and bool(table[names]["before"])
+    ways = table[names]["before" if is_before else "after"]
+    phrase = _numbered(ways[int(rng.integers(len(ways)))], new[0], rng)
+    told = _before(phrase, text, language) if is_before else _after(text, phrase, language, rng)
+    if not is_said:
+        return told, plan
+    return told, with_names(plan, [*new, *there] if is_before else [*there, *new])
+
+
+def names_in(plan: str) -> list[str]:
+    """Returns the names that a plan has beside the road."""
+    found = NAMED.search(plan)
+    return [name.strip() for name in found[1].split(",")] if found else []
+
+
+def with_names(plan: str, names: Sequence[str]) -> str:
+    """Returns the plan with these names beside the road instead of its own."""
+    bare = NAMED.sub("", plan).rstrip(" |")
+    joint = " " if "|" in bare else " | "
+    return f"{bare}{joint}beside({', '.join(names)})".strip()
+
+
+def _numbered(phrase: str, name: str, rng: np.random.Generator) -> str:
+    low, high = NUMBERS.get(name, (2, 9))
+    number = int(rng.integers(low, high + 1))
+    return phrase.replace("{n}", str(number // 10 * 10 if name == "speed" else number))
+
+
+def _before(phrase: str, text: str, language: str) -> str:
+    is_open = phrase.rstrip()[-1:] in ",:"
+    return tidy(f"{phrase} {text if is_open else text[:1].upper() + text[1:]}", language)
+
+
+def _after(text: str, phrase: str, language: str, rng: np.random.Generator) -> str:
+    is_sentence = phrase[:1].isupper() and phrase.endswith(".")
+    if is_sentence:
+        return tidy(f"{text.rstrip(' .')}. {phrase}", language)
+    stop = "." if text.endswith(".") else ""
+    return tidy(f"{text.rstrip(' .')}{', ' if rng.random() < 0.5 else ' '}{phrase}", language) + stop

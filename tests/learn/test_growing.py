@@ -1,0 +1,36 @@
+"""A grown network first writes what the smaller one wrote."""
+
+import pytest
+
+torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
+
+from roadgpt.learn.growing import decoder_layers, grown  # noqa: E402
+from roadgpt.learn.network import NetworkSizes, ReaderNetwork  # noqa: E402
+
+SMALL = NetworkSizes(pieces=40, tokens=9, width=24, heads=3, inner=32, layers=1, decoder_layers=2,
+                     decoder_inner=32, decoder_heads=3)  # fmt: skip
+
+
+def test_more_layers_and_tokens_change_no_score_of_an_old_token() -> None:
+    torch.manual_seed(3)
+    small = ReaderNetwork(SMALL).eval()
+    weights = small.state_dict()
+    large = ReaderNetwork(NetworkSizes(**{**_fields(SMALL), "tokens": 12, "decoder_layers": 6})).eval()
+    large.load_state_dict(grown(weights, 12, 6))
+    pieces, tokens = torch.randint(1, 40, (3, 7)), torch.randint(1, 9, (3, 5))
+    with torch.no_grad():
+        old, new = small(pieces, tokens), large(pieces, tokens)
+    assert torch.allclose(old, new[..., :9], atol=1e-5)
+    assert decoder_layers(large.state_dict()) == 6
+    assert any(not torch.equal(new[..., 9], new[..., other]) for other in (10, 11))
+
+
+def test_a_network_does_not_shrink() -> None:
+    weights = ReaderNetwork(SMALL).state_dict()
+    for tokens, layers in ((8, 2), (9, 1), (9, 3)):
+        with pytest.raises(ValueError, match="cannot grow"):
+            grown(weights, tokens, layers)
+
+
+def _fields(sizes: NetworkSizes) -> dict[str, int]:
+    return {name: getattr(sizes, name) for name in sizes.__slots__}

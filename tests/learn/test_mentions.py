@@ -1,0 +1,52 @@
+"""Things beside the road that are added to descriptions: named in the plan if said, and not if denied."""
+
+import numpy as np
+
+from roadgpt.brief.beside import BESIDE
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.learn.mentions import DENIED, SAID, names_in, with_mention, with_names
+
+LANGUAGES = {"en", "de", "fr", "es", "it"}
+
+
+def test_every_name_has_words_in_five_languages() -> None:
+    assert {*SAID} == {*DENIED} == LANGUAGES
+    for table in SAID.values():
+        assert {name for names in table for name in names.split(", ")} == BESIDE
+    for table in (*SAID.values(), *DENIED.values()):
+        for names, phrases in table.items():
+            assert {*names.split(", ")} <= BESIDE
+            assert phrases["after"], names
+            assert {*phrases} == {"before", "after"}
+
+
+def test_what_is_said_is_named_and_what_is_denied_is_not() -> None:
+    rng = np.random.default_rng(4)
+    named = denied = 0
+    for _ in range(1500):
+        language = sorted(LANGUAGES)[int(rng.integers(5))]
+        found = with_mention("two bends", "turn x2 | up", language, rng)
+        assert found is not None
+        text, line = found
+        assert "two bends" in text.lower()
+        assert "{" not in text
+        if line == "turn x2 | up":
+            denied += 1
+        else:
+            named += 1
+            brief = read_plan(line)
+            assert brief.model_copy(update={"beside": ()}) == read_plan("turn x2 | up")
+            assert plan(brief) == line
+    assert named > 900
+    assert denied > 300
+
+
+def test_names_are_added_to_those_that_are_there() -> None:
+    assert with_names("turn", ["wet"]) == "turn | beside(wet)"
+    assert with_names("| turns=3 beside(wet)", ["wet", "rain"]) == "| turns=3 beside(wet, rain)"
+    assert names_in("turn | up beside(wet, rain)") == ["wet", "rain"]
+    assert names_in("turn") == []
+
+
+def test_a_refusal_mentions_nothing() -> None:
+    assert with_mention("hello", "!nonsense", "en", np.random.default_rng(0)) is None
