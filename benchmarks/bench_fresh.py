@@ -18,9 +18,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief import Brief, read
+from roadgpt.brief import SURE, Brief, read
 from roadgpt.check.measures import Measures, measure
-from roadgpt.cli.commands.run import SURE
 from roadgpt.design import draft
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import World, build

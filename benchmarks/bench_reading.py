@@ -1,4 +1,4 @@
-"""How well the readers read, and what it costs: the trained one and the grammar, side by side.
+"""How well the trained reader reads, and what it costs.
 
     python benchmarks/bench_reading.py [ROADS]
 
@@ -28,7 +28,7 @@ from roadgpt.road import Design, World, build
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"
 SPLITS = ("validation", "test", "exam")
-READERS = ("model", "grammar")
+READERS = ("model",)
 PROMPTS = (
     "a road",
     "an uphill road with 3 turns",

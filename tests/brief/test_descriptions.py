@@ -4,11 +4,12 @@ import json
 from pathlib import Path
 from typing import Any
 
-import pytest
+from roadgpt.brief import Brief, Clause, check, normal
+from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model import ModelReader
+from roadgpt.errors import BriefError
 
-from roadgpt.brief import Brief, Clause, check, normal, outline, sentence
-from roadgpt.brief.readers.grammar import GrammarReader
-
+SHARE = 0.72
 HERE = Path(__file__).parent
 CASES = [json.loads(line) for line in (HERE / "descriptions.jsonl").read_text("utf-8").splitlines()]
 AMOUNTS = (
@@ -42,23 +43,21 @@ def spelled_out(said: dict[str, Any]) -> dict[str, Any]:
     return full
 
 
-@pytest.mark.parametrize("case", CASES, ids=[case["words"][:50] for case in CASES])
-def test_reads_what_is_meant(case: dict[str, Any]) -> None:
-    expected = Brief.model_validate(spelled_out(case))
-    read = GrammarReader().read(case["words"])
-    assert normal(read) == normal(expected)
-    assert read.unused == expected.unused
-    assert read.words == case["words"]
-    check(read)
-
-
-@pytest.mark.parametrize("case", CASES, ids=[case["words"][:50] for case in CASES])
-def test_says_it_again(case: dict[str, Any]) -> None:
-    read = GrammarReader().read(case["words"])
-    again = GrammarReader().read(sentence(read))
-    assert normal(again) == normal(read), sentence(read)
-    assert not again.unused
-    assert outline(again) == outline(read)
+def test_most_are_read_as_they_are_meant() -> None:
+    """Their Briefs were written by hand for rules; where the guide of labels decides otherwise, they miss."""
+    reader, missed = ModelReader(), []
+    for case in CASES:
+        expected = Brief.model_validate(spelled_out(case))
+        check(expected)
+        try:
+            got = reader.read(case["words"])
+        except BriefError as error:
+            missed.append(f"{case['words']}: {error}")
+            continue
+        assert got.words == case["words"]
+        if normal(got).model_copy(update={"beside": ()}) != normal(expected):
+            missed.append(f"{case['words']}: {plan(got)}")
+    assert len(missed) <= (1 - SHARE) * len(CASES), "\n".join(missed)
 
 
 def test_there_are_many_cases() -> None:

@@ -1,47 +1,27 @@
-"""The sentence that a Brief says itself in is read back by the grammar as the same Brief."""
+"""The sentence that a Brief says itself in is read back by the trained reader as the same requirements."""
 
-from hypothesis import assume, given, settings
+from itertools import islice
 
-from roadgpt.brief import Brief, Clause, check, exactly, normal, sentence
-from roadgpt.brief.normal import SINGLE, STRAIGHT
-from roadgpt.brief.readers.grammar import GrammarReader
+from roadgpt.brief import normal, sentence
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model import ModelReader
 from roadgpt.errors import BriefError
-from strategies import briefs, sensible_briefs
+from roadgpt.learn.generator import pairs
+
+SHARE = 0.9
+NUMBER = 150
 
 
-def is_possible(brief: Brief) -> bool:
-    try:
-        check(brief, map_size=None)
-    except BriefError:
-        return False
-    return True
-
-
-def _is_one(clause: Clause) -> bool:
-    return clause.kind in SINGLE | STRAIGHT and clause.count == exactly(1)
-
-
-def can_be_said(brief: Brief) -> bool:
-    """Not in words: a last thing besides clauses, several last things, lengths of the turns of a chicane."""
-    said = normal(brief)
-    edges = [clause for clause in (said.starts, said.ends) if clause]
-    if len(edges) > 1 or (edges and said.clauses) or any(not _is_one(c) for c in edges):
-        return False
-    return not any(c.length and c.kind not in SINGLE | STRAIGHT for c in said.clauses)
-
-
-@settings(max_examples=150, deadline=None)
-@given(sensible_briefs())
-def test_sensible_briefs_read_back(brief: Brief) -> None:
-    assume(is_possible(brief))
-    again = GrammarReader().read(sentence(brief))
-    assert normal(again) == normal(brief)
-    assert again.unused == ()
-    assert again.confidence == 1
-
-
-@settings(max_examples=200, deadline=None)
-@given(briefs())
-def test_all_that_can_be_said_reads_back(brief: Brief) -> None:
-    assume(is_possible(brief) and can_be_said(brief))
-    assert normal(GrammarReader().read(sentence(brief))) == normal(brief)
+def test_sentences_of_usual_briefs_are_read_back() -> None:
+    reader, missed = ModelReader(), []
+    plans = [pair.plan for pair in islice(pairs(2026), NUMBER) if not pair.plan.startswith("!")]
+    for line in plans:
+        wanted = normal(read_plan(line))
+        try:
+            got = normal(reader.read(sentence(wanted))).model_copy(update={"beside": ()})
+        except BriefError as error:
+            missed.append(f"{sentence(wanted)}: {error}")
+            continue
+        if got != wanted:
+            missed.append(f"{sentence(wanted)}: {line}")
+    assert len(missed) <= (1 - SHARE) * len(plans), "\n".join(missed)

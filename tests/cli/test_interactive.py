@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
 from roadgpt.cli.commands.run import RunJob
@@ -18,7 +19,9 @@ def quick_and_in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(
         "roadgpt.cli.commands.run.usual_job",
-        lambda words, roads: RunJob(words, roads, World(), Setup(drives=False), pictures=()),
+        lambda words, roads, is_plan=False: RunJob(
+            words, roads, World(), Setup(drives=False, reader="plan" if is_plan else "model"), pictures=()
+        ),
     )
 
 
@@ -51,6 +54,18 @@ def test_help_is_given_at_either_question_and_is_no_description(word: str) -> No
     assert result.stdout.count("'roadgpt run' takes options") == 2
     assert "1 of 1 roads" in result.stdout
     assert result.stderr == ""
+
+
+def test_of_two_readings_the_person_chooses(monkeypatch: pytest.MonkeyPatch) -> None:
+    doubtful = read_plan("turn x2 left").model_copy(update={"confidence": 0.3, "other": "turn x2 right"})
+    monkeypatch.setattr("roadgpt.brief.read", lambda words: doubtful)
+    result = say("two bends", "2", "1", "", "two bends", "", "exit")
+    assert result.exit_code == 0
+    assert "1  a road with 2 left turns" in result.stdout
+    assert "2  a road with 2 right turns" in result.stdout
+    assert "I read this as: a road with 2 right turns" in result.stdout
+    assert "1 of 1 roads" in result.stdout
+    assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 
 
 def test_a_wrong_answer_is_asked_again() -> None:

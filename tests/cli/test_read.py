@@ -90,7 +90,21 @@ def test_doubt_and_words_that_were_not_used_are_said() -> None:
     assert "not sure" not in understood(brief)
     doubtful = brief.model_copy(update={"confidence": 0.4, "unused": ("purple",)})
     assert "not understood: 'purple'" in understood(doubtful)
-    assert "not sure of this (40 %)" in understood(doubtful)
+    assert "perhaps not understood as meant (40 % sure)" in understood(doubtful)
+
+
+def test_the_second_reading_is_shown_with_its_plan() -> None:
+    brief = read_plan("turn x3").model_copy(update={"confidence": 0.4, "other": "turn x2; hairpin"})
+    told = understood(brief)
+    assert "it could also mean: a road with 2 turns, then a hairpin" in told
+    assert "--plan 'turn x2; hairpin'" in told
+    assert "also mean" not in understood(read_plan("turn x3"))
+
+
+def test_json_says_whether_the_reading_is_sure() -> None:
+    found = json.loads(_read("| turns=1..", "--reader", "plan", "--json").output)
+    assert found["is_sure"] is True
+    assert found["other"] == ""
 
 
 def test_what_is_no_road_is_told() -> None:

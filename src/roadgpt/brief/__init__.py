@@ -37,11 +37,12 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.refusal import NoRoomError, TooMuchError
 from roadgpt.brief.sentence import sentence
-from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, USUAL_MAP, Range
+from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.errors import PartError
 
 __all__ = [
+    "SURE",
     "Amount",
     "Brief",
     "Clause",

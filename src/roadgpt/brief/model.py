@@ -188,6 +188,8 @@ class Brief(Frozen):
     unused: tuple[str, ...] = ()
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0
+    other: str = ""
+    """The plan of the second likeliest reading, if the reader is not sure of this one; otherwise empty."""
 
     @property
     def friction(self) -> float | None:

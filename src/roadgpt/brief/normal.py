@@ -1,7 +1,7 @@
 """The normal form of a Brief: two Briefs that ask for the same road have the same normal form.
 
-- ``words``, ``unused`` and ``confidence`` describe the origin of a Brief, not its requirements, and are
-  cleared.
+- ``words``, ``unused``, ``confidence`` and ``other`` describe the origin of a Brief, not its requirements,
+  and are cleared.
 - A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
   without a slope means uphill.
 - A clause with several straights, crests or dips is split into one clause each, as are alternating turns
@@ -54,7 +54,7 @@ def normal(brief: Brief) -> Brief:
 def _simpler(brief: Brief) -> Brief:
     clauses = [one for clause in brief.clauses for one in _singles(_plain(clause))]
     whole = _plain_slope(_without_empty_bounds(brief))
-    whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0})
+    whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0, "other": ""})
     whole, clauses = _ends(whole, clauses)
     whole, clauses = _turns_as_clause(whole, clauses)
     whole, clauses = _sided(whole, clauses)

@@ -4,6 +4,7 @@ two errors that contain the Brief, since a larger map may hold the road.
 
 from roadgpt.brief.beside import NOT_BUILT, SAID_OTHERWISE
 from roadgpt.brief.model import Brief
+from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
 
 MOST_CHARACTERS = 2000
@@ -43,21 +44,38 @@ BEYOND = {
 """Causes of an impossibility, with what cannot be built."""
 
 
+BY_OPTION = SAID_OTHERWISE | {
+    name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()
+}
+"""Causes that another option or other words meet, with what to do."""
+OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_OPTION}
+"""The causes that each refusal can have, with what the message says of each."""
+
+
+def causes_of(line: str) -> tuple[str, str]:
+    """Returns the kind of a refusal, such as "!impossible", and its causes in words; "" if it names none.
+
+    Raises:
+        BriefError: the plan is no refusal, or has causes that this kind of refusal cannot have.
+    """
+    kind, *causes = line.split()
+    known = OF_CAUSES.get(kind, {})
+    if kind not in ADVICE or any(cause not in known for cause in causes):
+        raise BriefError(f"a plan has no refusal '{line.strip()[:60]}'; begin one with {', '.join(ADVICE)}")
+    return kind, " and ".join(known[cause] for cause in causes)
+
+
 def refused(line: str) -> BriefError:
     """Returns the error for a plan that is a refusal, such as '!impossible roundabout'."""
-    kind, *causes = line.split()
-    known = {"!contradiction": CLASHING, "!impossible": {**NOT_BUILT, **BEYOND, **SAID_OTHERWISE}}.get(
-        kind, {}
-    )
-    unknown = [cause for cause in causes if cause not in known]
-    if kind not in ADVICE or unknown:
-        return BriefError(f"a plan has no refusal '{line.strip()[:60]}'; begin one with {', '.join(ADVICE)}")
-    if not causes:
+    try:
+        kind, said = causes_of(line)
+    except BriefError as error:
+        return error
+    if not said:
         return BriefError(ADVICE[kind])
-    said = " and ".join(known[cause] for cause in causes)
     if kind == "!contradiction":
         return BriefError(f"the description contradicts itself about {said}; leave one of them out")
-    if SAID_OTHERWISE.keys() & {*causes}:
+    if BY_OPTION.keys() & {*line.split()}:
         return BriefError(f"words do not do this: {said}")
     return BriefError(f"no such road can be built: {said}; leave that out")
 

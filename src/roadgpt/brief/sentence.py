@@ -1,6 +1,4 @@
-"""Writes a Brief as one plain English sentence, which the grammar reader reads back as the same Brief, except
-for surfaces such as ice: it does not read them.
-"""
+"""Writes a Brief as one plain English sentence. The reader reads it back to check its own reading."""
 
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal

@@ -136,8 +136,6 @@ MOUNTAIN = Range(4, 15)
 """The grade of the steepest place of 'a mountain road' in percent, up or down."""
 HILLS = 3
 """The least number of changes between climbing and falling of 'a hilly road': up, down, up, down."""
-ROAD_SIZES: Mapping[Size, Range] = {"long": Range(250), "short": Range(20, 150)}
-"""The length in metres of 'a long road' and 'a short road'."""
 
 MOTORWAY_RADIUS = 600.0  # metres, for every turn of 'a motorway' if the map can hold it: see brief.motorway
 MOTORWAY_GRADE = 5.0  # percent, up or down, at its steepest place
@@ -270,8 +268,7 @@ OTHER_TURNS = (
     ("several, a series of", "3 or more", "-", "-"),
     ("many, lots of, numerous", "4 or more", "-", "-"),
 )
-"""Rows of the table for other words of the grammar reader, such as 'kink': words, turns, degrees, radius in
-m."""
+"""Rows of the table for other words, such as 'kink': words, turns, degrees, radius in metres."""
 
 
 def _turns() -> list[str]:
@@ -302,8 +299,7 @@ def _turns() -> list[str]:
 def _straights() -> list[str]:
     kinds = [meaning for meaning in KINDS.values() if not meaning.turns]
     rows = ((_said(m), str(m.degrees or "-"), str(m.length or "-")) for m in [*kinds, *SIZES.values()])
-    roads = [(f"a {size} road", "-", str(length)) for size, length in ROAD_SIZES.items()]
-    return _rows("Lengths", ("words", "degrees in all", "length (m)"), [*rows, *roads])
+    return _rows("Lengths", ("words", "degrees in all", "length (m)"), rows)
 
 
 def _slopes() -> list[str]:
@@ -354,3 +350,7 @@ def _said(meaning: Meaning) -> str:
 def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -> list[str]:
     lines = ["", f"## {title}", "", f"| {' | '.join(heads)} |", "|" + "---|" * len(heads)]
     return lines + [f"| {' | '.join(row)} |" for row in rows]
+
+
+SURE = 0.7
+"""Confidence under which a reading is so often wrong that the user is asked or warned."""

@@ -4,6 +4,7 @@ again.
 
 import re
 import sys
+from typing import TYPE_CHECKING
 
 import click
 
@@ -14,6 +15,9 @@ from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import warn
 from roadgpt.errors import RoadGPTError
+
+if TYPE_CHECKING:
+    from roadgpt.brief import Brief
 
 USUAL_ROADS = 3
 ENOUGH = {"exit", "quit", "bye", "q"}
@@ -58,12 +62,15 @@ def converse() -> None:
         if _wants_help(words):
             continue
         try:
-            read(words)  # what cannot be read is told before a number is asked for
+            brief = read(words)  # what cannot be read is told before a number is asked for
+            meant = _meant(brief)
+            if meant is None:
+                continue
             roads = _how_many()
             if roads is None:
                 break
             screen = Screen(roads)
-            run.carry_out(run.usual_job(words, roads), screen)
+            run.carry_out(run.usual_job(meant or words, roads, is_plan=bool(meant)), screen)
             if not _changed(screen):
                 break
         except RoadGPTError as error:
@@ -71,6 +78,17 @@ def converse() -> None:
         except KeyboardInterrupt:
             stopping.forget()  # what was finished has been said; ask for the next description
         click.echo()
+
+
+def _meant(brief: "Brief") -> str | None:
+    """Asks which of two readings is meant, if the reader is not sure; returns the plan of the second one, ""
+    for the first one, and None if the user wants to say it in other words.
+    """
+    if not brief.other:
+        return ""
+    click.echo(f"I am not sure what is meant:\n  1  {run.reading(brief)}\n  2  {run.other_reading(brief)}")
+    answer = _asked("1, 2, or an empty line to say it in other words> ")
+    return {"1": "", "2": brief.other}.get(answer)
 
 
 def _changed(screen: Screen) -> bool:

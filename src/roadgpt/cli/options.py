@@ -64,7 +64,7 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "What reads the description: model, grammar, chat, or plan (if it is a plan already).",
+    _run("--reader", "What reads the description: model, chat, or plan (if it is a plan already).",
          str, "model", guard=reader_guard),
     _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),

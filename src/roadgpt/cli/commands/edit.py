@@ -89,6 +89,7 @@ def edit_road(
     Raises:
         RoadGPTError: The request or the road cannot be used; nothing is written.
     """
+    from roadgpt.brief import SURE
     from roadgpt.drive.permission import check_named_driver, require_permission
     from roadgpt.run import Setup, prove
     from roadgpt.run.editing import folder_for, original_in, original_of, reject_used, write_edit
@@ -114,7 +115,8 @@ def edit_road(
     row = row_of(run, str(folder / test_name(1)), test_name(1))
     if screen.as_json:
         told = {"request": words, "of": before.path, "changes": made.changes, "unused": made.unused}
-        print(json.dumps({**told, **json.loads(row.to_json())}, ensure_ascii=False))
+        sure = {"confidence": made.confidence, "is_sure": made.confidence >= SURE}
+        print(json.dumps({**told, **sure, **json.loads(row.to_json())}, ensure_ascii=False))
         return place
     _print_edit(screen, made, row, place, pictures)
     return place
@@ -124,8 +126,13 @@ def _print_edit(
     screen: Screen, made: "Edited", row: Row, place: Path, pictures: "tuple[Format, ...]"
 ) -> None:
     """Prints what was changed, the row of the run, and where the run and its pictures are."""
+    from roadgpt.brief import SURE
+
     for sentence in made.changes:
         screen.say(sentence)
+    if made.confidence < SURE:
+        sure = f"{100 * made.confidence:.0f} % sure"
+        screen.say(f"perhaps not understood as meant ({sure}), so check it or say it in other words")
     if made.unused:
         screen.say("not understood: " + ", ".join(f"'{word}'" for word in made.unused))
     with screen:

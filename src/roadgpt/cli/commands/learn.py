@@ -14,7 +14,7 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.option import Argument, Option
 from roadgpt.cli.option_groups import CommandGroup
-from roadgpt.cli.option_types import PATH, folder, whole
+from roadgpt.cli.option_types import PATH, folder, measure, whole
 from roadgpt.errors import LearnError
 
 if TYPE_CHECKING:
@@ -28,8 +28,12 @@ EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 # fmt: off
 HAND = Option(
     "--hand",
-    "Folder with the hand-written training pairs: JSON lines in its folders train, validation and test.",
+    "Folder with hand-written descriptions: JSON lines in its folders train, contrasts, validation, ...",
     folder, Path("data/descriptions"),
+)
+CHANGES = Option(
+    "--changes", "Folder with hand-written change requests: JSON lines in its folder train.",
+    folder, Path("data/changes"),
 )
 OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
 CHECKPOINT = Argument("checkpoint", "CHECKPOINT", kind=folder)
@@ -39,19 +43,23 @@ OF_DATA = (
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_TRAIN = (
-    *(OUT, HAND),
+    *(OUT, HAND, CHANGES),
     Option("--weights", "Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.", folder),
     Option("--installed", "Start from the installed reader instead.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
+    Option("--decoder-layers", "Decoder layers: a multiple of the weights'.", whole(1, 24, "layers"), 3),
+    Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
+    Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
     Option("--own", "Folder with training pairs of your own, used in addition.", folder),
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_EXPORT = (
-    *(CHECKPOINT, OUT, HAND),
+    *(CHECKPOINT, OUT, HAND, CHANGES),
+    Option("--second", "Folder of another training run, whose network reads the same words.", folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
-    options.seed("Seed of the generated pairs in which words are counted.", 1),
+    options.seed("Seed of the chats.", 1),
 )
 OF_CHATS = (
     OUT,
@@ -62,7 +70,7 @@ OF_EVALUATE = (
     HAND,
     Option("--split", "Part of the hand-written pairs to evaluate on.", click.Choice(SPLITS), "validation"),
     Option("--reader names", "Reader to evaluate; repeat the option for more readers.",
-           default=("model", "grammar"), multiple=True),
+           default=("model",), multiple=True),
     Option("--misses", "Show this many descriptions that were misread.", whole(0, 10_000, "a number"), 0),
     Option("--card", "Write the model card of the first reader to this file.", PATH),
 )
@@ -111,7 +119,14 @@ def _generate(path: Path, number: int, seed: int, seen: set[str]) -> int:
 
 @command.command(params=[*OF_TRAIN])
 def train(
-    out: Path, hand: Path, weights: Path | None, installed: bool, own: Path | None, seed: int, **rest: Any
+    out: Path,
+    hand: Path,
+    changes: Path,
+    weights: Path | None,
+    installed: bool,
+    own: Path | None,
+    seed: int,
+    **rest: Any,
 ) -> None:
     """Train a reader, or continue from the checkpoint in the folder OUT.
 
@@ -133,6 +148,7 @@ def train(
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
     pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
+    pairs += [*_pairs_of(hand / "contrasts"), *_pairs_of(changes / "train", is_change=True)]
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
@@ -140,14 +156,21 @@ def train(
 
 
 @command.command(params=[*OF_EXPORT])
-def export(checkpoint: Path, out: Path, hand: Path, chats: int | None, seed: int) -> None:
+def export(
+    checkpoint: Path, out: Path, hand: Path, changes: Path, second: Path | None, chats: int | None, seed: int
+) -> None:
     """Write the reader of a CHECKPOINT folder, quantised to int8, into the folder OUT, ready for use."""
     try:
-        from roadgpt.learn.export import export_checkpoint
+        from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
+    from roadgpt.learn.filler_words import filler_words
 
-    export_checkpoint(checkpoint, out, _pairs_of(hand / "train"), _pairs_of(hand / "validation"), seed)
+    held_back = [*_pairs_of(hand / "validation"), *_pairs_of(hand / "contrasts_validation")]
+    held_back += _pairs_of(changes / "validation", is_change=True)
+    pairs = [*_pairs_of(hand / "train"), *_pairs_of(hand / "contrasts")]
+    fillers = filler_words([*pairs, *_pairs_of(changes / "train", is_change=True)])
+    export_checkpoints([checkpoint, *([second] if second else [])], out, held_back, fillers)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)
@@ -216,7 +239,7 @@ def _key(pair: "Pair") -> str:
     return " ".join(pair.text.lower().split())
 
 
-def _pairs_of(place: Path) -> "list[Pair]":
+def _pairs_of(place: Path, is_change: bool = False) -> "list[Pair]":
     """Returns the pairs of all files of a folder.
 
     Raises:
@@ -224,7 +247,7 @@ def _pairs_of(place: Path) -> "list[Pair]":
     """
     from roadgpt.learn.labels import read_pairs
 
-    found, problems = read_pairs(place.glob("*.jsonl"))
+    found, problems = read_pairs(place.glob("*.jsonl"), is_change)
     if problems:
         raise LearnError(f"{len(problems)} lines cannot be used, the first is {problems[0]}")
     if not found:

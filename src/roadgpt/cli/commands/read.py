@@ -70,10 +70,11 @@ def _readings(
 
 
 def _as_data(brief: "Brief", world: "World") -> dict[str, object]:
-    from roadgpt.brief import remarks, sentence
+    from roadgpt.brief import SURE, remarks, sentence
     from roadgpt.brief.plan import plan
 
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
+    told |= {"is_sure": brief.confidence >= SURE, "other": brief.other}
     map_size, friction = world.site.map_size, world.site.friction
     told |= {"map_size": map_size, "friction": friction, "remarks": remarks(brief, map_size, friction)}
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
@@ -81,7 +82,8 @@ def _as_data(brief: "Brief", world: "World") -> dict[str, object]:
 
 def _list(briefs: "Sequence[Brief]", as_table: bool) -> Iterator[str]:
     """Yields the likely readings with their chances, and a warning if none is sure."""
-    from roadgpt.cli.commands.run import SURE, reading
+    from roadgpt.brief import SURE
+    from roadgpt.cli.commands.run import reading
 
     likely = [brief for place, brief in enumerate(briefs) if not place or brief.confidence >= LEAST]
     whole = max(1.0, sum(brief.confidence for brief in likely))  # each is judged on its own; one is meant

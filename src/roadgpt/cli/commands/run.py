@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from roadgpt.run import Setup
     from roadgpt.run.folder import Draw
 
-SURE = 0.6  # confidence under which a reading is right less often than two times in three
 SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be typed again
 
 
@@ -101,15 +100,21 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
     return RunJob(words=words, world=world, setup=setup, pictures=pictures, **own)
 
 
-def usual_job(words: str, roads: int) -> RunJob:
+def usual_job(words: str, roads: int, is_plan: bool = False) -> RunJob:
     """Returns the job of ``roadgpt run`` without options: values are those of configuration files, or
     defaults.
+
+    Args:
+        words: the description, or a plan.
+        roads: the number of roads.
+        is_plan: whether the words are a plan.
 
     Raises:
         UsageError: A setting cannot be used.
     """
     parent = click.get_current_context(silent=True)
-    values = command.make_context("run", ["-n", str(roads), "--", words], parent).params
+    given = ["-n", str(roads), *(["--plan"] if is_plan else []), "--", words]
+    values = command.make_context("run", given, parent).params
     for name in ("words", "as_json", "quiet", "verbose"):
         values.pop(name)
     return _job_of(words, values)
@@ -163,13 +168,25 @@ def understood(brief: "Brief", world: "World | None" = None) -> str:
     The remarks say what does not fit on the map of the World, and whether its friction is that of the words.
     Without a World they say what a map of any size can hold.
     """
-    from roadgpt.brief import remarks
+    from roadgpt.brief import SURE, remarks
 
     map_size, friction = (world.site.map_size, world.site.friction) if world is not None else (inf, None)
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
-        told += f"; not sure of this ({100 * brief.confidence:.0f} %), so check it or say it in other words"
+        sure = f"{100 * brief.confidence:.0f} % sure"
+        told += f"; perhaps not understood as meant ({sure}), so check it or say it in other words"
+    if brief.other:
+        told += f"\nit could also mean: {other_reading(brief)}\n  (for that: --plan '{brief.other}')"
     return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size, friction))])
+
+
+def other_reading(brief: "Brief") -> str:
+    """Returns the second likeliest reading of a description as a text; the Brief must have one."""
+    from roadgpt.brief import sentence
+    from roadgpt.brief.plan import read_plan
+
+    said = sentence(read_plan(brief.other)).removesuffix(".")
+    return f"{said[:1].lower()}{said[1:]}"
 
 
 def reading(brief: "Brief") -> str:

@@ -32,6 +32,8 @@ class Edited(NamedTuple):
     changes: tuple[str, ...]
     unused: tuple[str, ...] = ()
     """Words of the request that were not understood."""
+    confidence: float = 1.0
+    """How often readings like that of the request were right, from 0 to 1."""
 
 
 def edit(
@@ -72,6 +74,7 @@ def edit(
             raise
     idle: tuple[Change, ...] = ()
     unused: tuple[str, ...] = ()
+    sure = 1.0
     if asks:
         model, said = chat or configured(), words if isinstance(words, str) else words.words
         road = edited_by_chat(
@@ -82,9 +85,10 @@ def edit(
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
     else:
         road, draft, idle = made(design, elements, found, changes, world, geometry)
-        unused = request.unused
+        unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
-    return Edited(road.design, (*told, *(f"'{change.words}' was so already" for change in idle)), unused)
+    told = (*told, *(f"'{change.words}' was so already" for change in idle))
+    return Edited(road.design, told, unused, sure)
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

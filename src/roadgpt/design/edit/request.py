@@ -143,3 +143,5 @@ class EditRequest:
     changes: tuple[Change, ...]
     unused: tuple[str, ...] = ()
     """Words of the request that were not understood."""
+    confidence: float = 1.0
+    """How often readings like this one were right, from 0 to 1."""

@@ -2,24 +2,24 @@
 milliseconds.
 
 Rules take the numbers out of the text before the network reads it, and insert them into the plan that the
-network writes. The decoding is constrained, so that the network can only write valid plans. The weights and
-their documentation are in ``weights/``.
+network writes. The decoding is constrained, so that the network can only write valid plans. A second network,
+trained beside the first, reads the same words; that they agree says much of whether they are right. The
+weights and their documentation are in ``weights/``.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
-from roadgpt.brief.readers.model.coverage import Coverage
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.network import Network
@@ -27,19 +27,41 @@ from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
+from roadgpt.brief.readers.model.used_words import passes_over_a_negation, unused_words
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.refusal import ADVICE, TooMuchError
+from roadgpt.brief.refusal import TooMuchError, refused
+from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
-from roadgpt.reading import read_json
+from roadgpt.reading import read_json, read_text
 
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 MOST_LETTERS = 2000
 ALMOST = 2.0  # difference of score
-NO_ROAD = "does not describe a road"
+DOUBT = 0.5
+"""The highest confidence of a reading that does not change without a "not"."""
+SECOND = "_2"
+"""What follows 'encoder' and 'decoder' in the names of the second network's files."""
 TOO_MUCH = (
     "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
 )
+
+
+class ChangeReading(NamedTuple):
+    """What the network reads in a change request."""
+
+    plan: str
+    """A plan of changes, or a refusal."""
+    confidence: float
+    unused: tuple[str, ...]
+    """Words that the plan does not depend on."""
+
+
+class Looks(NamedTuple):
+    """A reading, and what its confidence is computed from."""
+
+    plan: str
+    features: dict[str, float]
 
 
 class ModelReader:
@@ -81,8 +103,56 @@ class ModelReader:
 
     def _read(self, words: str) -> Brief:
         text = _text(words)
-        found = scored_plans(self._network, words, self._settings["refuse_from"])
-        return self._brief(words, text, _as_listed(found, text) or _consistent(found))
+        found = scored_plans(self.networks, words, self._settings["refuse_from"])
+        brief = self._brief(words, text, _as_listed(found, text) or _consistent(found))
+        return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
+
+    def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
+        """Returns what a change request asks for, as a plan.
+
+        Args:
+            words: the change request, up to 2,000 letters.
+            key: returns the normal form of a plan of changes, and raises an error if it cannot be read.
+
+        Raises:
+            BriefError: the network wrote no plan that can be read.
+        """
+        text = slotted(words, is_change=True)
+        found = scored_plans(self.networks, words, self._settings["refuse_from"], key=key)
+        if not found:
+            raise BriefError("this could not be read as changes; use shorter sentences")
+        near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
+        draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
+        if draft.is_refusal:
+            return ChangeReading(draft.line, self._confidence("changes", draft), ())
+        lost = _lost_numbers(draft, text)
+        unused = unused_words(self._network, text, draft.tokens, self._fillers)
+        sure = _doubted(self._confidence("changes", draft), unused)
+        return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
+
+    def looked_at(self, words: str, refuse_from: float) -> Looks | None:
+        """Returns the likeliest plan of a description and what its confidence is computed from; None if no
+        plan could be read.
+        """
+        text = slotted(words)
+        found = scored_plans(self.networks, words, refuse_from)
+        draft = (_as_listed(found, text) or _consistent(found)) if found else None
+        if draft is None:
+            return None
+        if draft.is_refusal:
+            return Looks(draft.line, {})
+        try:
+            brief = with_checked_counts(read_plan(draft.line), text)
+        except BriefError:
+            return None
+        return Looks(plan(normal(brief)), draft.features)
+
+    def looked_at_change(self, words: str, key: Callable[[str], str]) -> Looks | None:
+        """Returns the same of a change request."""
+        found = scored_plans(self.networks, words, 2.0, key=key)
+        if not found:
+            return None
+        return Looks(key(found[0].line), found[0].features)
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -125,12 +195,8 @@ class ModelReader:
 
     def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
         """Returns the error for a refusal; if the size of the map may be the reason, it carries the Brief."""
-        brief, reason = _by_rules(words) if why != "!nonsense" else (None, "")
-        if why == "!impossible":
-            brief = self._for_the_usual_map(words, text) or brief
-            if brief:
-                return TooMuchError(reason or TOO_MUCH, brief)
-        return BriefError(reason or ADVICE[why])
+        brief = self._for_the_usual_map(words, text) if why.startswith("!impossible") else None
+        return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 
     def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
         """Returns the Brief that is read if large numbers are replaced by ordinary ones.
@@ -141,45 +207,76 @@ class ModelReader:
         if as_usual.text == text:
             return None
         found = scored_plans(
-            self._network, words, self._settings["refuse_from"], lambda seen: with_ordinary_numbers(seen).text
+            self.networks, words, self._settings["refuse_from"], lambda seen: with_ordinary_numbers(seen).text
         )
         if not found or found[0].is_refusal:
             return None
         tokens = as_usual.restored(found[0].tokens)
         draft = replace(found[0], tokens=tokens, line=plan_of(tokens, text.slots))
         try:
-            return self._as_brief(words, text, draft)
+            return self._as_brief(words, text, draft, seen=(as_usual.text, found[0].tokens))
         except BriefError:
             return None
 
-    def _as_brief(self, words: str, text: SlottedText, draft: ScoredPlan) -> Brief:
+    def _as_brief(
+        self,
+        words: str,
+        text: SlottedText,
+        draft: ScoredPlan,
+        seen: tuple[SlottedText, Sequence[str]] | None = None,
+    ) -> Brief:
+        """Returns the Brief of a plan; ``seen`` is the text that the network read and the tokens that it
+        wrote, if they differ from these.
+        """
         try:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
             raise BriefError("this could not be read as one road; use shorter sentences") from error
-        unused = self._coverage.unused(text, draft.tokens)
-        sure = self._confidence(draft, len(unused))
-        return brief.model_copy(update={"words": words, "unused": unused, "confidence": sure})
+        unused = unused_words(self._network, *(seen or (text, draft.tokens)), self._fillers)
+        sure = _doubted(self._confidence("confidence", draft), unused)
+        found = {"words": words, "unused": unused, "confidence": sure}
+        return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
 
-    def _confidence(self, draft: ScoredPlan, unused: int) -> float:
-        """Returns how often readings like this one were right on held-back descriptions, from 0 to 1."""
-        weights = self._settings["confidence"]
-        features = {**draft.features, "unused": unused}
-        score = weights["bias"] + sum(weights.get(name, 0.0) * value for name, value in features.items())
+    def _confidence(self, name: str, draft: ScoredPlan) -> float:
+        """Returns how often readings like this one were right on held-back texts, from 0 to 1."""
+        weights = self._settings[name]
+        score = weights["bias"] + sum(weights[name] * value for name, value in draft.features.items())
         return round(float(1 / (1 + np.exp(-score))), 3)
 
     @cached_property
+    def networks(self) -> tuple[Network, ...]:
+        """The networks that read every text."""
+        names = ["", *([SECOND] if (self.folder / f"encoder{SECOND}.onnx").is_file() else [])]
+        return tuple(Network(self.folder, name) for name in names)
+
+    @property
     def _network(self) -> Network:
-        return Network(self.folder)
+        return self.networks[0]
 
     @cached_property
-    def _coverage(self) -> Coverage:
-        return Coverage.read(self.folder / "words.txt")
+    def _fillers(self) -> frozenset[str]:
+        return frozenset(read_text(self.folder / "words.txt").split("\n"))
 
     @cached_property
     def _settings(self) -> dict[str, Any]:
         settings: dict[str, Any] = read_json(self.folder / "settings.json")
         return settings
+
+
+def _doubted(confidence: float, unused: Sequence[str]) -> float:
+    """Returns the confidence, at most DOUBT if the reading passes over a negation."""
+    return min(confidence, DOUBT) if passes_over_a_negation(unused) else confidence
+
+
+def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
+    """Returns the small numbers of a change request that its plan does not have: places and counts."""
+    if draft.is_refusal:
+        return ()
+    return tuple(
+        word.written
+        for word in text.words
+        if word.written and word.text.isdecimal() and word.text not in (*draft.tokens, "1")
+    )
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
@@ -203,18 +300,16 @@ def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
     return found[0]
 
 
-def _by_rules(words: str) -> tuple[Brief | None, str]:
-    """Returns the Brief if the rules understand all of the words, and what is wrong with them on any map."""
-    from roadgpt.brief.readers.grammar import GrammarReader  # only refused descriptions need it
-
-    try:
-        brief = GrammarReader().read(words)
-        if brief.unused:
-            return None, ""
-        check(brief, map_size=None, min_radius=0.0)
-    except BriefError as error:
-        return None, "" if NO_ROAD in str(error) else str(error)
-    return brief, ""
+def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
+    """Returns the likeliest plan that asks for something else than the Brief; empty if there is none."""
+    said = normal(brief).model_copy(update={"beside": ()})
+    for draft in found:
+        if draft.is_refusal or not _can_be_kept(draft.line):
+            continue
+        line = plan(normal(read_plan(draft.line)).model_copy(update={"beside": ()}))
+        if line != plan(said):
+            return line
+    return ""
 
 
 def _can_be_kept(line: str) -> bool:

@@ -8,15 +8,18 @@ import re
 from dataclasses import dataclass
 
 ANGLE = re.compile(
-    r"kink|dog|leg|square|right.angle|angle|winkel|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
+    r"kink|dog|leg|square|right.angle|angle|wink|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
     r"|piega|quarter|decroch|recod|baionn|ninety|neunzig|quatre|noventa|novanta|forty|\d|unused"
+    r"|hairpin|switchback|haarnadel|kehre|epingle|lacet|horquilla|tornant"
 )
 MOUNTAIN = re.compile(
     r"mount|mont|berg|alp|pass|\bcol\b|puerto|gebirg|sierra|valico|dolomit|andes|pyren|serra|vette|cordill|himal"
+    r"|steep|steil|raide|pente|pentu|empinad|pendiente|pendenz|ripid|erto|erta|brusc"
 )
 HILLY = re.compile(
     r"hill|roll|undul|wave|wavy|up.{1,20}down|wellig|welle|hugel|auf.{1,6}ab|vallon|colin|coll|ond|saliscend|russ|coaster"
     r"|rise|climb|bosse|lomas|subid|dune|hump|crest|heav|hoch.*runter|vagues|vaux"
+    r"|flat|level|eben|flach|platt?|llan|plan|pian"
 )
 
 

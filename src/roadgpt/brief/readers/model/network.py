@@ -14,16 +14,19 @@ from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, REFUSALS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.errors import PartError
 from roadgpt.reading import read_text
 
 Array = npt.NDArray[np.float32]
+Numbers = npt.NDArray[np.int64]
 START = NUMBER_OF["<start>"]
 MOST_TOKENS = 90
 WIDTH = 4
 FAVOUR = 0.3
 """Exponent of the length normalisation: a plan's log-probability is divided by its length to this power."""
+LEAST = np.float32(-30)
+"""Log-probability below which differences say nothing."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
-LAYERS, HEADS, SIZE = 3, 6, 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,23 +50,71 @@ class WrittenPlan:
 class Network:
     """The trained network, which reads a description and writes plans."""
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
+    def __init__(self, folder: Path, name: str = "") -> None:
+        """Takes the folder of the weights, and what follows 'encoder' and 'decoder' in their names."""
+        self.folder, self.name = folder, name
         self.pieces = WordPieces(read_text(folder / "pieces.txt").split("\n"))
 
     @cached_property
     def _encoder(self) -> onnxruntime.InferenceSession:
-        return _session(self.folder / "encoder.onnx")
+        return _session(self.folder / f"encoder{self.name}.onnx")
 
     @cached_property
     def _decoder(self) -> onnxruntime.InferenceSession:
-        return _session(self.folder / "decoder.onnx")
+        session = _session(self.folder / f"decoder{self.name}.onnx")
+        known = session.get_outputs()[0].shape[1]
+        if known != len(TOKENS):
+            raise PartError(
+                f"the weights in {self.folder} know {known} words of plans, and this version has "
+                f"{len(TOKENS)}; export them again with: roadgpt learn export"
+            )
+        return session
 
     def encode(self, text: SlottedText) -> Array:
         """Returns the keys and values of a description, of shape (layers, 2, 1, heads, pieces, head size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out
+
+    def chances_of(
+        self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
+    ) -> tuple[Array, Array]:
+        """Returns how likely one plan is for several texts.
+
+        Args:
+            texts: variants of one text.
+            tokens: the plan.
+            allowed: the text whose plans are allowed.
+
+        Returns:
+            The log-probability of each token and of the end, of shape (texts, tokens + 1), and the difference
+            to the likeliest other token, of the same shape; it is below zero where another one is likelier.
+        """
+        rows = [self.pieces.encode(word.text for word in text.words)[0] for text in texts]
+        pieces = np.zeros((len(rows), max(map(len, rows))), dtype=np.int64)
+        for row, numbers in enumerate(rows):
+            pieces[row, : len(numbers)] = numbers
+        across = self._encoder.run(None, {"pieces": pieces})[0]
+        seen = np.where(pieces == 0, np.float32(-1e4), np.float32(0))[:, None, None, :]
+        own = np.repeat(_nothing(across[:, :, :1]), len(rows), axis=2)
+        writer: PlanAutomaton | None = Draft.of(allowed).writer
+        last = START
+        logs, leads = list[Array](), list[Array]()
+        for place, word in enumerate((*tokens, END)):
+            token = np.full((len(rows), 1), last)
+            scores, own = self._scored(token, place, own, across, seen)
+            last = NUMBER_OF[word]
+            if writer and last not in writer.allowed():  # a mirrored plan may have another order
+                writer = None
+            may = writer.allowed() if writer else range(len(TOKENS))
+            chances = np.stack([_log_chances(row, may) for row in scores])
+            logs.append(chances[:, last])
+            others = chances.copy()
+            others[:, last] = -np.inf
+            leads.append(chances[:, last] - np.maximum(others.max(axis=1), LEAST))
+            if writer:
+                writer.push(word)
+        return np.stack(logs, axis=1), np.stack(leads, axis=1)
 
     def write(
         self, across: Array, text: SlottedText, refuse_from: float = 0.5, width: int = WIDTH
@@ -78,7 +129,7 @@ class Network:
             width: number of plans that the beam search keeps at each step.
         """
         drafts, done = [Draft.of(text)], list[Draft]()
-        own, refusal = _nothing(), 0.0
+        own, refusal = _nothing(across), 0.0
         for place in range(MOST_TOKENS):
             scores, own = self._step(drafts, place, own, across)
             logs = np.stack(
@@ -113,7 +164,7 @@ class Network:
         """Returns a plan sampled token by token, more freely at a higher temperature; the plan is never a
         refusal.
         """
-        draft, own = Draft.of(text), _nothing()
+        draft, own = Draft.of(text), _nothing(across)
         for place in range(MOST_TOKENS):
             scores, own = self._step([draft], place, own, across)
             logs = _log_chances(scores[0], draft.writer.allowed())
@@ -126,13 +177,15 @@ class Network:
         return draft.written(0.0)
 
     def _step(self, drafts: "Sequence[Draft]", place: int, own: Array, across: Array) -> tuple[Array, Array]:
-        feed = {
-            "token": np.array([[draft.last] for draft in drafts]),
-            "place": np.array([place]),
-            "own": own,
-            "across": np.repeat(across, len(drafts), axis=2),
-            "seen": np.zeros((len(drafts), 1, 1, across.shape[4]), dtype=np.float32),
-        }
+        token = np.array([[draft.last] for draft in drafts])
+        seen = np.zeros((len(drafts), 1, 1, across.shape[4]), dtype=np.float32)
+        return self._scored(token, place, own, np.repeat(across, len(drafts), axis=2), seen)
+
+    def _scored(
+        self, token: Numbers, place: int, own: Array, across: Array, seen: Array
+    ) -> tuple[Array, Array]:
+        """Returns the scores of the next tokens, and ``own`` with the keys and values of these tokens."""
+        feed = {"token": token, "place": np.array([place]), "own": own, "across": across, "seen": seen}
         scores, kept = self._decoder.run(None, feed)
         return scores, kept
 
@@ -151,7 +204,7 @@ class Draft:
     def of(cls, text: SlottedText) -> "Draft":
         """Returns an empty plan for a description."""
         said = frozenset(word.text for word in text.words)
-        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text)))
+        return cls(PlanAutomaton(text.slots, said, Evidence.of(text.text), text.is_change))
 
     @property
     def score(self) -> float:
@@ -174,8 +227,10 @@ class Draft:
         return WrittenPlan(self.tokens, self.chances, refusal)
 
 
-def _nothing() -> Array:
-    return np.zeros((LAYERS, 2, 1, HEADS, 0, SIZE), dtype=np.float32)
+def _nothing(across: Array) -> Array:
+    """Returns the keys and values of a plan without tokens, for a network with these of the description."""
+    layers, _, _, heads, _, size = across.shape
+    return np.zeros((layers, 2, 1, heads, 0, size), dtype=np.float32)
 
 
 def _without(logs: Array, tokens: Sequence[int]) -> Array:

@@ -1,170 +1,306 @@
-"""Constrained decoding: the grammar of plans as an automaton, so that the model can only write valid plans.
+"""Constrained decoding: the grammar of plans, so that the model can only write plans that can be read.
 
 Modifiers have a fixed order, the one in which ``brief.plan`` prints them. A measured number is either a slot
-of the description with a suitable unit, or a number that a word implies ("right angle": 90).
+of the text with a suitable unit, or a number that a word implies ("right angle": 90).
 """
 
-from collections.abc import Sequence
-from copy import copy
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
+from roadgpt.brief.beside import BESIDE as NAMES
+from roadgpt.brief.plan import ROAD_KEYS
 from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import NumberSlot
+from roadgpt.brief.readers.model.token_grammar import (
+    Alternatives,
+    InOrder,
+    Later,
+    ListTail,
+    OneOf,
+    Sequel,
+    Stack,
+    Symbol,
+    allowed,
+    pushed,
+)
 from roadgpt.brief.readers.model.vocabulary import (
+    ALONE,
+    BESIDE,
     CLAUSE_KEYS,
+    ENDS_OF_ROAD,
+    FACTORS,
+    FIXED,
+    HALVES,
     KINDS,
-    MEASURES,
+    MEASURED,
+    NOUNS,
     NUMBER_OF,
+    PERCENTS,
     PLACES,
-    REFUSALS,
-    ROAD_KEYS,
+    POSITIONS,
     SHARPNESS,
     SIDES,
     SIZES,
     SLOPES,
     SLOT_TOKENS,
+    SUPERLATIVES,
     UNIT_OF,
 )
+from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 
-STRAIGHT_KINDS = frozenset({"straight", "crest", "dip"})
-CLAUSE_ORDER: list[list[str]] = [
-    ["x"],
-    SIDES,
-    SHARPNESS,
-    SIZES,
-    SLOPES,
-    ["alternating"],
-    *([k] for k in CLAUSE_KEYS),
-]
-ROAD_ORDER: list[list[str]] = [
-    SHARPNESS, SLOPES, ["alternating"], ["hard"],
-    *([key] for key in ROAD_KEYS), *([place] for place in PLACES),
-]  # fmt: skip
-UNSAID = {"deg=": ("15", "30", "45", "60", "90", "120", "180"), "steepest=": ("4",)}
+STRAIGHT_KINDS = ("straight", "crest", "dip")
+UNSAID = {"deg=": FIXED, "steepest=": ("4", "5"), "climb=": ("0",)}
 """Numbers that a plan may contain although they are not in the text, by plan key."""
+ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
+"""Numbers that a plan may contain whatever the text says: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 END = "<end>"
 MOST_CLAUSES = 20
+MOST_CHANGES = 8
+MOST_NAMES = 4
+MOST_NUMBERS = 8
+DEEPEST = 2
+"""How often a place of a change may contain another one: all but (the straight after (the first turn))."""
+WAYS = ("up", "down", "flat")
 
 
 class PlanAutomaton:
-    """The state of a plan that is being written token by token; knows which tokens may come next."""
+    """The state of a plan that is being written token by token; knows which tokens may come next.
+
+    Args:
+        slots: the numbers of the text.
+        said: the words of the text.
+        evidence: what numbers the words may imply; None allows all.
+        is_change: whether the text is a change request instead of a description.
+    """
 
     def __init__(
-        self, slots: Sequence[NumberSlot], said: frozenset[str], evidence: Evidence | None = None
+        self,
+        slots: Sequence[NumberSlot],
+        said: frozenset[str],
+        evidence: Evidence | None = None,
+        is_change: bool = False,
     ) -> None:
-        self.slots, self.said = slots, said
-        self.evidence = evidence or Evidence()
-        self.place = "start"  # start, kind, clause, road, done
-        self.kind = ""
-        self.rank = -1  # modifiers up to this rank have been passed
-        self.road_rank = -1
-        self.is_inside = False  # of starts( ) or ends( )
-        self.key = ""  # the key whose amount is being written
-        self.amount: list[str] = []
-        self.clauses = 0
+        numbers = Numbers(slots, said, evidence or Evidence())
+        whole = _change_request(numbers) if is_change else _description(numbers)
+        self._stack: Stack = (Alternatives((*_refusals(), whole)), OneOf((END,)))
 
     def copy(self) -> "PlanAutomaton":
         """Returns an independent copy in the same state."""
-        other = copy(self)
-        other.amount = list(self.amount)
+        other = object.__new__(PlanAutomaton)
+        other._stack = self._stack
         return other
 
     def allowed(self) -> list[int]:
         """Returns the indices of all tokens that may come next."""
-        return [NUMBER_OF[word] for word in dict.fromkeys(self._next())]
+        return [NUMBER_OF[word] for word in allowed(self._stack)]
 
     def push(self, word: str) -> None:
         """Advances the state by one token."""
-        if self.key and (word in ("..", "-") or word in SLOT_TOKENS or word in COUNTS or word.isdigit()):
-            self.amount.append(word)
-            return
-        self.key, self.amount = "", []
-        if word in REFUSALS or word == END:
-            self.place = "done"
-        elif word in KINDS:
-            self.place, self.kind, self.rank = "clause", word, -1
-            self.clauses += 1
-        elif word == ";":
-            self.place = "kind"
-        elif word == "|":
-            self.place, self.rank = "road", -1
-        elif word == ")":
-            self.place, self.rank, self.is_inside = "road", self.road_rank, False
-        elif word in PLACES:
-            self.road_rank = self._rank(word, ROAD_ORDER)
-            self.place, self.is_inside = "kind", True
-        else:
-            self.rank = self._rank(word, ROAD_ORDER if self.place == "road" else CLAUSE_ORDER)
-            if word == "x" or word.endswith("="):
-                self.key = word
+        self._stack = pushed(self._stack, word)
 
-    def _rank(self, word: str, order: list[list[str]]) -> int:
-        return next(rank for rank, mods in enumerate(order) if word in mods)
 
-    def _next(self) -> list[str]:
-        if self.place == "done":
-            return [END]
-        if self.place == "start":
-            return [*REFUSALS, *KINDS, "|"]
-        if self.place == "kind":
-            return list(KINDS)
-        if self.key:
-            more, is_whole = self._amounts()
-            return [*more, *(self._mods() if is_whole else [])]
-        return self._mods()
+@dataclass(frozen=True, slots=True)
+class Numbers:
+    """The numbers that a plan of one text may have."""
 
-    def _mods(self) -> list[str]:
-        if self.place == "road":
-            later = [word for mods in ROAD_ORDER[self.rank + 1 :] for word in mods if self._has_number(word)]
-            return [*later, END] if self.rank >= 0 else later
-        later = [word for mods in CLAUSE_ORDER[self.rank + 1 :] for word in mods if self._suits(word)]
-        return (
-            [*later, ")"]
-            if self.is_inside
-            else [*later, *([";"] if self.clauses < MOST_CLAUSES else []), "|", END]
-        )
+    slots: Sequence[NumberSlot]
+    said: frozenset[str]
+    evidence: Evidence
 
-    def _has_number(self, word: str) -> bool:
-        return not word.endswith("=") or bool(self._numbers(word))
-
-    def _suits(self, word: str) -> bool:
-        if not self._has_number(word):
-            return False
-        if self.kind in STRAIGHT_KINDS:
-            return word not in SIDES and word not in SHARPNESS and word not in ("alternating", "deg=", "r=")
-        return word not in SIZES
-
-    def _amounts(self) -> tuple[list[str], bool]:
-        """Returns what may follow inside an amount, and whether the amount is already complete."""
-        numbers, written = self._numbers(self.key), self.amount
-        if not written:
-            return ["..", *numbers, *(["-"] if self.key == "climb=" else [])], False
-        if written == ["-"]:
-            return numbers, False
-        if written == [".."]:
-            return numbers, False
-        if written[-1] == "..":
-            low = self._value(written[-2])
-            return [number for number in numbers if self._value(number) > low], True
-        is_range = ".." in written or written[0] == "-"
-        return ([] if is_range else [".."]), True
-
-    def _numbers(self, key: str) -> list[str]:
-        """Returns the numbers that a key can have in this description; a key without any is never written."""
-        fitting = [
-            SLOT_TOKENS[index]
-            for index, slot in enumerate(self.slots)
-            if slot.unit in ("", UNIT_OF.get(key, "")) and slot.unit != "kmh"
-        ]
+    def of(self, key: str) -> list[str]:
+        """Returns the numbers that a key can have; a key without any is never written."""
+        fitting = self._fitting(UNIT_OF.get(key, ""))
         if key == "hills=" and not self.evidence.hills:
             return [number for number in COUNTS if number in self.said]
-        if key not in MEASURES:
+        if key not in UNIT_OF:
             return [*COUNTS, *fitting]
-        is_meant = self.evidence.angles if key == "deg=" else self.evidence.mountains
-        unsaid = UNSAID.get(key, ()) if is_meant else ()
-        plain = [number for number in (*COUNTS, *UNSAID.get(key, ())) if number in self.said]
-        return [*fitting, *plain, *unsaid]
+        unsaid = UNSAID.get(key, ())
+        is_meant = {"deg=": self.evidence.angles, "steepest=": self.evidence.mountains}.get(key, True)
+        plain = [number for number in (*COUNTS, *unsaid) if number in self.said]
+        if key in ALWAYS:
+            unsaid = ALWAYS[key]
+        return [*dict.fromkeys([*fitting, *plain, *(unsaid if is_meant else ())])]
 
-    def _value(self, word: str) -> float:
+    def _fitting(self, unit: str) -> list[str]:
+        return [SLOT_TOKENS[index] for index, slot in enumerate(self.slots) if slot.unit in ("", unit)]
+
+    def percents(self) -> list[str]:
+        """Returns the numbers of the text that can be percentages."""
+        return self._fitting("percent")
+
+    def value(self, word: str) -> float:
+        """Returns the value of a number token."""
         return self.slots[SLOT_TOKENS.index(word)].value if word in SLOT_TOKENS else float(word)
+
+
+@dataclass(frozen=True, slots=True)
+class Keyed:
+    """A key and its amount: exact, at least, at most, or a range; nothing if no number suits the key."""
+
+    key: str
+    numbers: Numbers
+    may_be_empty: bool = False
+
+    def first(self) -> Iterable[str]:
+        """Returns the key if there are numbers for it."""
+        return [self.key] if self.numbers.of(self.key) else []
+
+    def after(self, token: str) -> tuple[Symbol, ...]:
+        """Returns the amount."""
+        return (AmountTokens(self.key, self.numbers),)
+
+
+@dataclass(frozen=True, slots=True)
+class AmountTokens:
+    """The number, bound or range behind a key; behind ``low``, the upper bound of a range."""
+
+    key: str
+    numbers: Numbers
+    low: str = ""
+    may_be_empty: bool = False
+
+    def first(self) -> Iterable[str]:
+        """Returns the numbers, and the signs with which an amount can begin."""
+        numbers = self.numbers.of(self.key)
+        if self.low:
+            low = self.numbers.value(self.low)
+            return [number for number in numbers if self.numbers.value(number) > low]
+        return ["..", *numbers, *(["-"] if self.key == "climb=" else [])]
+
+    def after(self, token: str) -> tuple[Symbol, ...]:
+        """Returns the rest of the amount."""
+        if self.low:
+            return ()
+        if token in ("..", "-"):
+            return (OneOf(self.numbers.of(self.key)),)
+        above = replace(self, low=token, may_be_empty=True)
+        return (Sequel(OneOf(("..",)), (above,), is_open=True),)
+
+
+def _refusals() -> tuple[Symbol, ...]:
+    clashing, beyond = OneOf(tuple(CLASHING), True), OneOf(tuple(OF_CAUSES["!impossible"]), True)
+    return (
+        OneOf(("!nonsense", "!unclear")),
+        Sequel(OneOf(("!contradiction",)), (clashing, clashing)),
+        Sequel(OneOf(("!impossible",)), (beyond, beyond)),
+    )
+
+
+def _description(numbers: Numbers) -> Symbol:
+    clause = _clause(numbers)
+    names = OneOf(sorted(NAMES))
+    beside = Sequel(OneOf(("beside(",)), (names, ListTail(",", names, MOST_NAMES - 1), OneOf((")",))))
+    placed = [Sequel(OneOf((place,)), (clause, OneOf((")",)))) for place in PLACES]
+    wishes = InOrder(
+        (
+            *(OneOf(words) for words in (SHARPNESS, SLOPES, ["alternating"], ["hard"])),
+            *(Keyed(f"{key}=", numbers) for key in ROAD_KEYS),
+            *placed,
+            beside,
+        ),
+        least=1,
+    )
+    whole = Sequel(OneOf(("|",)), (wishes,))
+    clauses = (ListTail(";", clause, MOST_CLAUSES - 1), replace(whole, is_open=True))
+    return Alternatives((whole, Sequel(clause, clauses)))
+
+
+def _clause(numbers: Numbers) -> Symbol:
+    turning = tuple(kind for kind in KINDS if kind not in STRAIGHT_KINDS)
+    count, keys = Keyed("x", numbers), {key: Keyed(key, numbers) for key in CLAUSE_KEYS}
+    straight = (count, OneOf(SIZES), OneOf(SLOPES), keys["len="], keys["pct="])
+    words = tuple(OneOf(words) for words in (SIDES, SHARPNESS, SLOPES, ["alternating"]))
+    return Alternatives(
+        (
+            Sequel(OneOf(STRAIGHT_KINDS), (InOrder(straight),)),
+            Sequel(OneOf(turning), (InOrder((count, *words, *keys.values())),)),
+        )
+    )
+
+
+def _change_request(numbers: Numbers) -> Symbol:
+    added = Sequel(OneOf(("add",)), (_new(numbers),))
+    change = Alternatives((added, Sequel(_place(numbers, DEEPEST), (OneOf((":",)), _wish(numbers)))))
+    return Sequel(change, (ListTail(";", change, MOST_CHANGES - 1),))
+
+
+def _place(numbers: Numbers, depth: int) -> Symbol:
+    whole, far = OneOf(COUNTS[1:]), OneOf(COUNTS[1:13])
+    number = Alternatives((whole, Sequel(OneOf(("-",)), (far,))))
+    parts: list[Symbol] = [
+        *(number for _ in range(MOST_NUMBERS)),
+        OneOf(("all",)),
+        OneOf(("middle",)),
+        OneOf(SUPERLATIVES),
+        Sequel(OneOf(("x",)), (far,)),
+        *(OneOf(words) for words in (SIDES, SHARPNESS, WAYS, SIZES)),
+        *(_exactly(key, numbers) for key in ("deg=", "len=")),
+        OneOf(HALVES),
+    ]
+    if depth:
+        inner = Later(lambda: _place(numbers, depth - 1))
+        parts += [_position(inner, POSITIONS), Sequel(OneOf(("but(",)), (inner, OneOf((")",))))]
+    return Sequel(OneOf((*dict.fromkeys([*NOUNS, *KINDS]),)), (InOrder(tuple(parts)),))
+
+
+def _position(inner: Symbol, ways: Sequence[str]) -> Symbol:
+    close = OneOf((")",))
+    single = tuple(way for way in ways if way != "between(")
+    return Alternatives(
+        (
+            OneOf(ENDS_OF_ROAD),
+            Sequel(OneOf(single), (inner, close)),
+            Sequel(OneOf(("between(",)), (inner, OneOf((",",)), inner, close)),
+        )
+    )
+
+
+def _exactly(key: str, numbers: Numbers) -> Symbol:
+    found = numbers.of(key)
+    behind = Alternatives((OneOf(found), Sequel(OneOf(("-",)), (OneOf(found),))))
+    return Sequel(OneOf((key,) if found else ()), (behind if key == "pct=" else OneOf(found),))
+
+
+def _wish(numbers: Numbers) -> Symbol:
+    measured = [Sequel(OneOf((name,)), (_value(name, numbers),)) for name in MEASURED if name != "slope"]
+    value = _value("slope", numbers)
+    way = Sequel(OneOf(WAYS), (_open(value),))
+    shape = InOrder((OneOf(tuple(kind for kind in KINDS if kind not in NOUNS)), OneOf(SHARPNESS)), least=1)
+    return Alternatives(
+        (
+            *measured,
+            Sequel(OneOf(("slope",)), (Alternatives((way, value)),)),
+            Sequel(OneOf(("side",)), (OneOf((*SIDES, "other")),)),
+            Sequel(OneOf(("shape",)), (shape,)),
+            OneOf(ALONE),
+        )
+    )
+
+
+def _open(symbol: Symbol) -> Symbol:
+    return InOrder((symbol,))
+
+
+def _value(name: str, numbers: Numbers) -> Symbol:
+    """Returns the ways to give a value: exactly, a bound, a difference, a factor, or more and less."""
+    found = OneOf(numbers.of(name))
+    some, percents = bool(found.tokens), OneOf(numbers.percents())
+    exact = [Sequel(OneOf((sign,)), (found,)) for sign in ("=", "..", "+", "-")] if some else []
+    shares = [Sequel(OneOf(tuple(PERCENTS)), (percents,))] if percents.tokens else []
+    factor = Sequel(OneOf(("x",)), (OneOf((*FACTORS, *numbers.percents())),))
+    doses = Sequel(OneOf(("slightly", "much")), (OneOf(("more", "less")),))
+    least = [Sequel(found, (OneOf(("..",)),))] if some else []
+    return Alternatives((*exact, *shares, factor, doses, OneOf(("more", "less")), *least))
+
+
+def _new(numbers: Numbers) -> Symbol:
+    parts: tuple[Symbol, ...] = (
+        Sequel(OneOf(("x",)), (OneOf(COUNTS[1:]),)),
+        *(OneOf(words) for words in (SIDES, SHARPNESS, WAYS)),
+        *(_exactly(key, numbers) for key in ("deg=", "len=", "r=", "pct=")),
+        OneOf(("whole",)),
+        _position(_place(numbers, DEEPEST - 1), BESIDE),
+    )
+    return Sequel(OneOf(KINDS), (InOrder(parts),))

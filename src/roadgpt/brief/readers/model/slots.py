@@ -44,6 +44,8 @@ SYMBOLS = str.maketrans({
     "¼": " 0.25 ", "≥": ">", "≤": "<", "…": ".", "\u00a0": " ", "+": " + ", ">": " > ", "<": " < ",
 })  # fmt: skip
 WORD = re.compile(r"\d+(?:[.,]\d+)*|[^\W\d_]+|[^\w\s]|_")
+CHANGE = "[unused13]"
+"""The mark in front of a change request, by which the model tells it from a description."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
@@ -77,9 +79,14 @@ class SlottedText:
         """The words as the model reads them, joined by spaces."""
         return " ".join(word.text for word in self.words)
 
+    @property
+    def is_change(self) -> bool:
+        """Whether the text is a change request."""
+        return self.words[:1] == (Word(CHANGE, ""),)
 
-def slotted(text: str) -> SlottedText:
-    """Returns the description with its numbers replaced by slots."""
+
+def slotted(text: str, is_change: bool = False) -> SlottedText:
+    """Returns a description, or a change request behind its mark, with its numbers replaced by slots."""
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)
@@ -90,7 +97,8 @@ def slotted(text: str) -> SlottedText:
     numbers = with_tolerances(numbers, tokens)
     for number in numbers:
         as_grade(number, tokens)
-    return _replaced(tokens, said, numbers)
+    found = _replaced(tokens, said, numbers)
+    return SlottedText((Word(CHANGE, ""), *found.words), found.slots) if is_change else found
 
 
 def slot_name(index: int) -> str:

@@ -8,6 +8,7 @@ skipped to save time.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import log
 
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
@@ -16,7 +17,7 @@ from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.network import Network, WrittenPlan
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
-from roadgpt.errors import BriefError
+from roadgpt.errors import RoadGPTError
 
 UNSEEN = 1.5
 """The score of a plan for a variant that did not produce this plan is the variant's lowest score minus
@@ -25,6 +26,8 @@ ENDS = " .!"
 SURE = -0.1
 """Log-probability of a whole plan above which the other variants are skipped. Of 943 descriptions held back
 from training, 781 reached it, and the other variants changed none of them."""
+LEAST_UNLIKELY = 0.03
+"""Keeps the logarithm of a certain plan finite."""
 UNDECIDED = (0.03, 0.97)
 """If the probability of a refusal lies between these values, the other variants are read as well."""
 
@@ -50,8 +53,15 @@ class ScoredPlan:
 
     @property
     def features(self) -> dict[str, float]:
-        """The inputs of the confidence model, by name."""
-        return {"all": sum(self.log_chances), "worst": min(self.log_chances), "agreement": self.agreement}
+        """The inputs of the confidence model, by name: how unlikely the plan and its unlikeliest token are,
+        on a logarithmic scale, and the agreement.
+        """
+        unlikely, worst = -sum(self.log_chances), -min(self.log_chances)
+        return {
+            "all": log(LEAST_UNLIKELY + max(unlikely, 0.0)),
+            "worst": log(LEAST_UNLIKELY + max(worst, 0.0)),
+            "agreement": self.agreement,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +78,11 @@ class VariantPlans:
         return min(score for score, _ in self.plans.values())
 
     @property
+    def best(self) -> str:
+        """The normal form of the likeliest plan."""
+        return max(self.plans, key=lambda key: self.plans[key][0])
+
+    @property
     def is_clear(self) -> bool:
         """True if the network is nearly certain whether to refuse the description and which plan is right."""
         if not self.plans or UNDECIDED[0] < self.refusal < UNDECIDED[1]:
@@ -77,35 +92,52 @@ class VariantPlans:
 
 
 def scored_plans(
-    network: Network,
+    networks: Sequence[Network],
     words: str,
     refuse_from: float,
     shown: Callable[[SlottedText], SlottedText] = lambda text: text,
+    key: Callable[[str], str] | None = None,
 ) -> tuple[ScoredPlan, ...]:
-    """Returns plans for a description, the likeliest first.
+    """Returns plans for a description or a change request, the likeliest first.
 
     Args:
-        network: writes the plans.
-        words: the description.
+        networks: write the plans.
+        words: the description or the change request.
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
         shown: function that is applied to the text before the network reads it, for example to replace
             unusual numbers.
+        key: returns the normal form of a plan of changes, and raises an error if it cannot be read; if it is
+            given, the words are a change request.
     """
-    text = shown(slotted(words))
-    variants = [_plans_of_variant(network, text, refuse_from, False)]
-    for other, is_mirrored in [] if variants[0].is_clear else _others(words):
-        variants.append(_plans_of_variant(network, shown(slotted(other)), refuse_from, is_mirrored))
+    is_change = key is not None
+    normal_form = key or _normal_form
+
+    def looks(words: str, is_mirrored: bool) -> list[VariantPlans]:
+        text = shown(slotted(words, is_change))
+        return [_plans_of_variant(each, text, refuse_from, is_mirrored, normal_form) for each in networks]
+
+    text = shown(slotted(words, is_change))
+    variants = looks(words, False)
+    for other, is_mirrored in [] if _are_clear(variants) else _others(words):
+        variants += looks(other, is_mirrored)
     variants = [variant for variant in variants if variant.plans]
     keys = dict.fromkeys(key for variant in variants for key in variant.plans)
     found = [_scored(key, variants, text) for key in keys]
     return tuple(sorted(found, key=lambda draft: -draft.score))
 
 
-def refusal(network: Network, words: str) -> float:
+def _are_clear(variants: Sequence[VariantPlans]) -> bool:
+    """True if all networks are nearly certain, of the same plan."""
+    return all(variant.is_clear for variant in variants) and len({v.best for v in variants}) == 1
+
+
+def refusal(networks: Sequence[Network], words: str) -> float:
     """Returns the mean probability of a refusal over all variants."""
-    chances = [_plans_of_variant(network, slotted(words), 2.0, False).refusal]
-    chances += [_plans_of_variant(network, slotted(other), 2.0, way).refusal for other, way in _others(words)]
+    chances: list[float] = []
+    for network in networks:
+        for variant in (words, *(other for other, _ in _others(words))):
+            chances.append(_plans_of_variant(network, slotted(variant), 2.0, False, _normal_form).refusal)
     return sum(chances) / len(chances)
 
 
@@ -118,34 +150,43 @@ def _others(words: str) -> list[tuple[str, bool]]:
 
 
 def _plans_of_variant(
-    network: Network, text: SlottedText, refuse_from: float, is_mirrored: bool
+    network: Network,
+    text: SlottedText,
+    refuse_from: float,
+    is_mirrored: bool,
+    normal_form: Callable[[str], str],
 ) -> VariantPlans:
     plans: dict[str, tuple[float, WrittenPlan]] = {}
     chance = 0.0
     for written in network.write(network.encode(text), text, refuse_from):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
-        seen = WrittenPlan(bounded(tokens, text), written.log_chances, written.refusal)
-        key = _key(seen.tokens, text)
+        tokens = tokens if text.is_change else bounded(tokens, text)
+        seen = WrittenPlan(tokens, written.log_chances, written.refusal)
+        key = _key(seen.tokens, text, normal_form)
         if key and (key not in plans or plans[key][0] < written.score):
             plans[key] = (written.score, seen)
     return VariantPlans(plans, chance)
 
 
-def _key(tokens: Sequence[str], text: SlottedText) -> str:
+def _key(tokens: Sequence[str], text: SlottedText, normal_form: Callable[[str], str]) -> str:
     """Returns the plan in normal form; empty if it cannot be read."""
     if tokens[0] in REFUSALS:
-        return tokens[0]
+        return " ".join(tokens)
     try:
-        return plan(normal(read_plan(plan_of(tokens, text.slots))))
-    except BriefError:
+        return normal_form(plan_of(tokens, text.slots))
+    except RoadGPTError:
         return ""
+
+
+def _normal_form(line: str) -> str:
+    return plan(normal(read_plan(line)))
 
 
 def _scored(key: str, variants: Sequence[VariantPlans], text: SlottedText) -> ScoredPlan:
     scores = [each.plans[key][0] if key in each.plans else each.least - UNSEEN for each in variants]
     _, best = max((each.plans[key] for each in variants if key in each.plans), key=lambda found: found[0])
     preferred = sum(max(each.plans, key=lambda other: each.plans[other][0]) == key for each in variants)
-    line = best.tokens[0] if best.tokens[0] in REFUSALS else plan_of(best.tokens, text.slots)
+    line = " ".join(best.tokens) if best.tokens[0] in REFUSALS else plan_of(best.tokens, text.slots)
     number = len(variants)
     return ScoredPlan(best.tokens, line, sum(scores) / number, best.log_chances, preferred / number)

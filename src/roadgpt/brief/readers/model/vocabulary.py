@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
 
-REFUSALS = ("!nonsense", "!contradiction", "!impossible")
+REFUSALS = ("!nonsense", "!contradiction", "!impossible", "!unclear")
 # The weights know these words by their positions, so the order here is fixed and differs from the Brief's.
 KINDS = [
     "straight",
@@ -33,26 +33,67 @@ SLOPES = ["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "stee
 CLAUSE_KEYS = ["deg=", "r=", "len=", "pct="]
 ROAD_KEYS = ["turns=", "lefts=", "rights=", "steepest=", "climb=", "hills=", "deg=", "r=", "len=", "pct="]
 PLACES = ["starts(", "ends("]
-FIXED = ("15", "30", "45", "60", "90", "120", "180")
+FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
-NUMBERS = [*(str(number) for number in range(LARGEST_SEEN + 1)), *(n for n in FIXED if int(n) > LARGEST_SEEN)]
+NUMBERS = [
+    *(str(number) for number in range(LARGEST_SEEN + 1)),
+    *(n for n in FIXED if int(n) > LARGEST_SEEN and n != "135"),
+]
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
 ENDS = ("<pad>", "<start>", "<end>")
-TOKENS: tuple[str, ...] = tuple(
-    dict.fromkeys(
-        [
-            *ENDS, *REFUSALS, ";", "|", ")", "..", "-", "x", *KINDS, *SIDES, *SHARPNESS, *SIZES, *SLOPES,
-            "alternating", "hard", *CLAUSE_KEYS, *ROAD_KEYS, *PLACES, *NUMBERS, *SLOT_TOKENS,
-        ]
-    )
+OLDEST = [
+    *ENDS, "!nonsense", "!contradiction", "!impossible", ";", "|", ")", "..", "-", "x", *KINDS, *SIDES,
+    *SHARPNESS, *SIZES, *SLOPES, "alternating", "hard", *CLAUSE_KEYS, *ROAD_KEYS, *PLACES, *NUMBERS,
+    *SLOT_TOKENS,
+]  # fmt: skip
+CAUSES = [
+    "turns", "sides", "order", "sharpness", "degrees", "radius", "slope", "steepness", "climb", "length",
+    "grade", "loop", "junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "bridge",
+    "tunnel",
+    "railway_crossing", "zebra_crossing", "parking", "bus_stop", "roadworks", "traffic_light", "sign",
+    "speed_bump", "pothole", "kerb", "guardrail", "obstacle", "traffic", "pedestrian", "cyclist", "animal",
+    "rain", "fog", "snowfall", "wind", "night", "sun", "trees", "buildings", "water", "landscape", "gravel",
+    "cobbles", "size", "place", "compared", "alike", "wet", "snow", "ice", "lanes", "lane_width", "bank",
+    "speed",
+]  # fmt: skip
+"""Causes of refusals, and names of what is beside the road, in the order in which the weights know them."""
+NOUNS = ["turn", "straight", "start", "end", "road"]
+SUPERLATIVES = ["longest", "shortest", "sharpest", "gentlest", "steepest", "flattest"]
+HALVES = ["half1", "half2"]
+BESIDE = ["after(", "before(", "between(", "on("]
+POSITIONS = [*BESIDE, "from(", "up_to("]
+ENDS_OF_ROAD = ["at_start", "at_end", "at_middle"]
+MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent"}
+"""The wishes of a change that have a value, with its unit."""
+ALONE = ["straighten", "remove", "mirror", "alternate"]
+FACTORS = (
+    "-1", "0.1", "0.2", "0.25", "0.3", "0.333", "0.4", "0.5", "0.6", "0.667", "0.7", "0.75", "0.8", "0.9",
+    "1.1", "1.2", "1.25", "1.333", "1.5", "1.75", "2", "2.5", "3", "4",
 )  # fmt: skip
+"""The factors that words imply without a number: "a third longer"."""
+PERCENTS = ["x+", "x-", "x%"]
+"""Introduce a factor that the text gives in percent: more by, less by, to."""
+CHANGES = [
+    "!unclear", *CAUSES, "beside(", ",", "add", ":", *NOUNS, "all", "middle", *SUPERLATIVES, *HALVES,
+    *POSITIONS, *ENDS_OF_ROAD, "but(", *MEASURED, "side", "other", "shape", *ALONE, "=", "+", *PERCENTS,
+    "slightly", "much", "more", "less", "whole", *FACTORS, "135", "turning=",
+]  # fmt: skip
+TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
+"""All tokens; the weights know them by their positions, so new ones stand at the end."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
-PIECE = re.compile(r"![a-z]+|starts\(|ends\(|[a-z_]+=|x(?=[\d.])|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|)]")
-MEASURES = frozenset({"deg=", "r=", "len=", "pct=", "steepest=", "climb="})
+PIECE = re.compile(
+    r"![a-z]+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
+)
+LISTED = re.compile(r",(?=\s*-?\d)")
+"""A comma between numbers of a list, which is no token: the numbers follow each other."""
+NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 UNIT_OF = {
     "deg=": "degrees", "r=": "metres", "len=": "metres", "climb=": "metres",
-    "pct=": "percent", "steepest=": "percent",
+    "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
 }  # fmt: skip
+"""The unit of the number behind a key; other numbers are counts."""
+CLOSE = 0.0051
+"""Largest difference of a factor from the number of the text that it is taken for."""
 
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
@@ -62,24 +103,46 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
     out: list[str] = []
     key = ""
     taken: set[int] = set()
-    for piece in PIECE.findall(plan):
-        if piece.endswith("=") or piece == "x":
-            key = piece
-        if re.fullmatch(r"-?\d+(?:\.\d+)?", piece):
-            found = _number_tokens(piece, key, slots, taken)
+    for piece in PIECE.findall(LISTED.sub(" ", plan)):
+        if NUMERIC.fullmatch(piece):
+            if out[-1] == "x" and key in MEASURED:
+                found = _factor_tokens(float(piece), slots)
+                out.pop()
+            else:
+                is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
+                found = _number_tokens(piece, "" if is_count else key, slots, taken)
             if found is None:
                 return None
             out += found
-        else:
-            out.append(piece)
+            continue
+        if (piece.endswith("=") and len(piece) > 1) or piece in MEASURED:
+            key = piece
+        elif piece not in ("..", "=", "+", "-", "x", *SLOPES):
+            key = ""
+        out.append(piece)
     return out
+
+
+def _factor_tokens(factor: float, slots: Sequence[NumberSlot]) -> list[str] | None:
+    """Returns the tokens of a factor: a percentage of the text, a number of the text, or a usual factor."""
+    for index, slot in enumerate(slots):
+        if slot.unit in ("percent", ""):
+            share = slot.value / 100
+            ways = {"x+": 1 + share, "x-": 1 - share, "x%": share}
+            near = next((way for way, value in ways.items() if abs(value - factor) < CLOSE), None)
+            if near and (slot.unit or slot.value > 4):
+                return [near, SLOT_TOKENS[index]]
+        if not slot.unit and abs(slot.value - factor) < CLOSE:
+            return ["x", SLOT_TOKENS[index]]
+    usual = next((word for word in FACTORS if abs(float(word) - factor) < CLOSE), None)
+    return ["x", usual] if usual else None
 
 
 def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set[int]) -> list[str] | None:
     sign, digits = (["-"], piece[1:]) if piece.startswith("-") else ([], piece)
     value = float(digits)
     fits = [index for index, slot in enumerate(slots) if abs(slot.value - value) < 0.051]
-    if key in MEASURES:
+    if key in UNIT_OF:
         same_unit = [index for index in fits if slots[index].unit == UNIT_OF[key]]
         bare = [index for index in fits if not slots[index].unit]
         fits = same_unit or bare
@@ -89,22 +152,40 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
     if fits:
         taken.add((free or fits)[0])
         return [*sign, SLOT_TOKENS[(free or fits)[0]]]
-    return [*sign, digits] if digits in NUMBER_OF else None
+    return [*sign, digits] if digits in (*NUMBERS, "135") else None
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
     """Returns the plan that the tokens represent, with the values of the slots filled in."""
     out: list[str] = []
     for word in tokens:
-        if word in SLOT_TOKENS:
-            index = SLOT_TOKENS.index(word)
-            out.append(f"{slots[index].value:.1f}".rstrip("0").rstrip(".") if index < len(slots) else "0")
-        elif word in (";", "|", ")"):
+        value = slots[SLOT_TOKENS.index(word)].value if _is_filled(word, slots) else 0.0
+        percent = out[-1] if out and out[-1] in PERCENTS else ""
+        if percent:
+            share = value / 100
+            out[-1:] = ["x", _plain({"x+": 1 + share, "x-": 1 - share, "x%": share}[percent], 4)]
+        elif word in SLOT_TOKENS:
+            out.append(_plain(value, 1))
+        elif word in (";", "|", ")", ","):
             out.append(word + " ")
         else:
             out.append(word)
     text = ""
     for word in out:
-        follows = text.endswith(("=", "(", "-", " x")) or (text.endswith("..") and word[0].isdigit())
-        text += word if follows or word == ".." or word[0] in ";)" else f" {word}"
+        # a minus or an equals sign behind a blank is that of a change, and holds the number as well
+        follows = text.endswith(("=", "(", "-", "+", " x")) or (
+            text.endswith("..") and (word[0].isdigit() or word == "-")
+        )
+        is_bound = word == ".." and text[-1:].isdigit()
+        if text[-1:].isdigit() and (word.isdigit() or word == "-"):
+            text += ","  # numbers of a list
+        text += word if follows or is_bound or word[0] in ";),:" else f" {word}"
     return re.sub(r"\s+", " ", text).strip()
+
+
+def _is_filled(word: str, slots: Sequence[NumberSlot]) -> bool:
+    return word in SLOT_TOKENS and SLOT_TOKENS.index(word) < len(slots)
+
+
+def _plain(value: float, digits: int) -> str:
+    return f"{value:.{digits}f}".rstrip("0").rstrip(".")

@@ -1,0 +1,94 @@
+"""Finds the words of a text that its plan does not depend on: the plan stays the likeliest without them.
+
+Each content word is left out in turn, and the network says how likely the same plan is for what remains. A
+word that changes nothing was not used, which the user is told; function words are not tried.
+"""
+
+from collections.abc import Collection, Sequence
+
+from roadgpt.brief.readers.model.network import Network
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.slots import SlottedText, Word
+from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.brief.readers.model.word_set import word_set
+
+NOTICED = 0.02
+"""Loss of log-probability from which a word counts as used although the plan stays the likeliest."""
+NEGATORS = word_set(
+    "not no nor never none without neither nothing nowhere don dont doesn isn shouldn cannot only except",
+    "nicht kein keine keinen keiner nie weder ohne nur ausser ne pas sans ni aucun aucune jamais rien",
+    "seulement sauf non senza mai nessun nessuna nessuno solo soltanto tranne salvo sin ningun ninguna nunca",
+    "nada excepto",
+)
+"""Words that deny or limit: a reading that does not change without them has passed over them."""
+SHORTEST = 3  # letters; shorter words are function words in all five languages
+MOST_WORDS = 60
+"""The largest number of words that are tried."""
+
+
+def unused_words(
+    network: Network, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
+) -> tuple[str, ...]:
+    """Returns the words that the plan does not depend on, in their spelling, each once and in text order.
+
+    Args:
+        network: wrote the plan.
+        text: the description or change request.
+        tokens: its plan.
+        fillers: words that are not tried.
+    """
+    idle = _idle(network, text, tokens, fillers)
+    out: list[str] = []
+    slot = 0
+    for place, word in enumerate(text.words):
+        if word.text.startswith("[unused") and word.written:
+            if slot < len(text.slots) and SLOT_TOKENS[slot] not in tokens:
+                out.append(word.written)
+            slot += 1
+        elif place in idle:
+            out.append(word.written)
+    return tuple(dict.fromkeys(out))
+
+
+def passes_over_a_negation(unused: Sequence[str]) -> bool:
+    """True if a word that denies or limits is among those that the plan does not depend on."""
+    return any(plain(word) in NEGATORS for word in unused)
+
+
+def _idle(
+    network: Network, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
+) -> frozenset[int]:
+    """Returns the places of the words that the plan does not depend on.
+
+    Words that say the same twice ("uphill, climbing all the way") can each be left out, but not both. Of such
+    words, those that bring the plan back alone count as used.
+    """
+    tried = [place for place, word in enumerate(text.words) if _is_content(word, fillers)][:MOST_WORDS]
+    kept = _are_kept(network, text, tokens, [{place} for place in tried])
+    idle = [place for place, is_kept in zip(tried, kept, strict=True) if is_kept]
+    if len(idle) < 2 or all(_are_kept(network, text, tokens, [{*idle}])):
+        return frozenset(idle)
+    restored = _are_kept(network, text, tokens, [{*idle} - {place} for place in idle])
+    return frozenset(place for place, is_back in zip(idle, restored, strict=True) if not is_back)
+
+
+def _are_kept(
+    network: Network, text: SlottedText, tokens: Sequence[str], left_out: Sequence[Collection[int]]
+) -> list[bool]:
+    """Returns for each set of places whether the plan stays the likeliest without the words there."""
+    if not left_out:
+        return []
+    texts = [
+        SlottedText(tuple(w for place, w in enumerate(text.words) if place not in places), text.slots)
+        for places in left_out
+    ]
+    logs, leads = network.chances_of([text, *texts], tokens, text)
+    lost = logs[0].sum() - logs[1:].sum(axis=1)
+    return [bool(one) for one in (leads[1:] >= 0).all(axis=1) & (lost <= NOTICED)]
+
+
+def _is_content(word: Word, fillers: frozenset[str]) -> bool:
+    if not word.written or word.text in fillers or word.text.startswith("["):
+        return False
+    is_long = len(word.text) >= SHORTEST or not word.text.isascii()  # a single Chinese character is a word
+    return word.text.isdecimal() or (word.text.isalpha() and is_long)

@@ -1,0 +1,61 @@
+"""Which words a plan does not depend on, with a network whose mind is known."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from roadgpt.brief.readers.model import used_words
+from roadgpt.brief.readers.model.slots import SlottedText, slotted
+from roadgpt.brief.readers.model.used_words import passes_over_a_negation, unused_words
+
+FILLERS = frozenset(("a", "road", "with", "and", "the"))
+REASONS = {"up": {"uphill", "climbing"}, "turn": {"turns", "bends"}, "3": {"3"}}
+"""The words of which one is enough for a token."""
+
+
+class Mind:
+    """A stand-in for the network: a token is likely if a word for it is there."""
+
+    def chances_of(
+        self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
+    ) -> tuple[np.ndarray, np.ndarray]:
+        rows = []
+        for text in texts:
+            said = {word.text for word in text.words}
+            rows.append([-0.1 if REASONS.get(token, said) & said else -3.0 for token in (*tokens, "<end>")])
+        logs = np.array(rows)
+        return logs, np.where(logs > -1, 2.0, -2.0)
+
+
+def idle(words: str, *tokens: str) -> tuple[str, ...]:
+    return unused_words(Mind(), slotted(words), tokens, FILLERS)  # type: ignore[arg-type]
+
+
+def test_a_word_counts_as_used_only_if_the_reading_changes_without_it() -> None:
+    assert idle("an Uphill road with three purple turns", "turn", "3", "up") == ("purple",)
+    assert idle("three turns", "turn", "3") == ()
+
+
+def test_of_two_words_that_say_the_same_both_count_as_used() -> None:
+    assert idle("uphill, climbing, three turns", "turn", "3", "up") == ()
+    assert idle("uphill, climbing, lonely, three turns", "turn", "3", "up") == ("lonely",)
+
+
+def test_each_word_is_named_once_and_fillers_never() -> None:
+    assert idle("purple turns and purple bends with the road", "turn") == ("purple",)
+
+
+def test_a_number_that_the_plan_does_not_copy_is_named() -> None:
+    words = "three turns in 60 m"
+    assert idle(words, "turn", "3") == ("60 m",)
+    assert idle(words, "turn", "3", "[1]") == ()
+
+
+def test_long_texts_are_tried_up_to_a_limit() -> None:
+    many = " ".join(f"word{chr(97 + n // 26)}{chr(97 + n % 26)}" for n in range(used_words.MOST_WORDS + 5))
+    assert len(idle(f"turns {many}", "turn")) == used_words.MOST_WORDS - 1
+
+
+def test_a_negation_that_changes_nothing_is_noticed() -> None:
+    assert passes_over_a_negation(("Nicht", "purple"))
+    assert not passes_over_a_negation(("purple", "turns"))
