@@ -4,6 +4,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
 
+from roadgpt.errors import LearnError  # noqa: E402
 from roadgpt.learn.growing import decoder_layers, grown  # noqa: E402
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork  # noqa: E402
 
@@ -28,7 +29,7 @@ def test_more_layers_and_tokens_change_no_score_of_an_old_token() -> None:
 def test_a_network_does_not_shrink() -> None:
     weights = ReaderNetwork(SMALL).state_dict()
     for tokens, layers in ((8, 2), (9, 1), (9, 3)):
-        with pytest.raises(ValueError, match="cannot grow"):
+        with pytest.raises(LearnError, match="cannot grow"):
             grown(weights, tokens, layers)
 
 

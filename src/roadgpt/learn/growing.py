@@ -10,6 +10,8 @@ from collections.abc import Mapping
 import torch
 from torch import Tensor
 
+from roadgpt.errors import LearnError
+
 LAYER = re.compile(r"decoder\.(\d+)\.(.+)")
 SILENT = ("own.out.", "across.out.", "narrow.")
 """The outputs of a decoder layer: those that are zero in a new one."""
@@ -31,12 +33,15 @@ def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0
         seed: seed of the new tokens' embeddings.
 
     Raises:
-        ValueError: the new network is smaller, or its number of layers is no multiple.
+        LearnError: the new network is smaller, or its number of layers is no multiple.
     """
     present, old = decoder_layers(weights), weights["bias"].shape[0]
     times, rest = divmod(layers, present)
     if rest or not times or tokens < old:
-        raise ValueError(f"{present} decoder layers and {old} tokens cannot grow to {layers} and {tokens}")
+        raise LearnError(
+            f"{present} decoder layers and {old} tokens cannot grow to {layers} and {tokens}; give a "
+            f"multiple of {present} with --decoder-layers"
+        )
     out: dict[str, Tensor] = {}
     for name, value in weights.items():
         match = LAYER.match(name)

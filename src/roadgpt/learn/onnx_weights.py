@@ -13,10 +13,14 @@ OURS = "reader."
 """Prefix of the names of the reader's own weights in the ONNX graphs."""
 
 
-def exported_weights(folder: Path) -> dict[str, Floats]:
+def exported_weights(folder: Path, ending: str = "") -> dict[str, Floats]:
     """Returns the weights by their parameter names in ``roadgpt.learn.network.ReaderNetwork``.
 
     Weights that were exported in int8 keep the rounding of int8.
+
+    Args:
+        folder: the folder of an exported reader.
+        ending: what follows "encoder" and "decoder" in the names of the network's files.
 
     Raises:
         LearnError: the folder has no exported reader.
@@ -25,7 +29,7 @@ def exported_weights(folder: Path) -> dict[str, Floats]:
 
     found: dict[str, Floats] = {}
     for name in ("encoder", "decoder"):
-        path = folder / f"{name}.onnx"
+        path = folder / f"{name}{ending}.onnx"
         if not path.is_file():
             raise LearnError(f"there is no {path.name} in {folder}; give the folder of an exported reader")
         found |= _weights_of(load(str(path)).graph)

@@ -16,7 +16,7 @@ from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import Numbers, batches, examples
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.growing import grown
+from roadgpt.learn.growing import decoder_layers, grown
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
 from roadgpt.learn.onnx_weights import exported_weights
 
@@ -41,7 +41,12 @@ class TrainingSettings:
     """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
     zero.
     """
-    decoder_layers: int = 3
+    decoder_layers: int | None = None
+    """Decoder layers: a multiple of those of the weights; None for as many as they have, or 3 in a new
+    network.
+    """
+    ending: str = ""
+    """What follows 'encoder' and 'decoder' in the files of the exported network to start from."""
     seed: int = 1
     save_every: int = 100
     workers: int = 1
@@ -77,18 +82,11 @@ def train(
     folder.mkdir(parents=True, exist_ok=True)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     torch.manual_seed(plan.seed)
-    layers = plan.decoder_layers
-    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
     checkpoint = folder / "checkpoint.pt"
     state: dict[str, Any] = {}
     if checkpoint.exists():
         state = torch.load(checkpoint, map_location="cpu", weights_only=True)
-        reader.load_state_dict(state["reader"])
-    elif weights and weights.is_dir():
-        found = {name: torch.from_numpy(array) for name, array in exported_weights(weights).items()}
-        reader.load_state_dict(grown(found, len(TOKENS), layers, plan.seed))
-    elif weights:
-        load_minilm(reader, weights, pieces)
+    reader = _started(state.get("reader"), weights, pieces, plan)
     reader.to(device)
     optimiser = _optimiser(reader, plan)
     if state:
@@ -110,6 +108,23 @@ def train(
                 average(folder, reader, plan, step + 1, check)
             if plan.rank == 0:
                 _save(checkpoint, reader, optimiser, step + 1)
+    return reader
+
+
+def _started(
+    kept: dict[str, torch.Tensor] | None, weights: Path | None, pieces: Sequence[str], plan: TrainingSettings
+) -> ReaderNetwork:
+    """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM."""
+    if kept is None and weights and weights.is_dir():
+        exported = exported_weights(weights, plan.ending)
+        kept = {name: torch.from_numpy(array) for name, array in exported.items()}
+        kept = grown(kept, len(TOKENS), plan.decoder_layers or decoder_layers(kept), plan.seed)
+    layers = decoder_layers(kept) if kept else plan.decoder_layers or NetworkSizes().decoder_layers
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
+    if kept:
+        reader.load_state_dict(kept)
+    elif weights:
+        load_minilm(reader, weights, pieces)
     return reader
 
 

@@ -48,7 +48,8 @@ OF_TRAIN = (
     Option("--installed", "Start from the installed reader instead.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
-    Option("--decoder-layers", "Decoder layers: a multiple of the weights'.", whole(1, 24, "layers"), 3),
+    Option("--second", "Start from the second network of the installed reader.", bool),
+    Option("--decoder-layers", "Decoder layers: a multiple of the weights'.", whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
@@ -124,6 +125,7 @@ def train(
     changes: Path,
     weights: Path | None,
     installed: bool,
+    second: bool,
     own: Path | None,
     seed: int,
     **rest: Any,
@@ -141,10 +143,11 @@ def train(
         from roadgpt.learn.train import TrainingSettings
     except ImportError as error:
         raise LearnError(EXTRA) from error
-    from roadgpt.brief.readers.model import WEIGHTS
+    from roadgpt.brief.readers.model import SECOND, WEIGHTS
     from roadgpt.learn.back_labelling import measured_pairs
     from roadgpt.learn.pretrained import begin
 
+    installed |= second
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
     pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
@@ -152,7 +155,14 @@ def train(
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
-    train_together(out, pieces, start, pairs, TrainingSettings(seed=seed, **rest), click.echo)
+    train_together(
+        out,
+        pieces,
+        start,
+        pairs,
+        TrainingSettings(seed=seed, ending=SECOND if second else "", **rest),
+        click.echo,
+    )
 
 
 @command.command(params=[*OF_EXPORT])
