@@ -58,4 +58,6 @@ def test_long_texts_are_tried_up_to_a_limit() -> None:
 
 def test_a_negation_that_changes_nothing_is_noticed() -> None:
     assert passes_over_a_negation(("Nicht", "purple"))
+    assert passes_over_a_negation(idle("don't turns", "turn"))
+    assert idle("don't turns", "turn") == ("don't",)
     assert not passes_over_a_negation(("purple", "turns"))

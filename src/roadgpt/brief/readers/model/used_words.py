@@ -46,13 +46,14 @@ def unused_words(
                 out.append(word.written)
             slot += 1
         elif place in idle:
-            out.append(word.written)
+            is_short = [each.text for each in text.words[place + 1 : place + 3]] == ["'", "t"]
+            out.append(f"{word.written}'t" if is_short else word.written)
     return tuple(dict.fromkeys(out))
 
 
 def passes_over_a_negation(unused: Sequence[str]) -> bool:
     """True if a word that denies or limits is among those that the plan does not depend on."""
-    return any(plain(word) in NEGATORS for word in unused)
+    return any(plain(word.removesuffix("'t")) in NEGATORS for word in unused)
 
 
 def _idle(
