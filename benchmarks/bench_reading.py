@@ -20,14 +20,17 @@ from roadgpt import check
 from roadgpt.brief import check as check_brief
 from roadgpt.brief import read, reader_of
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model import ModelReader
 from roadgpt.design import draft
 from roadgpt.errors import DesignError
+from roadgpt.learn.calibrate import normal_change
 from roadgpt.learn.evaluate import HEAD, readings, score
 from roadgpt.learn.labels import read_pairs
 from roadgpt.road import Design, World, build
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"
-SPLITS = ("validation", "test", "exam")
+CHANGES = HAND.parent / "changes" / "validation"
+SPLITS = ("validation", "contrasts_validation", "test", "exam")
 READERS = ("model",)
 PROMPTS = (
     "a road",
@@ -61,6 +64,7 @@ print(f"imported, loaded and read once in {loaded:.2f} s; "
 def main(roads: int = 1000) -> None:
     """All tables, one after another."""
     _scores()
+    _changes()
     _validity(roads)
     _cost()
 
@@ -78,6 +82,20 @@ def _scores() -> None:
                 return brief
 
             print(score(readings(pairs, asked if split == "exam" else reader.read)).row(f"{name}, {split}"))
+
+
+def _changes() -> None:
+    """Change requests that are read as labelled: the same changes, or refused for the same kind of reason."""
+    pairs, _ = read_pairs(CHANGES.glob("*.jsonl"), is_change=True)
+    reader = ModelReader()
+    right = 0
+    for pair in pairs:
+        got = reader.read_change(pair.text, normal_change).plan
+        if got.startswith("!") or pair.plan.startswith("!"):
+            right += got.split()[0] == pair.plan.split()[0]
+        else:
+            right += normal_change(got) == normal_change(pair.plan)
+    print(f"change requests of the validation split read as labelled: {right} of {len(pairs)}")
 
 
 def _validity(roads: int) -> None:
