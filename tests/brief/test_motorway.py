@@ -162,3 +162,8 @@ def test_enough_motorways_differ() -> None:
     except DesignError as error:
         pytest.fail(str(error))
     assert len({tuple(design.segments) for design in roads}) == 12
+
+
+def test_a_text_without_a_word_says_no_motorway() -> None:
+    assert not says_motorway("5")
+    assert not read("5").motorway  # a number alone was a crash

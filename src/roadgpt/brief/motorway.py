@@ -14,6 +14,7 @@ m, grades up to 4, 4.5, 4.5 and 6 percent.
 import re
 import unicodedata
 from collections.abc import Iterator
+from itertools import pairwise
 from math import ceil, radians
 
 from roadgpt.brief.map_fit import LARGEST_MAP
@@ -57,7 +58,7 @@ def says_motorway(words: str) -> bool:
     """Returns True if a description in English, German, French, Spanish or Italian asks for a motorway."""
     plain = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
     said = re.findall(r"[^\W\d_]+", plain)
-    for at, (word, after) in enumerate(zip(said, [*said[1:], ""], strict=True)):
+    for at, (word, after) in enumerate(pairwise([*said, ""])):
         is_pair = (word, after) in PAIRS
         if is_pair or word in NAMES:
             follows = "".join(said[at + 2 : at + 3]) if is_pair else after
