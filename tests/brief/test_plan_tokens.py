@@ -14,7 +14,9 @@ from roadgpt.brief.readers.model.slots import NumberSlot, slotted
 from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.refusal import OF_CAUSES, refused
+from roadgpt.design.edit import change_plan as language
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.design.edit.request import HALVES, SUPERLATIVES
 
 CHANGES = sorted((Path(__file__).resolve().parents[2] / "data" / "changes").rglob("*.jsonl"))
 
@@ -131,3 +133,26 @@ def test_every_name_and_cause_has_a_token() -> None:
     named = {*BESIDE, *OF_CAUSES["!contradiction"], *OF_CAUSES["!impossible"]}
     assert named <= {*TOKENS}
     assert len({*TOKENS}) == len(TOKENS)
+
+
+def test_the_network_has_a_token_for_every_word_of_changes() -> None:
+    words = {
+        *language.NOUNS,
+        *language.KINDS,
+        *language.PROPERTIES,
+        *HALVES,
+        *SUPERLATIVES,
+    }
+    words |= {
+        *language.ENDS,
+        *language.MEASURES,
+        *language.ALONE,
+        *language.DOSES,
+    }
+    words |= {f"{word}(" for word in (*language.POSITIONS, "but")}
+    words |= {f"{word}=" for word in language.NUMBERS}
+    assert words <= {*TOKENS}
+
+
+def test_a_cause_that_is_written_twice_is_said_once() -> None:
+    assert str(refused("!contradiction turns turns")) == str(refused("!contradiction turns"))

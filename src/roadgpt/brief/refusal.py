@@ -62,7 +62,7 @@ def causes_of(line: str) -> tuple[str, str]:
     known = OF_CAUSES.get(kind, {})
     if kind not in ADVICE or any(cause not in known for cause in causes):
         raise BriefError(f"a plan has no refusal '{line.strip()[:60]}'; begin one with {', '.join(ADVICE)}")
-    return kind, " and ".join(known[cause] for cause in causes)
+    return kind, " and ".join(known[cause] for cause in dict.fromkeys(causes))
 
 
 def refused(line: str) -> BriefError:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model import Looks, ModelReader
+from roadgpt.brief.readers.model import ModelReader, UncalibratedReading
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.learn.generator import Pair
@@ -36,9 +36,9 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
     words = [pair for pair in honest if not pair.is_change]
     changes = [pair for pair in honest if pair.is_change]
     threshold = _threshold(reader, words)
-    read = [(reader.looked_at(pair.text, 2.0), _bare(pair.plan)) for pair in words]
+    read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in words]
     asked = [
-        (reader.looked_at_change(pair.text, normal_change), normal_change(pair.plan)) for pair in changes
+        (reader.uncalibrated_change(pair.text, normal_change), normal_change(pair.plan)) for pair in changes
     ]
     return Calibration(
         threshold,
@@ -64,7 +64,7 @@ def _bare(line: str) -> str:
     return plan(normal(read_plan(line)).model_copy(update={"beside": ()}))
 
 
-def _weights(found: Sequence[tuple[Looks, bool]]) -> dict[str, float]:
+def _weights(found: Sequence[tuple[UncalibratedReading, bool]]) -> dict[str, float]:
     """Returns the weights of a confidence model by the names of its inputs."""
     names = ("bias", *(found[0][0].features if found else ()))
     if not found:

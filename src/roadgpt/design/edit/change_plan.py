@@ -35,9 +35,9 @@ PROPERTIES = {
     **dict.fromkeys(("long", "short"), "size"),
 }
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
-BESIDE = ("after", "before", "between", "on")
+NEXT_TO = ("after", "before", "between", "on")
 """Where something new can stand."""
-POSITIONS = (*BESIDE, "from", "up_to")
+POSITIONS = (*NEXT_TO, "from", "up_to")
 ENDS: dict[str, Literal["start", "end", "middle"]] = {
     "at_start": "start",
     "at_end": "end",
@@ -257,7 +257,7 @@ class _Parser:
                 self._set(fields, NUMBERS[word], self._equal())
             elif PROPERTIES.get(word) in ("side", "sharpness", "way"):
                 self._set(fields, PROPERTIES[word], word)
-            elif word in ENDS or word in BESIDE:
+            elif word in ENDS or word in NEXT_TO:
                 self._set(fields, "place", self._position(word))
             else:
                 raise self._error(word)

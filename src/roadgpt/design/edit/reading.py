@@ -5,8 +5,8 @@
 from dataclasses import replace
 from functools import cache
 
-from roadgpt.brief.readers.model import MOST_LETTERS, ModelReader
-from roadgpt.brief.refusal import causes_of
+from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.design.edit.request import EditRequest
 from roadgpt.errors import BriefError, EditError
@@ -25,9 +25,9 @@ def read_request(words: str) -> EditRequest:
     """
     if not words.strip():
         raise EditError(f"no change was asked for; {ADVICE}")
-    if len(words) > MOST_LETTERS:
+    if len(words) > MOST_CHARACTERS:
         raise EditError(
-            f"a change request of {len(words)} characters is too long; use {MOST_LETTERS} or less"
+            f"a change request of {len(words)} characters is too long; use {MOST_CHARACTERS} or less"
         )
     try:
         reading = _reader().read_change(words, _normal_form)

@@ -29,14 +29,13 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, score
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.used_words import passes_over_a_negation, unused_words
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.refusal import TooMuchError, refused
+from roadgpt.brief.refusal import MOST_CHARACTERS, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
 
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
-MOST_LETTERS = 2000
 ALMOST = 2.0  # difference of score
 DOUBT = 0.5
 """The highest confidence of a reading that does not change without a "not"."""
@@ -57,7 +56,7 @@ class ChangeReading(NamedTuple):
     """Words that the plan does not depend on."""
 
 
-class Looks(NamedTuple):
+class UncalibratedReading(NamedTuple):
     """A reading, and what its confidence is computed from."""
 
     plan: str
@@ -130,7 +129,7 @@ class ModelReader:
         sure = _doubted(self._confidence("changes", draft), unused)
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
 
-    def looked_at(self, words: str, refuse_from: float) -> Looks | None:
+    def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:
         """Returns the likeliest plan of a description and what its confidence is computed from; None if no
         plan could be read.
         """
@@ -140,19 +139,25 @@ class ModelReader:
         if draft is None:
             return None
         if draft.is_refusal:
-            return Looks(draft.line, {})
+            return UncalibratedReading(draft.line, {})
         try:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError:
             return None
-        return Looks(plan(normal(brief)), draft.features)
+        return UncalibratedReading(plan(normal(brief)), draft.features)
 
-    def looked_at_change(self, words: str, key: Callable[[str], str]) -> Looks | None:
-        """Returns the same of a change request."""
+    def uncalibrated_change(self, words: str, key: Callable[[str], str]) -> UncalibratedReading | None:
+        """Returns the likeliest plan of a change request in its normal form, and what its confidence is
+        computed from; None if no plan could be read.
+
+        Args:
+            words: the change request.
+            key: returns the normal form of a plan of changes, and raises an error if it cannot be read.
+        """
         found = scored_plans(self.networks, words, 2.0, key=key)
         if not found:
             return None
-        return Looks(key(found[0].line), found[0].features)
+        return UncalibratedReading(key(found[0].line), found[0].features)
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -337,9 +342,9 @@ def _text(words: str) -> SlottedText:
         raise BriefError(
             "the description is empty; say what the road should be like, such as 'two sharp turns'"
         )
-    if len(words) > MOST_LETTERS:
+    if len(words) > MOST_CHARACTERS:
         raise BriefError(
-            f"the description has {len(words)} letters; at most {MOST_LETTERS} are read, so shorten it"
+            f"the description has {len(words)} letters; at most {MOST_CHARACTERS} are read, so shorten it"
         )
     text = slotted(words)
     below = negative_number(text)

@@ -7,13 +7,13 @@ of the text with a suitable unit, or a number that a word implies ("right angle"
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
-from roadgpt.brief.beside import BESIDE as NAMES
+from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.plan import ROAD_KEYS
 from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import NumberSlot
 from roadgpt.brief.readers.model.token_grammar import (
-    Alternatives,
+    AnyOf,
     InOrder,
     Later,
     ListTail,
@@ -26,7 +26,6 @@ from roadgpt.brief.readers.model.token_grammar import (
 )
 from roadgpt.brief.readers.model.vocabulary import (
     ALONE,
-    BESIDE,
     CLAUSE_KEYS,
     ENDS_OF_ROAD,
     FACTORS,
@@ -34,6 +33,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     HALVES,
     KINDS,
     MEASURED,
+    NEXT_TO,
     NOUNS,
     NUMBER_OF,
     PERCENTS,
@@ -84,7 +84,7 @@ class PlanAutomaton:
     ) -> None:
         numbers = Numbers(slots, said, evidence or Evidence())
         whole = _change_request(numbers) if is_change else _description(numbers)
-        self._stack: Stack = (Alternatives((*_refusals(), whole)), OneOf((END,)))
+        self._stack: Stack = (AnyOf((*_refusals(), whole)), OneOf((END,)))
 
     def copy(self) -> "PlanAutomaton":
         """Returns an independent copy in the same state."""
@@ -190,7 +190,7 @@ def _refusals() -> tuple[Symbol, ...]:
 
 def _description(numbers: Numbers) -> Symbol:
     clause = _clause(numbers)
-    names = OneOf(sorted(NAMES))
+    names = OneOf(sorted(BESIDE))
     beside = Sequel(OneOf(("beside(",)), (names, ListTail(",", names, MOST_NAMES - 1), OneOf((")",))))
     placed = [Sequel(OneOf((place,)), (clause, OneOf((")",)))) for place in PLACES]
     wishes = InOrder(
@@ -204,7 +204,7 @@ def _description(numbers: Numbers) -> Symbol:
     )
     whole = Sequel(OneOf(("|",)), (wishes,))
     clauses = (ListTail(";", clause, MOST_CLAUSES - 1), replace(whole, is_open=True))
-    return Alternatives((whole, Sequel(clause, clauses)))
+    return AnyOf((whole, Sequel(clause, clauses)))
 
 
 def _clause(numbers: Numbers) -> Symbol:
@@ -212,7 +212,7 @@ def _clause(numbers: Numbers) -> Symbol:
     count, keys = Keyed("x", numbers), {key: Keyed(key, numbers) for key in CLAUSE_KEYS}
     straight = (count, OneOf(SIZES), OneOf(SLOPES), keys["len="], keys["pct="])
     words = tuple(OneOf(words) for words in (SIDES, SHARPNESS, SLOPES, ["alternating"]))
-    return Alternatives(
+    return AnyOf(
         (
             Sequel(OneOf(STRAIGHT_KINDS), (InOrder(straight),)),
             Sequel(OneOf(turning), (InOrder((count, *words, *keys.values())),)),
@@ -222,13 +222,13 @@ def _clause(numbers: Numbers) -> Symbol:
 
 def _change_request(numbers: Numbers) -> Symbol:
     added = Sequel(OneOf(("add",)), (_new(numbers),))
-    change = Alternatives((added, Sequel(_place(numbers, DEEPEST), (OneOf((":",)), _wish(numbers)))))
+    change = AnyOf((added, Sequel(_place(numbers, DEEPEST), (OneOf((":",)), _wish(numbers)))))
     return Sequel(change, (ListTail(";", change, MOST_CHANGES - 1),))
 
 
 def _place(numbers: Numbers, depth: int) -> Symbol:
     whole, far = OneOf(COUNTS[1:]), OneOf(COUNTS[1:13])
-    number = Alternatives((whole, Sequel(OneOf(("-",)), (far,))))
+    number = AnyOf((whole, Sequel(OneOf(("-",)), (far,))))
     parts: list[Symbol] = [
         *(number for _ in range(MOST_NUMBERS)),
         OneOf(("all",)),
@@ -248,7 +248,7 @@ def _place(numbers: Numbers, depth: int) -> Symbol:
 def _position(inner: Symbol, ways: Sequence[str]) -> Symbol:
     close = OneOf((")",))
     single = tuple(way for way in ways if way != "between(")
-    return Alternatives(
+    return AnyOf(
         (
             OneOf(ENDS_OF_ROAD),
             Sequel(OneOf(single), (inner, close)),
@@ -259,7 +259,7 @@ def _position(inner: Symbol, ways: Sequence[str]) -> Symbol:
 
 def _exactly(key: str, numbers: Numbers) -> Symbol:
     found = numbers.of(key)
-    behind = Alternatives((OneOf(found), Sequel(OneOf(("-",)), (OneOf(found),))))
+    behind = AnyOf((OneOf(found), Sequel(OneOf(("-",)), (OneOf(found),))))
     return Sequel(OneOf((key,) if found else ()), (behind if key == "pct=" else OneOf(found),))
 
 
@@ -268,10 +268,10 @@ def _wish(numbers: Numbers) -> Symbol:
     value = _value("slope", numbers)
     way = Sequel(OneOf(WAYS), (_open(value),))
     shape = InOrder((OneOf(tuple(kind for kind in KINDS if kind not in NOUNS)), OneOf(SHARPNESS)), least=1)
-    return Alternatives(
+    return AnyOf(
         (
             *measured,
-            Sequel(OneOf(("slope",)), (Alternatives((way, value)),)),
+            Sequel(OneOf(("slope",)), (AnyOf((way, value)),)),
             Sequel(OneOf(("side",)), (OneOf((*SIDES, "other")),)),
             Sequel(OneOf(("shape",)), (shape,)),
             OneOf(ALONE),
@@ -292,7 +292,7 @@ def _value(name: str, numbers: Numbers) -> Symbol:
     factor = Sequel(OneOf(("x",)), (OneOf((*FACTORS, *numbers.percents())),))
     doses = Sequel(OneOf(("slightly", "much")), (OneOf(("more", "less")),))
     least = [Sequel(found, (OneOf(("..",)),))] if some else []
-    return Alternatives((*exact, *shares, factor, doses, OneOf(("more", "less")), *least))
+    return AnyOf((*exact, *shares, factor, doses, OneOf(("more", "less")), *least))
 
 
 def _new(numbers: Numbers) -> Symbol:
@@ -301,6 +301,6 @@ def _new(numbers: Numbers) -> Symbol:
         *(OneOf(words) for words in (SIDES, SHARPNESS, WAYS)),
         *(_exactly(key, numbers) for key in ("deg=", "len=", "r=", "pct=")),
         OneOf(("whole",)),
-        _position(_place(numbers, DEEPEST - 1), BESIDE),
+        _position(_place(numbers, DEEPEST - 1), NEXT_TO),
     )
     return Sequel(OneOf(KINDS), (InOrder(parts),))

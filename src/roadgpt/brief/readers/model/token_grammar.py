@@ -65,7 +65,7 @@ class Sequel:
 
 
 @dataclass(frozen=True, slots=True)
-class Alternatives:
+class AnyOf:
     """One of several symbols."""
 
     ways: tuple[Symbol, ...]

@@ -6,6 +6,7 @@ word that changes nothing was not used, which the user is told; function words a
 
 from collections.abc import Collection, Sequence
 
+from roadgpt.brief.readers.model.bounds import NOT
 from roadgpt.brief.readers.model.network import Network
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import SlottedText, Word
@@ -14,11 +15,9 @@ from roadgpt.brief.readers.model.word_set import word_set
 
 NOTICED = 0.02
 """Loss of log-probability from which a word counts as used although the plan stays the likeliest."""
-NEGATORS = word_set(
-    "not no nor never none without neither nothing nowhere don dont doesn isn shouldn cannot only except",
-    "nicht kein keine keinen keiner nie weder ohne nur ausser ne pas sans ni aucun aucune jamais rien",
-    "seulement sauf non senza mai nessun nessuna nessuno solo soltanto tranne salvo sin ningun ninguna nunca",
-    "nada excepto",
+NEGATORS = NOT | word_set(
+    "don doesn isn shouldn only except weder nur ausser ni rien seulement sauf nessuna nessuno solo soltanto",
+    "tranne salvo excepto",
 )
 """Words that deny or limit: a reading that does not change without them has passed over them."""
 SHORTEST = 3  # letters; shorter words are function words in all five languages

@@ -35,15 +35,18 @@ ROAD_KEYS = ["turns=", "lefts=", "rights=", "steepest=", "climb=", "hills=", "de
 PLACES = ["starts(", "ends("]
 FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
-NUMBERS = [
+NEWER = ("135",)
+"""Angles that were added later, so that their tokens stand at the end."""
+OLDER_NUMBERS = [
     *(str(number) for number in range(LARGEST_SEEN + 1)),
-    *(n for n in FIXED if int(n) > LARGEST_SEEN and n != "135"),
+    *(number for number in FIXED if int(number) > LARGEST_SEEN and number not in NEWER),
 ]
+NUMBERS = [*OLDER_NUMBERS, *NEWER]
 SLOT_TOKENS = [f"[{index + 1}]" for index in range(SLOTS)]
 ENDS = ("<pad>", "<start>", "<end>")
 OLDEST = [
     *ENDS, "!nonsense", "!contradiction", "!impossible", ";", "|", ")", "..", "-", "x", *KINDS, *SIDES,
-    *SHARPNESS, *SIZES, *SLOPES, "alternating", "hard", *CLAUSE_KEYS, *ROAD_KEYS, *PLACES, *NUMBERS,
+    *SHARPNESS, *SIZES, *SLOPES, "alternating", "hard", *CLAUSE_KEYS, *ROAD_KEYS, *PLACES, *OLDER_NUMBERS,
     *SLOT_TOKENS,
 ]  # fmt: skip
 CAUSES = [
@@ -60,8 +63,9 @@ CAUSES = [
 NOUNS = ["turn", "straight", "start", "end", "road"]
 SUPERLATIVES = ["longest", "shortest", "sharpest", "gentlest", "steepest", "flattest"]
 HALVES = ["half1", "half2"]
-BESIDE = ["after(", "before(", "between(", "on("]
-POSITIONS = [*BESIDE, "from(", "up_to("]
+NEXT_TO = ["after(", "before(", "between(", "on("]
+"""Where something new can stand."""
+POSITIONS = [*NEXT_TO, "from(", "up_to("]
 ENDS_OF_ROAD = ["at_start", "at_end", "at_middle"]
 MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent"}
 """The wishes of a change that have a value, with its unit."""
@@ -76,7 +80,7 @@ PERCENTS = ["x+", "x-", "x%"]
 CHANGES = [
     "!unclear", *CAUSES, "beside(", ",", "add", ":", *NOUNS, "all", "middle", *SUPERLATIVES, *HALVES,
     *POSITIONS, *ENDS_OF_ROAD, "but(", *MEASURED, "side", "other", "shape", *ALONE, "=", "+", *PERCENTS,
-    "slightly", "much", "more", "less", "whole", *FACTORS, "135", "turning=",
+    "slightly", "much", "more", "less", "whole", *FACTORS, *NEWER, "turning=",
 ]  # fmt: skip
 TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
 """All tokens; the weights know them by their positions, so new ones stand at the end."""
@@ -152,7 +156,7 @@ def _number_tokens(piece: str, key: str, slots: Sequence[NumberSlot], taken: set
     if fits:
         taken.add((free or fits)[0])
         return [*sign, SLOT_TOKENS[(free or fits)[0]]]
-    return [*sign, digits] if digits in (*NUMBERS, "135") else None
+    return [*sign, digits] if digits in NUMBERS else None
 
 
 def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
