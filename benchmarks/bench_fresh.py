@@ -63,9 +63,9 @@ class Judged(NamedTuple):
     """Of a refusal: whether its sentence names what the writer gave as the cause."""
 
 
-def rows(name: str) -> list[dict[str, Any]]:
+def rows(path: Path) -> list[dict[str, Any]]:
     """The lines of one file of fresh sentences."""
-    return [json.loads(line) for line in (FRESH / name).read_text(encoding="utf-8").splitlines()]
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
 
 
 def is_met(truth: dict[str, Any], roads: Sequence[Measures]) -> bool:
@@ -113,13 +113,13 @@ def area(found: Sequence[Judged]) -> tuple[float, float, float]:
     return of(np.arange(len(sure))), float(low), float(high)
 
 
-def changes(folder: Path) -> dict[str, str] | None:
+def changes(fresh: Path, folder: Path) -> dict[str, str] | None:
     """The verdicts of the outside judge of changes by id; None where the judge is not at hand."""
     judge = SHARED / "edits" / "judge_edits.py"
     if not judge.is_file():
         return None
     out = folder / "changes.json"
-    words = [sys.executable, str(judge), str(FRESH / "changes.jsonl"), "--json", str(out)]
+    words = [sys.executable, str(judge), str(fresh / "changes.jsonl"), "--json", str(out)]
     subprocess.run(words, env={**os.environ, "REFEREE": str(SHARED)}, check=True, stdout=subprocess.DEVNULL)
     found = json.loads(out.read_text(encoding="utf-8"))
     return {row["id"]: row["verdict"] for row in (found["rows"] if isinstance(found, dict) else found)}
@@ -139,9 +139,11 @@ def main() -> None:
     )
     parser.add_argument("--reader", default="model")
     parser.add_argument("--json", type=Path, help="where the verdict on each row is kept, by its id")
+    parser.add_argument("--retired", action="store_true", help="the first set, whose misses have been read")
     given = parser.parse_args()
+    fresh = FRESH / "retired" if given.retired else FRESH
     found = {
-        name: {row["id"]: judged(row, given.reader) for row in rows(f"{name}.jsonl")}
+        name: {row["id"]: judged(row, given.reader) for row in rows(fresh / f"{name}.jsonl")}
         for name in ("descriptions", "contrasts", "refusals")
     }
     for name, of_rows in found.items():
@@ -156,7 +158,7 @@ def main() -> None:
     print(f"wrong readings that are flagged: {sum(one.is_flagged for one in wrong)} of {len(wrong)}")
     print(f"right readings that are flagged: {sum(one.is_flagged for one in right)} of {len(right)}")
     with tempfile.TemporaryDirectory() as folder:
-        edited = changes(Path(folder))
+        edited = changes(fresh, Path(folder))
     print(
         "\n".join(lines("changes", [*edited.values()])) if edited else "changes: their judge is not at hand"
     )

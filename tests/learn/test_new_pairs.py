@@ -16,7 +16,7 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
 JUDGED = [
-    *(DATA / "fresh").glob("*.jsonl"),
+    *(DATA / "fresh").rglob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),
     *(DATA / "descriptions" / "exam").glob("*.jsonl"),
     *(DATA / "descriptions" / "contrasts_validation").glob("*.jsonl"),
@@ -65,9 +65,10 @@ def test_no_text_is_one_of_a_test_or_stands_twice() -> None:
         assert not judged & {*texts}
 
 
-def test_the_fresh_sentences_are_there_whole() -> None:
-    counts = {path.stem: len(rows(path)) for path in (DATA / "fresh").glob("*.jsonl")}
+@pytest.mark.parametrize("folder", [DATA / "fresh", DATA / "fresh" / "retired"], ids=lambda path: path.name)
+def test_the_fresh_sentences_are_there_whole(folder: Path) -> None:
+    counts = {path.stem: len(rows(path)) for path in folder.glob("*.jsonl")}
     assert counts == {"descriptions": 200, "contrasts": 100, "changes": 100, "refusals": 130}
-    kept = [row for path in (DATA / "fresh").glob("*.jsonl") for row in rows(path)]
+    kept = [row for path in folder.glob("*.jsonl") for row in rows(path)]
     assert len({row["id"] for row in kept}) == 530
     assert all({"truth", "lang"} <= row.keys() for row in kept)
