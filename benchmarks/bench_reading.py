@@ -30,7 +30,7 @@ from roadgpt.road import Design, World, build
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"
 CHANGES = HAND.parent / "changes" / "validation"
-SPLITS = ("validation", "contrasts_validation", "test", "exam")
+SPLITS = ("validation", "contrasts_validation", "free_validation", "test", "exam")
 READERS = ("model",)
 PROMPTS = (
     "a road",

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import LearnError
 from roadgpt.learn.generator import assembled, draw, pairs
@@ -13,6 +15,7 @@ from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
 from roadgpt.learn.negative_examples import contradicted, overdone
+from roadgpt.learn.shared_values import with_shared_values
 from roadgpt.learn.standard import makes_sense, standard
 
 
@@ -36,6 +39,18 @@ def test_a_language_speaks_in_many_ways(language: str) -> None:
     assert len({pair.text for pair in found}) > 0.9 * len(found) > 600
     assert len({pair.plan for pair in found}) > 200
     assert {"!nonsense", "!contradiction", "!impossible"} <= {pair.plan.split()[0] for pair in found}
+
+
+@pytest.mark.parametrize("language", ["en", "de", "fr", "es", "it"])
+def test_every_number_of_a_specification_can_be_copied(language: str) -> None:
+    rng = np.random.default_rng(9)
+    found = [pair for pair in (draw(language, rng, "specs", "specs") for _ in range(400)) if pair]
+    assert len({pair.text for pair in found}) > 0.9 * len(found) > 330
+    lost = 0
+    for pair in found:
+        slots = slotted(pair.text).slots
+        lost += tokens_of(with_shared_values(pair.plan, slots), slots) is None
+    assert lost < 0.05 * len(found)
 
 
 def test_a_grammar_writes_text_and_plan_side_by_side() -> None:

@@ -1,10 +1,12 @@
 """Things beside the road that are added to descriptions: named in the plan if said, and not if denied."""
 
+import re
+
 import numpy as np
 
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.learn.mentions import DENIED, SAID, names_in, with_mention, with_names
+from roadgpt.learn.mentions import DENIED, SAID, TALK, names_in, with_mention, with_names, with_talk
 
 LANGUAGES = {"en", "de", "fr", "es", "it"}
 
@@ -50,3 +52,33 @@ def test_names_are_added_to_those_that_are_there() -> None:
 
 def test_a_refusal_mentions_nothing() -> None:
     assert with_mention("hello", "!nonsense", "en", np.random.default_rng(0)) is None
+
+
+def test_talk_stands_around_the_text_and_leaves_it_whole() -> None:
+    assert {*TALK} == LANGUAGES
+    rng = np.random.default_rng(6)
+    places = set()
+    for language in sorted(LANGUAGES):
+        for _ in range(60):
+            text = with_talk("two sharp bends", language, rng)
+            at = text.lower().index("two sharp bends")
+            places.add((at > 0, not text.lower().endswith("two sharp bends")))
+    assert places == {(True, False), (False, True), (True, True)}
+
+
+def test_talk_says_nothing_of_a_road() -> None:
+    named = {
+        "bend",
+        "bends",
+        "hairpin",
+        "uphill",
+        "downhill",
+        "kurve",
+        "kurven",
+        "virage",
+        "virages",
+        "curva",
+    }
+    for table in TALK.values():
+        for piece in (*table["before"], *table["after"]):
+            assert not named & {*re.findall(r"\w+", piece.lower())}, piece

@@ -2,6 +2,7 @@
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,15 +12,18 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.refusal import refused
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.learn.near_duplicates import near_duplicates
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 CHANGES = sorted((DATA / "changes" / "train").glob("*.jsonl"))
 CONTRASTS = sorted((DATA / "descriptions" / "contrasts").glob("*.jsonl"))
+FREE = sorted((DATA / "descriptions" / "free").glob("*.jsonl"))
 JUDGED = [
     *(DATA / "fresh").rglob("*.jsonl"),
     *(DATA / "descriptions" / "test").glob("*.jsonl"),
     *(DATA / "descriptions" / "exam").glob("*.jsonl"),
     *(DATA / "descriptions" / "contrasts_validation").glob("*.jsonl"),
+    *(DATA / "descriptions" / "free_validation").glob("*.jsonl"),
     *(DATA / "changes" / "validation").glob("*.jsonl"),
     DATA.parent / "tests" / "design" / "edits.jsonl",
 ]
@@ -35,7 +39,7 @@ def letters(row: dict[str, Any]) -> str:
     return re.sub(r"\W+", " ", row.get("text", row.get("request", "")).lower()).strip()
 
 
-@pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS], ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", [*CHANGES, *CONTRASTS, *FREE], ids=lambda path: path.stem)
 def test_every_label_is_in_the_language_of_plans(path: Path) -> None:
     for row in rows(path):
         assert row.keys() == {"text", "plan", "family", "lang"}
@@ -51,18 +55,33 @@ def test_every_label_is_in_the_language_of_plans(path: Path) -> None:
 
 
 def test_there_are_as_many_as_the_pages_say() -> None:
-    assert sum(len(rows(path)) for path in CHANGES) == 1949
-    assert sum(len(rows(path)) for path in CONTRASTS) == 1272
-    assert "1,949 pairs" in (DATA / "changes" / "README.md").read_text(encoding="utf-8")
-    assert "1,272 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
+    assert sum(len(rows(path)) for path in CHANGES) == 2685
+    assert sum(len(rows(path)) for path in CONTRASTS) == 1686
+    assert sum(len(rows(path)) for path in FREE) == 2096
+    assert "2,096 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
+    assert "2,685 pairs" in (DATA / "changes" / "README.md").read_text(encoding="utf-8")
+    assert "1,686 lines" in (DATA / "descriptions" / "README.md").read_text(encoding="utf-8")
 
 
 def test_no_text_is_one_of_a_test_or_stands_twice() -> None:
     judged = {letters(row) for path in JUDGED for row in rows(path)}
-    for paths in (CHANGES, CONTRASTS):
+    for paths in (CHANGES, CONTRASTS, FREE):
         texts = [letters(row) for path in paths for row in rows(path)]
         assert len(texts) == len(set(texts))
         assert not judged & {*texts}
+
+
+def test_no_free_text_comes_near_one_of_a_test() -> None:
+    tested = [row["text"] for name in ("test", "exam") for row in split(name)]
+    freely = [row["text"] for name in ("free", "free_validation") for row in split(name)]
+    found = near_duplicates([*tested, *freely])
+    assert [pair for pair in found if pair.first < len(tested) <= pair.second] == []
+
+
+def split(name: str) -> Iterator[dict[str, Any]]:
+    """The lines of one folder of descriptions."""
+    for path in sorted((DATA / "descriptions" / name).glob("*.jsonl")):
+        yield from rows(path)
 
 
 @pytest.mark.parametrize("folder", [DATA / "fresh", DATA / "fresh" / "retired"], ids=lambda path: path.name)

@@ -12,26 +12,32 @@ from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, token
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
-from roadgpt.learn.generator import Pair, changed, contrasted, pairs
+from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
 from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.mentions import with_mention
+from roadgpt.learn.mentions import with_mention, with_talk
 from roadgpt.learn.shared_values import with_shared_values
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES = {
-    "hand": 0.42,
+    "hand": 0.30,
+    "free": 0.10,
     "contrasts": 0.08,
     "changes": 0.08,
-    "generated": 0.12,
-    "generated contrasts": 0.12,
-    "generated changes": 0.18,
+    "generated": 0.06,
+    "generated contrasts": 0.11,
+    "generated changes": 0.15,
+    "generated specs": 0.12,
 }
-"""Shares of hand-written and generated pairs: descriptions, contrasts, change requests."""
-CONTRASTS = "x_"
-"""How the families of contrasts begin."""
+"""Shares of hand-written and generated pairs: descriptions, contrasts, change requests, specifications."""
+KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
+"""Pairs with a share of their own, by how their families begin; the texts of ``free`` were written before
+anybody thought of labels.
+"""
 MENTIONS = 0.15
 """Share of descriptions to which a mention or denial of something beside the road is added."""
+TALK = 0.07
+"""Share of all pairs to which talk is added that asks for nothing."""
 CAUSED = ("!contradiction", "!impossible")
 """Refusals that have a cause; without one, the cause is not labelled."""
 SAID_BACK = 0.06
@@ -92,6 +98,8 @@ def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Ex
         if not pair.is_change and rng.random() < MENTIONS:
             more = with_mention(pair.text, pair.plan, pair.lang, rng)
             pair = replace(pair, text=more[0], plan=more[1]) if more else pair
+        if rng.random() < TALK:
+            pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         made = None if is_held_out(pair.text) else example(pair, pieces, rng)
         if made:
             yield made
@@ -99,17 +107,18 @@ def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Ex
 
 def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
     """Returns the series of pairs by name; without hand-written pairs of a kind, theirs are missing."""
-    changes = [pair for pair in hand if pair.is_change]
-    contrasts = [pair for pair in hand if not pair.is_change and pair.family.startswith(CONTRASTS)]
-    others = [pair for pair in hand if not pair.is_change and not pair.family.startswith(CONTRASTS)]
     found = {
         "generated": pairs(seed),
         "generated contrasts": contrasted(seed),
         "generated changes": changed(seed),
+        "generated specs": specified(seed),
     }
-    for name, its in (("hand", others), ("contrasts", contrasts), ("changes", changes)):
-        if its:
-            found[name] = _varied(its, np.random.default_rng([seed, len(name)]))
+    kinds: dict[str, list[Pair]] = {}
+    for pair in hand:
+        kind = "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
+        kinds.setdefault(kind, []).append(pair)
+    for kind, its in kinds.items():
+        found[kind] = _varied(its, np.random.default_rng([seed, len(kind)]))
     return found
 
 

@@ -63,6 +63,15 @@ def contrasted(seed: int) -> Iterator[Pair]:
             yield pair
 
 
+def specified(seed: int) -> Iterator[Pair]:
+    """Yields an endless series of descriptions with several figures, gaps, shared values and heights."""
+    rng = np.random.default_rng([seed, 3])
+    while True:
+        pair = draw(_language(EVEN, rng), rng, "specs", "specs")
+        if pair:
+            yield sometimes_spoiled(pair, rng)
+
+
 def changed(seed: int) -> Iterator[Pair]:
     """Yields an endless series of change requests."""
     rng = np.random.default_rng([seed, 2])

@@ -1,5 +1,5 @@
 """Adds mentions of things beside the road to descriptions, such as "in the rain", with their names in the
-plan, and denials of such things ("no traffic"), which leave the plan as it is.
+plan, denials of such things ("no traffic"), which leave the plan as it is, and talk that asks for nothing.
 """
 
 import json
@@ -16,6 +16,10 @@ WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(
 SAID: Phrases = WORDS["said"]
 """By language, then by names: phrases that can stand "before" and "after" a description."""
 DENIED: Phrases = WORDS["denied"]
+TALK: Mapping[str, Mapping[str, Sequence[str]]] = json.loads(
+    (files("roadgpt.learn") / "words" / "talk.json").read_text(encoding="utf-8")
+)
+"""By language: greetings, reasons and the like that can stand "before" and "after" a text."""
 NAMED = re.compile(r" ?beside\(([^()]*)\)")
 MOST_NAMES = 4
 BEFORE = 0.25
@@ -43,6 +47,19 @@ def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) 
     if not is_said:
         return told, plan
     return told, with_names(plan, [*new, *there] if is_before else [*there, *new])
+
+
+def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
+    """Returns the text with a greeting, a reason or the like before or behind it, or both."""
+    told = TALK.get(language, TALK["en"])
+    way = rng.random()
+    if way < 2 / 3:
+        before = told["before"][int(rng.integers(len(told["before"])))]
+        text = _before(before, text, language)
+    if way > 1 / 3:
+        after = told["after"][int(rng.integers(len(told["after"])))]
+        text = f"{text if text[-1:] in '.!?' else f'{text}.'} {after}"
+    return text
 
 
 def names_in(plan: str) -> list[str]:

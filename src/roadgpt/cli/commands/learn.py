@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 SPLITS = ("train", "validation", "test", "exam")
 COUNT = whole(1, 10_000_000, "a number")
+TRAINED_ON = ("train", "contrasts", "free")
+HELD_BACK = ("validation", "contrasts_validation", "free_validation")
+"""Folders of descriptions that readers are trained on, and calibrated on."""
 MEASURED = 600  # descriptions of measured roads among the pairs that are trained on
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 # fmt: off
@@ -150,8 +153,7 @@ def train(
     installed |= second
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
-    pairs = [*_pairs_of(hand / "train"), *(_pairs_of(own) if own else [])]
-    pairs += [*_pairs_of(hand / "contrasts"), *_pairs_of(changes / "train", is_change=True)]
+    pairs = [*_trained_on(hand, changes), *(_pairs_of(own) if own else [])]
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
@@ -176,14 +178,19 @@ def export(
         raise LearnError(EXTRA) from error
     from roadgpt.learn.filler_words import filler_words
 
-    held_back = [*_pairs_of(hand / "validation"), *_pairs_of(hand / "contrasts_validation")]
+    held_back = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
     held_back += _pairs_of(changes / "validation", is_change=True)
-    pairs = [*_pairs_of(hand / "train"), *_pairs_of(hand / "contrasts")]
-    fillers = filler_words([*pairs, *_pairs_of(changes / "train", is_change=True)])
+    fillers = filler_words(_trained_on(hand, changes))
     export_checkpoints([checkpoint, *([second] if second else [])], out, held_back, fillers)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)
+
+
+def _trained_on(hand: Path, changes: Path) -> list["Pair"]:
+    """Returns all hand-written pairs for training."""
+    pairs = [pair for folder in TRAINED_ON for pair in _pairs_of(hand / folder)]
+    return [*pairs, *_pairs_of(changes / "train", is_change=True)]
 
 
 @command.command(params=[*OF_CHATS])
