@@ -49,6 +49,16 @@ IMPOSSIBLE = {
     "straight longer than the map": Brief(clauses=(Clause(kind="straight", length=exactly(900)),)),
     "radius wider than the map": Brief(clauses=(turns(1, radius=exactly(600)),)),
     "more than any map": Brief(turns=exactly(1000)),
+    "tighter than every turn may be": Brief(clauses=(turns(1, radius=exactly(18)),), radius=at_least(40)),
+    "wider than every turn may be": Brief(clauses=(turns(1, radius=exactly(60)),), radius=at_most(45)),
+    "further than every turn may be": Brief(clauses=(turns(2, degrees=exactly(90)),), degrees=at_most(60)),
+    "sharp, and nothing tight": Brief(clauses=(turns(2, sharpness="sharp"),), radius=at_least(50)),
+    "a hairpin, and no turn beyond a right angle": Brief(
+        clauses=(Clause(kind="hairpin"),), degrees=at_most(90)
+    ),
+    "steeper than the steepest place": Brief(
+        clauses=(Clause(kind="straight", slope="up", incline=exactly(6)),), steepest=at_most(4)
+    ),
 }
 POSSIBLE = {
     "anything": Brief(),
@@ -63,6 +73,10 @@ POSSIBLE = {
     "counts that agree": Brief(
         clauses=(turns(3, side="left"),), left=exactly(3), right=exactly(0), turns=exactly(3)
     ),
+    "wider than the least radius": Brief(
+        clauses=(turns(1, radius=exactly(60)), turns(1)), radius=at_least(40)
+    ),
+    "one turn with its own figure": Brief(clauses=(turns(1, radius=exactly(20)),), radius=exactly(40)),
     "ten hairpins": Brief(clauses=(Clause(kind="hairpin", count=exactly(10)),)),
     "a serpentine with a few to the left": Brief(
         clauses=(Clause(kind="serpentine", count=exactly(5)),), left=at_least(2)

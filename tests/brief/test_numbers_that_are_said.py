@@ -104,3 +104,35 @@ def test_a_negative_number_of_turns_is_refused_with_its_words() -> None:
 def test_absurd_numbers_in_words_are_refused(text: str) -> None:
     with pytest.raises(BriefError):
         reader_of("model").read(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("a left of 90 gon and a right of 100 gon", [(81, "degrees"), (90, "degrees")]),
+        ("falling at 40 ‰", [(4, "percent")]),
+        ("Gefälle 50 Promille", [(5, "percent")]),
+        ("a mile and a half of road", [(2414, "metres")]),
+        ("an eighth of a mile", [(201.2, "metres")]),
+        ("quarter of kilometre", [(250, "metres")]),
+    ],
+)
+def test_units_of_surveyors_and_parts_of_units(text: str, values: list[tuple[float, str]]) -> None:
+    assert [(slot.value, slot.unit) for slot in slotted(text).slots] == values
+
+
+@pytest.mark.parametrize(
+    ("text", "units"),
+    [
+        ("right, radius of 40, 5 % downhill", ["", "percent"]),
+        ("R = 60, 45 degrees", ["", "degrees"]),
+        ("R=65 and 135 deg", ["", "degrees"]),
+        ("L90 - 40 m", ["", "metres"]),
+        ("straight 60, 45 degrees left", ["", "degrees"]),
+        ("40, 50 and 60 m", ["metres", "metres", "metres"]),
+        ("between 40 and 60 m", ["metres", "metres"]),
+        ("40 to 60 degrees", ["degrees", "degrees"]),
+    ],
+)
+def test_a_number_takes_the_unit_of_the_next_one_only_in_a_list_of_alike(text: str, units: list[str]) -> None:
+    assert [slot.unit for slot in slotted(text).slots] == units

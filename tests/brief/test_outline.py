@@ -61,7 +61,7 @@ def test_gentle_and_sharp_turns() -> None:
         Clause(kind="turn", sharpness="sharp"),
         Clause(kind="hairpin", sharpness="sharp"),
     ).groups
-    assert (gentle.feature.degrees, gentle.feature.radius) == (Range(15, 120), Range(40))
+    assert (gentle.feature.degrees, gentle.feature.radius) == (Range(15, 90), Range(40))
     assert (sharp.feature.degrees, sharp.feature.radius) == (Range(30, 120), Range(0, 30))
     assert (hairpin.feature.degrees, hairpin.feature.radius) == (Range(140, 210), Range(0, 30))
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from roadgpt.brief import read, remarks
+from roadgpt.brief import NotBuiltError, read, remarks
 from roadgpt.brief.beside import BESIDE, NOT_BUILT, OPTIONS
 from roadgpt.brief.model import Amount, Brief, Clause, exactly
 from roadgpt.brief.plan import plan, read_plan
@@ -87,6 +87,24 @@ def test_things_beside_the_road_are_kept_and_told_by_name() -> None:
         "the words say 'wet': friction is 0.6; --friction gives another",
     )
     assert Brief.model_validate_json(brief.model_dump_json()) == brief
+
+
+class OfARoundabout:
+    """A reader of every description as a turn, a roundabout and rain."""
+
+    def read(self, words: str) -> Brief:
+        return Brief(words=words, clauses=(Clause(kind="turn"),), beside=("roundabout", "rain"))
+
+
+def test_what_is_no_single_road_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("roadgpt.brief.reader_of", lambda name, chat: OfARoundabout())
+    with pytest.raises(NotBuiltError) as refusal:
+        read("a turn, then a roundabout, in the rain", "model")
+    assert str(refusal.value).startswith(
+        "a roundabout cannot be built yet; the road without it is made by --plan"
+    )
+    assert refusal.value.plan == "turn | beside(rain)"
+    assert read(refusal.value.plan, "plan").beside == ("roundabout", "rain")  # a plan is built as it stands
 
 
 def test_every_name_of_the_language_has_a_remark_and_stands_on_the_page() -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
+from roadgpt.brief import Brief, NotBuiltError
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
@@ -64,6 +65,18 @@ def test_of_two_readings_the_person_chooses(monkeypatch: pytest.MonkeyPatch) -> 
     assert "1  a road with 2 left turns" in result.stdout
     assert "2  a road with 2 right turns" in result.stdout
     assert "I read this as: a road with 2 right turns" in result.stdout
+    assert "1 of 1 roads" in result.stdout
+    assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
+
+
+def test_a_road_without_the_junction_is_offered(monkeypatch: pytest.MonkeyPatch) -> None:
+    def no_junction(words: str) -> Brief:
+        raise NotBuiltError("a junction", "turn x2 left", read_plan("turn x2 left"))
+
+    monkeypatch.setattr("roadgpt.brief.read", no_junction)
+    result = say("two lefts and a junction", "", "two lefts and a junction", "1", "1", "", "exit")
+    assert result.exit_code == 0
+    assert "a junction cannot be built yet; without it: a road with 2 left turns" in result.stdout
     assert "1 of 1 roads" in result.stdout
     assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 

@@ -252,6 +252,13 @@ def test_a_bound_changes_only_what_is_beyond_it() -> None:
         changed("h08", "road: slope ..14")
 
 
+def test_a_limit_of_the_length_of_a_road_is_no_target() -> None:
+    own = seen(ROADS["h08"]).length
+    with pytest.raises(EditError, match="so already"):
+        changed("h08", f"road: length ..{own + 100:.0f}")
+    assert seen(changed("h08", f"road: length ..{0.9 * own:.0f}")).length <= 0.92 * own
+
+
 def test_a_road_ends_with_one_straight_of_the_length_that_was_said() -> None:
     new = seen(changed("r14", "add straight len=60 whole at_end"))
     assert new.features[-1].kind == "straight"

@@ -35,7 +35,8 @@ from roadgpt.brief.model import (
 from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
-from roadgpt.brief.refusal import NoRoomError, TooMuchError
+from roadgpt.brief.plan import plan
+from roadgpt.brief.refusal import NoRoomError, NotBuiltError, TooMuchError
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
@@ -50,6 +51,7 @@ __all__ = [
     "Group",
     "Kind",
     "NoRoomError",
+    "NotBuiltError",
     "Outline",
     "Range",
     "Reader",
@@ -70,6 +72,9 @@ __all__ = [
     "remarks",
     "sentence",
 ]
+
+PLAN = "plan"
+"""The name of the reader of plans, which build what they say and leave out what they name beside the road."""
 
 
 class Reader(Protocol):
@@ -126,6 +131,8 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
+        NotBuiltError: the description asks for a junction, a roundabout or the like; the message has the
+            plan of the road without it.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -141,6 +148,9 @@ def read(
             raise
     else:
         check(brief, map_size, min_radius, max_grade, road_width)
+    if reader != PLAN and (missing := beside.networks_in(brief.beside)):
+        rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
+        raise NotBuiltError(missing, plan(rest), rest)
     return brief.model_copy(update={"motorway": True}) if says_motorway(words) else brief
 
 

@@ -54,6 +54,8 @@ NOT_BUILT = {
     "cobbles": "a cobbled surface",
 }
 """Names of what RoadGPT does not build, with the words of the remark."""
+NETWORKS = ("junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "loop")
+"""Names of what is no single road: a description that asks for one of them is answered with a question."""
 NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
@@ -86,6 +88,13 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
             yield SAID_OTHERWISE[name]
     if said := surface_remark(names, friction):
         yield said
+
+
+def networks_in(names: Iterable[str]) -> str:
+    """Returns what is no single road among the things of these names, such as "a roundabout and an exit or a
+    slip road"; empty if nothing is.
+    """
+    return " and ".join(NOT_BUILT[name] for name in names if name in NETWORKS)
 
 
 def friction_of(names: Iterable[str]) -> float | None:

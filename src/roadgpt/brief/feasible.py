@@ -66,6 +66,7 @@ def check(
             the first one found.
     """
     _counts(brief)
+    _limits_of_every_turn(brief)
     brief = normal(brief)
     limits = _Limits(min_radius, min(100 * max_grade, STEEPEST))
     for clause in (*brief.clauses, *(c for c in (brief.starts, brief.ends) if c)):
@@ -105,6 +106,33 @@ def _counts(brief: Brief) -> None:
     for clause in brief.clauses:
         if 0 in (clause.count.lo, clause.count.hi):
             raise BriefError(f"a clause cannot ask for 0 {_noun(clause)}s; leave it out")
+
+
+def _limits_of_every_turn(brief: Brief) -> None:
+    """Checks that no turn has a figure beyond a limit that holds for all turns."""
+    for name, noun in (("radius", "a radius"), ("degrees", "an angle")):
+        limit: Amount | None = getattr(brief, name)
+        if limit is None or None not in (limit.lo, limit.hi):
+            continue
+        for clause in brief.clauses:
+            if clause.kind in STRAIGHT:
+                continue
+            own = getattr(clause, name)
+            meant = span(own) if own else _meant(clause, name)
+            if _exclude(meant, span(limit)):
+                raise BriefError(
+                    f"every turn is to have {noun} of {limit}, but a {_noun(clause)} has"
+                    f" {own or meant}; leave out one of the two"
+                )
+
+
+def _meant(clause: Clause, name: str) -> Range | None:
+    """Returns the range of radii or degrees that the words for a turn mean; None if they leave them open."""
+    own: Range | None = getattr(KINDS[clause.kind], name)
+    if clause.kind == "turn":
+        sharp = SHARPNESS[clause.sharpness] if clause.sharpness else None
+        return sharp.radius if sharp and name == "radius" else None
+    return own
 
 
 def _shape(clause: Clause, limits: _Limits) -> None:
@@ -275,6 +303,12 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
     _not_too_steep(steepest.lo, limits)
     for clause in (*brief.clauses, *(end for end in (brief.starts, brief.ends) if end)):
         _slope_within(brief, clause)
+    asked = max([span(brief.incline).lo, *(span(clause.incline).lo for clause in brief.clauses)])
+    if asked > steepest.hi:
+        raise BriefError(
+            f"{asked:g} percent are asked for, but {steepest.hi:g} at the steepest place;"
+            " leave out one of the two"
+        )
     if brief.slope and span(brief.hills).lo > 0:
         raise BriefError("a hilly road climbs and falls; leave out that it is all uphill, downhill or flat")
     if (brief.slope in RISING and climb.hi < 0) or (brief.slope in FALLING and climb.lo > 0):

@@ -44,8 +44,10 @@ BEYOND = {
 """Causes of an impossibility, with what cannot be built."""
 
 
-BY_OPTION = SAID_OTHERWISE | {
-    name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()
+BY_OPTION = {
+    **SAID_OTHERWISE,
+    **{name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()},
+    "climb": "a height in metres cannot be changed yet; say the slope in percent",
 }
 """Causes that another option or other words meet, with what to do."""
 OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_OPTION}
@@ -90,6 +92,20 @@ class TooMuchError(BriefError):
     def __init__(self, sentence: str, brief: Brief) -> None:
         super().__init__(sentence)
         self.brief = brief
+
+
+class NotBuiltError(BriefError):
+    """Raised if a description asks for something that is no single road, such as a roundabout.
+
+    Attributes:
+        missing: what cannot be built, in words.
+        plan: the plan of the road without it.
+        brief: the requirements for the road without it.
+    """
+
+    def __init__(self, missing: str, plan: str, brief: Brief) -> None:
+        super().__init__(f'{missing} cannot be built yet; the road without it is made by --plan "{plan}"')
+        self.missing, self.plan, self.brief = missing, plan, brief
 
 
 class NoRoomError(BriefError):

@@ -54,16 +54,13 @@ def converse() -> None:
     """Asks the user for descriptions, makes roads from them and changes roads on request, until the user
     quits.
     """
-    from roadgpt.brief import read
-
     _enable_editing()
     click.echo(f"{HELLO}\n")
     while (words := _asked("description> ")) and words.lower() not in ENOUGH:
         if _wants_help(words):
             continue
         try:
-            brief = read(words)  # what cannot be read is told before a number is asked for
-            meant = _meant(brief)
+            meant = _understood(words)  # what cannot be read is told before a number is asked for
             if meant is None:
                 continue
             roads = _how_many()
@@ -78,6 +75,20 @@ def converse() -> None:
         except KeyboardInterrupt:
             stopping.forget()  # what was finished has been said; ask for the next description
         click.echo()
+
+
+def _understood(words: str) -> str | None:
+    """Returns the plan to build instead of the words, "" if the words can be built as they are, and None if
+    the user wants to say it in other words.
+    """
+    from roadgpt.brief import NotBuiltError, read
+
+    try:
+        return _meant(read(words))
+    except NotBuiltError as error:
+        click.echo(f"{error.missing} cannot be built yet; without it: {run.reading(error.brief)}")
+        answer = _asked("1 to build that, or an empty line to say it in other words> ")
+        return error.plan if answer == "1" else None
 
 
 def _meant(brief: "Brief") -> str | None:

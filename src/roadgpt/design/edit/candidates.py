@@ -59,16 +59,18 @@ def change_candidates(
     Raises:
         EditError: No road can have the requested values.
     """
-    if change.bound:
-        elements = [element for element in elements if _is_beyond(change, element, found)]
+    is_road = change.target is not None and change.target.noun == "road"
+    if change.bound and change.what == "length" and is_road:
+        elements = elements if _is_outside(change, found.length) else []
+    elif change.bound:
+        elements = [element for element in elements if _is_beyond(change, element)]
         if change.what == "slope" and elements:
             return ((bounded_slopes(change, elements),),)
-    is_road = change.target is not None and change.target.noun == "road"
     match change.what:
         case "angle" | "radius" | "shape":
             return _together(_bends(change, element, world) for element in elements)
         case "length" if is_road:
-            return _road_lengths(change, elements, world)
+            return _road_lengths(change, elements, world) if elements else ()
         case "length":
             return _together(_lengths(change, element, world) for element in elements)
         case "slope" if is_road:
@@ -84,18 +86,21 @@ def change_candidates(
             return _together(_straightened(element) for element in elements)
 
 
-def _is_beyond(change: Change, element: RoadElement, found: Measures) -> bool:
+def _is_beyond(change: Change, element: RoadElement) -> bool:
     """Is an element beyond the bound of a change?"""
-    assert change.to is not None
     if change.what == "slope":
         values = [abs(segment.incline) for segment in element.segments]
     elif element.seen is None:
         values = []
-    elif change.what == "length" and change.target is not None and change.target.noun == "road":
-        values = [found.length]
     else:
         values = [getattr(element.seen, "degrees" if change.what == "angle" else change.what)]
-    return any((now - change.to) * change.bound < 0 for now in values)
+    return any(_is_outside(change, now) for now in values)
+
+
+def _is_outside(change: Change, now: float) -> bool:
+    """Is a value on the wrong side of the bound of a change?"""
+    assert change.to is not None
+    return (now - change.to) * change.bound < 0
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:

@@ -36,6 +36,7 @@ from roadgpt.reading import read_json, read_text
 
 WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
+NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
 DOUBT = 0.5
 """The highest confidence of a reading that does not change without a "not"."""
@@ -103,7 +104,9 @@ class ModelReader:
     def _read(self, words: str) -> Brief:
         text = _text(words)
         found = scored_plans(self.networks, words, self._settings["refuse_from"])
-        brief = self._brief(words, text, _as_listed(found, text) or _consistent(found))
+        if not found:
+            raise BriefError(NOT_ONE_ROAD)
+        brief = self._brief(words, text, _as_listed(found, text) or found[0])
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
@@ -135,7 +138,7 @@ class ModelReader:
         """
         text = slotted(words)
         found = scored_plans(self.networks, words, refuse_from)
-        draft = (_as_listed(found, text) or _consistent(found)) if found else None
+        draft = (_as_listed(found, text) or found[0]) if found else None
         if draft is None:
             return None
         if draft.is_refusal:
@@ -236,7 +239,7 @@ class ModelReader:
         try:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
-            raise BriefError("this could not be read as one road; use shorter sentences") from error
+            raise BriefError(NOT_ONE_ROAD) from error
         unused = unused_words(self._network, *(seen or (text, draft.tokens)), self._fillers)
         sure = _doubted(self._confidence("confidence", draft), unused)
         found = {"words": words, "unused": unused, "confidence": sure}
@@ -291,18 +294,6 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
         return None
     kept = (draft for draft in found if not draft.is_refusal and _can_be_kept(draft.line))
     return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
-
-
-def _consistent(found: Sequence[ScoredPlan]) -> ScoredPlan:
-    """Returns the likeliest plan, or an almost as likely one if only the likeliest contradicts itself."""
-    if not found:
-        raise BriefError("this could not be read as one road; use shorter sentences")
-    for draft in found:
-        if draft.score < found[0].score - ALMOST:
-            break
-        if draft.is_refusal or _can_be_kept(draft.line):
-            return draft
-    return found[0]
 
 
 def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:

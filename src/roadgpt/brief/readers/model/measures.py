@@ -8,7 +8,16 @@ from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 
 LARGEST_SEEN = 20
 """Numbers without a unit up to this one remain digits in the text for the model; larger ones become slots."""
-SIDES = frozenset(["left", "right", "l", "r"])
+SIDES = frozenset(
+    ["left", "right", "l", "r", "lh", "rh", "links", "rechts", "gauche", "droite", "g", "d"]
+    + ["izquierda", "derecha", "izq", "der", "i", "sinistra", "destra", "sx", "dx", "sn", "ds"]
+)
+RADIUS = frozenset(
+    ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
+    + ["raggi"]
+)
+LEADING_TO = frozenset(["=", ":", ".", "of", "is", "about", "von", "de", "di"])
+"""What can stand between a word for a radius and its number."""
 
 
 @dataclass(slots=True)
@@ -68,18 +77,24 @@ def share_units(numbers: list[Number], tokens: list[str]) -> None:
     """Assigns to "40" in "40 to 60 metres" the unit of "60"; works backwards, so that it also handles longer
     lists.
     """
+    is_shared = False
     for one, other in zip(numbers[-2::-1], numbers[:0:-1], strict=False):
+        was_shared, is_shared = is_shared, False
         between = tokens[one.last + 1 : other.first]
         while between and between[-1] in ("about", "than", "de", "di", "maximal", "another"):
             between = between[:-1]
         if one.unit or not other.unit or not 1 <= len(between) <= 2 or is_radius(tokens, one):
             continue
+        if one.first > 0 and tokens[one.first - 1] in SIDES:
+            continue  # "L90 - 40 m" is an angle and a length
         if any(token not in JOINTS for token in between) or (between == [","] and one.value < LARGEST_SEEN):
             continue
         if len(between) == 2 and between[0] == "," and between[1] not in ("or", "and", "to"):
             continue
+        if between == [","] and not was_shared:
+            continue  # "radius 40, 5 % up" lists two wishes, "40, 50 and 60 m" three lengths
         one.value, one.unit = round(one.value * other.factor, 1), other.unit
-        one.is_bare, one.factor = False, other.factor
+        one.is_bare, one.factor, is_shared = False, other.factor, True
 
 
 def take_unit_of_all(numbers: list[Number], tokens: list[str]) -> None:
@@ -105,5 +120,8 @@ def is_count(tokens: Sequence[str], number: Number) -> bool:
 
 
 def is_radius(tokens: Sequence[str], number: Number) -> bool:
-    """Returns True if the number follows "R" and is 10 or more, as in R15."""
-    return number.value >= 10 and number.first > 0 and tokens[number.first - 1] == "r"
+    """Returns True if the number follows "R", or a word for a radius, and is 10 or more, as in R15."""
+    at = number.first - 1
+    while at >= 0 and tokens[at] in LEADING_TO:
+        at -= 1
+    return number.value >= 10 and at >= 0 and (tokens[at] == "r" or tokens[at] in RADIUS)

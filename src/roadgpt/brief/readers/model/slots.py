@@ -48,6 +48,8 @@ CHANGE = "[unused13]"
 """The mark in front of a change request, by which the model tells it from a description."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
+FAR = 100
+"""The least size in metres of a unit that stands for one of itself: "a mile and a half"."""
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
@@ -216,6 +218,10 @@ def _part(tokens: list[str], at: int) -> Number | None:
     while last + 1 < len(tokens) and tokens[last + 1] in SHARE_FILLERS and last - at < 6:
         last += 1
     found = unit_at(tokens, last + 1)
+    place = at + (tokens[at] in ONES)
+    unit = None if share else unit_at(tokens, place)
+    if unit and unit[1] >= FAR and tokens[place + 1 : place + 4] == ["and", "a", "half"]:
+        return Number(round(1.5 * unit[1], 1), at, place + 3, "metres", False)
     if not found or (not share and many != 1):
         return None
     if not share and (found[0] != "metres" or (found[1] < 100 and tokens[at] in ("a", "an", "un", "una"))):

@@ -25,7 +25,9 @@ _SAID: tuple[tuple[str, Unit, float], ...] = (
         "percent",
         1.0,
     ),
+    ("‰ promille permille permil per_mille per_mil pour_mille por_mil per_mille", "percent", 0.1),
     ("° º deg degs degree degrees degre degrees grad degrés degré grado grados gradi", "degrees", 1.0),
+    ("gon gons gradians grades_centésimaux", "degrees", 0.9),
     ("kmh kph mph km/h", "kmh", 1.0),
 )
 
@@ -53,6 +55,7 @@ SHARES: dict[str, float] = {
         1 / 2: "half halber halben halbe halbes demi medio media mezzo mezza",
         1 / 4: "quarter quarters viertel quart quarts cuarto cuartos quarto quarti",
         1 / 3: "third thirds drittel tiers tercio tercios terzo terzi",
+        1 / 8: "eighth eighths achtel huitieme octavo ottavo",
         1 / 5: "fifth fifths fuenftel cinquieme quinto quinti quintos",
         1 / 10: "tenth tenths zehntel dixieme decimo decimi decimos",
     }.items()
