@@ -115,6 +115,9 @@ def test_absurd_numbers_in_words_are_refused(text: str) -> None:
         ("a mile and a half of road", [(2414, "metres")]),
         ("an eighth of a mile", [(201.2, "metres")]),
         ("quarter of kilometre", [(250, "metres")]),
+        ("séparés par une trentaine de mètres", [(30, "metres")]),
+        ("una ventina di gradi a destra", [(20, "degrees")]),
+        ("un centinaio di metri", [(100, "metres")]),
     ],
 )
 def test_units_of_surveyors_and_parts_of_units(text: str, values: list[tuple[float, str]]) -> None:

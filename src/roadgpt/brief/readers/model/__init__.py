@@ -19,6 +19,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.confidence import confidence, features
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -27,7 +28,7 @@ from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
-from roadgpt.brief.readers.model.used_words import passes_over_a_negation, unused_words
+from roadgpt.brief.readers.model.used_words import unused_words
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.refusal import MOST_CHARACTERS, TooMuchError, refused
 from roadgpt.brief.words import SURE
@@ -38,8 +39,6 @@ WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
-DOUBT = 0.5
-"""The highest confidence of a reading that does not change without a "not"."""
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
 TOO_MUCH = (
@@ -125,11 +124,12 @@ class ModelReader:
             raise BriefError("this could not be read as changes; use shorter sentences")
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
         draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
+        found_in = features(draft, text)
         if draft.is_refusal:
-            return ChangeReading(draft.line, self._confidence("changes", draft), ())
+            return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, ()), ())
         lost = _lost_numbers(draft, text)
         unused = unused_words(self._network, text, draft.tokens, self._fillers)
-        sure = _doubted(self._confidence("changes", draft), unused)
+        sure = confidence(self._settings["changes"], found_in, unused)
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:
@@ -147,7 +147,7 @@ class ModelReader:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError:
             return None
-        return UncalibratedReading(plan(normal(brief)), draft.features)
+        return UncalibratedReading(plan(normal(brief)), features(draft, text))
 
     def uncalibrated_change(self, words: str, key: Callable[[str], str]) -> UncalibratedReading | None:
         """Returns the likeliest plan of a change request in its normal form, and what its confidence is
@@ -160,7 +160,7 @@ class ModelReader:
         found = scored_plans(self.networks, words, 2.0, key=key)
         if not found:
             return None
-        return UncalibratedReading(key(found[0].line), found[0].features)
+        return UncalibratedReading(key(found[0].line), features(found[0], slotted(words, is_change=True)))
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -241,15 +241,9 @@ class ModelReader:
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = unused_words(self._network, *(seen or (text, draft.tokens)), self._fillers)
-        sure = _doubted(self._confidence("confidence", draft), unused)
+        sure = confidence(self._settings["confidence"], features(draft, text), unused)
         found = {"words": words, "unused": unused, "confidence": sure}
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
-
-    def _confidence(self, name: str, draft: ScoredPlan) -> float:
-        """Returns how often readings like this one were right on held-back texts, from 0 to 1."""
-        weights = self._settings[name]
-        score = weights["bias"] + sum(weights[name] * value for name, value in draft.features.items())
-        return round(float(1 / (1 + np.exp(-score))), 3)
 
     @cached_property
     def networks(self) -> tuple[Network, ...]:
@@ -269,11 +263,6 @@ class ModelReader:
     def _settings(self) -> dict[str, Any]:
         settings: dict[str, Any] = read_json(self.folder / "settings.json")
         return settings
-
-
-def _doubted(confidence: float, unused: Sequence[str]) -> float:
-    """Returns the confidence, at most DOUBT if the reading passes over a negation."""
-    return min(confidence, DOUBT) if passes_over_a_negation(unused) else confidence
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:

@@ -11,15 +11,19 @@ ANGLE = re.compile(
     r"kink|dog|leg|square|right.angle|angle|wink|knick|orthog|perpend|angolo|angulo|equerre|coude|quiebr|codo|gomito"
     r"|piega|quarter|decroch|recod|baionn|ninety|neunzig|quatre|noventa|novanta|forty|\d|unused"
     r"|hairpin|switchback|haarnadel|kehre|epingle|lacet|horquilla|tornant"
+    r"|half|halb|semi|demi|medi[oa]|mezz|round|back|opposite|turned|facing|headed|way we came"
+    r"|gegen|zuruck|retour|contrari|vuelta|inver|empez|comin|stair|trepp|escal|scal"
+    r"|letter|buchstab|lettre|letra|lettera|outline|form|shape|\b[zluvn]\b"
 )
 MOUNTAIN = re.compile(
     r"mount|mont|berg|alp|pass|\bcol\b|puerto|gebirg|sierra|valico|dolomit|andes|pyren|serra|vette|cordill|himal"
     r"|steep|steil|raide|pente|pentu|empinad|pendiente|pendenz|ripid|erto|erta|brusc"
+    r"|grade|gradient|slope|inclin|neig|roll|wav|well|ond|hill|hugel|colin|coll|lom|vallon|bosse|up.{1,6}down|auf.{1,6}ab"
 )
 HILLY = re.compile(
     r"hill|roll|undul|wave|wavy|up.{1,20}down|wellig|welle|hugel|auf.{1,6}ab|vallon|colin|coll|ond|saliscend|russ|coaster"
     r"|rise|climb|bosse|lomas|subid|dune|hump|crest|heav|hoch.*runter|vagues|vaux"
-    r"|flat|level|eben|flach|platt?|llan|plan|pian"
+    r"|flat|level|eben|flach|platt?|llan|plan|pian|lomer|inver|fall|gefall|steig|rasant|pendenz|pendient|pente"
 )
 
 

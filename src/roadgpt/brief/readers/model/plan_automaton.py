@@ -50,7 +50,7 @@ from roadgpt.brief.readers.model.vocabulary import (
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 
 STRAIGHT_KINDS = ("straight", "crest", "dip")
-UNSAID = {"deg=": FIXED, "steepest=": ("4", "5"), "climb=": ("0",)}
+UNSAID = {"deg=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
 """Numbers that a plan may contain although they are not in the text, by plan key."""
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says: a right angle, one percent."""
@@ -117,7 +117,11 @@ class Numbers:
         if key not in UNIT_OF:
             return [*COUNTS, *fitting]
         unsaid = UNSAID.get(key, ())
-        is_meant = {"deg=": self.evidence.angles, "steepest=": self.evidence.mountains}.get(key, True)
+        is_meant = {
+            "deg=": self.evidence.angles,
+            "turning=": self.evidence.angles,
+            "steepest=": self.evidence.mountains,
+        }.get(key, True)
         plain = [number for number in (*COUNTS, *unsaid) if number in self.said]
         if key in ALWAYS:
             unsaid = ALWAYS[key]

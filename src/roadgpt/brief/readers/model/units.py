@@ -106,6 +106,15 @@ SETS: dict[tuple[str, ...], int] = {
         "|ein halbes dutzend|halbes dutzend|une demi douzaine|demi douzaine"
         "|media docena|una media docena|mezza dozzina|una mezza dozzina|half a dozen of|media docena de"
         "|une demi douzaine de|mezza dozzina di|una mezza dozzina di|una media docena de",
+        10: "une dizaine de|dizaine de|une dizaine d|una decina di|decina di|una decena de|decena de",
+        15: "une quinzaine de|quinzaine de|una quindicina di|quindicina di|una quincena de",
+        20: "une vingtaine de|vingtaine de|una ventina di|ventina di|una veintena de|veintena de",
+        30: "une trentaine de|trentaine de|d une trentaine de|una trentina di|trentina di|una treintena de",
+        40: "une quarantaine de|quarantaine de|una quarantina di|quarantina di|una cuarentena de",
+        50: "une cinquantaine de|cinquantaine de|una cinquantina di|cinquantina di|una cincuentena de",
+        60: "une soixantaine de|soixantaine de|una sessantina di|sessantina di",
+        80: "una ottantina di|ottantina di|un ottantina di",
+        100: "une centaine de|centaine de|un centinaio di|centinaio di|un centenar de|centenar de",
         12: "a dozen|dozen|ein dutzend|dutzend|une douzaine|une douzaine de|una docena|una docena de"
         "|una dozzina|una dozzina di",
     }.items()

@@ -1,0 +1,44 @@
+"""How sure a reading is: from how likely the networks find its plan, and from what the plan leaves out."""
+
+from collections.abc import Mapping, Sequence
+from math import exp, log, log1p
+
+from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.readers.model.used_words import passes_over_a_negation
+from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+
+DOUBT = 0.5
+"""The highest confidence of a reading that does not change without a "not"."""
+
+
+def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
+    """Returns what the confidence in a plan is computed from, by name: besides the probabilities of the plan,
+    the numbers of the text that it does not have, and the lengths of both.
+    """
+    return {
+        **draft.features,
+        "numbers": log1p(len(left_out(draft, text))),
+        "words": log(1 + len(text.words)),
+        "tokens": log(1 + len(draft.tokens)),
+    }
+
+
+def left_out(draft: ScoredPlan, text: SlottedText) -> list[str]:
+    """Returns the measured numbers of a text that are not in its plan."""
+    return [slot for slot in SLOT_TOKENS[: len(text.slots)] if slot not in draft.tokens]
+
+
+def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:
+    """Returns how often readings like this one were right on held-back texts, from 0 to 1.
+
+    A reading that passes over a negation gets DOUBT at most.
+
+    Args:
+        weights: the weights of the confidence model, and its bias.
+        found: the features of the reading.
+        unused: the words that the plan does not depend on.
+    """
+    score = weights["bias"] + sum(weight * found[name] for name, weight in weights.items() if name != "bias")
+    sure = round(1 / (1 + exp(-score)), 3)
+    return min(sure, DOUBT) if passes_over_a_negation(unused) else sure
