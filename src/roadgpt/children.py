@@ -121,8 +121,8 @@ def ending(status: int | None) -> str:
 def private_streams() -> tuple[IO[bytes], IO[bytes]]:
     """Returns the standard input and output of this process, unbuffered and for the caller's exclusive use.
 
-    Afterwards, other code that reads standard input gets no data, and other code that prints writes to
-    standard error.
+    Afterwards, other code that reads standard input gets no data, and what other code prints goes to standard
+    error.
     """
     heard, said = os.dup(0), os.dup(1)
     nothing = os.open(os.devnull, os.O_RDONLY)

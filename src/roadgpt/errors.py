@@ -107,8 +107,8 @@ def explained(kind: type[RoadGPTError], what: str, advice: str) -> Iterator[None
 
     Args:
         kind: the class of the error to raise.
-        what: says what cannot be done, such as "cannot write FILE"; the message continues with the reason.
-        advice: what the user can do; it ends the message.
+        what: beginning of the message, such as "cannot write FILE"; the reason follows.
+        advice: end of the message, which says what the user can do.
     """
     try:
         yield

@@ -81,7 +81,7 @@ def read_text(path: Path, most: int = LARGEST, what: str = ANY, encoding: str = 
     Raises:
         OSError: The file does not exist or may not be read.
         UsageError: The path is not a regular file, or the file is too large.
-        UnicodeDecodeError: The content is not text in this encoding.
+        UnicodeDecodeError: The content is not text in the given encoding.
     """
     return read_bytes(path, most, what).decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
 
@@ -106,11 +106,11 @@ def read_model(
     advice: str = "name another folder",
     most: int = LARGEST,
 ) -> M:
-    """Returns the pydantic model in a JSON file of at most ``most`` bytes that RoadGPT wrote.
+    """Returns the pydantic model in a JSON file that RoadGPT wrote, of at most ``most`` bytes.
 
     Raises:
-        UsageError: There is no such file (the message is ``absent``), it cannot be read as ``what``, or
-            another version of RoadGPT wrote it (these messages end with ``advice``).
+        UsageError: The file does not exist; the message is then ``absent``. Or it is damaged, or another
+            version of RoadGPT wrote it; the message then ends with ``advice``.
     """
     try:
         data = read_json(path, most, what)

@@ -44,7 +44,8 @@ class _State:
 
 
 def install() -> None:
-    """Installs handlers for Ctrl-C and SIGTERM, except where the parent process set them to be ignored."""
+    """Installs handlers for Ctrl-C and SIGTERM. A signal that the parent process set to be ignored stays
+    ignored."""
     for number in SIGNALS:
         if signal.getsignal(number) in USUAL:
             signal.signal(number, _heard)
@@ -85,7 +86,7 @@ def shielded() -> Iterator[None]:
 
 
 def forget() -> None:
-    """Forgets a received signal, after the interrupted work has been stopped and the program continues."""
+    """Forgets a received signal. Call it when the interrupted work has stopped and the program continues."""
     _State.number, _State.is_raised = 0, False
 
 

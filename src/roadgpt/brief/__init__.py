@@ -131,7 +131,7 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
-        NotBuiltError: the description asks for a junction, a roundabout or the like; the message has the
+        NotBuiltError: the description asks for a junction, a roundabout or the like; the message proposes a
             plan of the road without it.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
@@ -200,13 +200,14 @@ def alternatives(
 def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tuple[str, ...]:
     """Returns what the user should know about a road of this Brief, as sentences without full stops.
 
-    They say for each thing in ``brief.beside`` that it is not built, needs a number, is set by an option or
-    sets the friction. They also say what "motorway" requires, and whether the map can hold a motorway.
+    For each thing in ``brief.beside`` they say that it is not built, must be given as a number, is set by an
+    option, or sets the friction. They also say what "motorway" requires, and whether the map can hold a
+    motorway.
 
     Args:
         brief: the Brief.
         map_size: side of the square map in metres.
-        friction: the friction of the World; None: that of the surface that the words name.
+        friction: friction coefficient of the road; with None, a surface named in the description sets it.
     """
     return (*beside.remarks(brief.beside, friction), *motorway.remarks(brief, map_size))
 

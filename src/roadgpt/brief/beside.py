@@ -1,8 +1,8 @@
 """Lists things that descriptions mention but no requirement of a Brief can express, such as a roundabout.
 
 A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then tells the user that
-it is not built, needs a number, is set by an option or sets the friction, so that nothing is ignored
-silently.
+it is not built, must be given as a number, is set by an option or sets the friction, so that nothing is
+ignored silently.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -75,11 +75,11 @@ BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
 def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str]:
-    """Yields what the user should know about the things of these names, as sentences without full stops.
+    """Yields what the user should know about these things, as sentences without full stops.
 
     Args:
-        names: the names.
-        friction: the friction of the World; None: that of the surface that is named.
+        names: names from ``Brief.beside``.
+        friction: friction coefficient of the road; with None, a surface among the things sets it.
     """
     for name in names:
         if name in NOT_BUILT:
@@ -91,8 +91,8 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 
 def networks_in(names: Iterable[str]) -> str:
-    """Returns what is no single road among the things of these names, such as "a roundabout and an exit or a
-    slip road"; empty if nothing is.
+    """Returns, in words, those things that are not a single road, such as "a roundabout and an exit or a slip
+    road"; empty if there are none.
     """
     return " and ".join(NOT_BUILT[name] for name in names if name in NETWORKS)
 
@@ -103,8 +103,8 @@ def friction_of(names: Iterable[str]) -> float | None:
 
 
 def surface_remark(names: Sequence[str], friction: float | None = None) -> str:
-    """Returns a sentence that says whether the surface that is named sets the friction; empty if no surface
-    is named. The arguments are those of ``remarks``.
+    """Returns a sentence on whether the named surface, such as ice, sets the friction; empty if no surface is
+    named. The arguments are those of ``remarks``.
     """
     own = friction_of(names)
     if own is None:

@@ -155,7 +155,7 @@ class Brief(Frozen):
     right: Amount | None = None
     alternating: bool = False
     sharpness: Sharpness | None = None
-    """The sharpness of every turn."""
+    """How tight every turn must be: "gentle", "sweeping" or "sharp"."""
     degrees: Amount | None = None
     """The change of heading of every turn in degrees."""
     radius: Amount | None = None

@@ -2,11 +2,11 @@
 
 - ``words``, ``unused``, ``confidence`` and ``other`` describe the origin of a Brief, not its requirements,
   and are cleared.
-- A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A number
-  without a slope means uphill.
+- A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A grade in
+  percent without a direction is uphill.
 - A clause with several straights, crests or dips is split into one clause each, as are alternating turns
-  whose first direction is known. Consecutive clauses with the same single turns, S-bends or chicanes are
-  merged into one with their total count.
+  whose first direction is known. Consecutive clauses for equal turns, S-bends or chicanes are merged into one
+  clause with the total count.
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
@@ -17,8 +17,8 @@
 - If a Brief names no other feature, 'N turns' becomes a clause, and 'N or more turns' a requirement for the
   whole road.
 - A Brief that names no features and no number of turns requires at least one turn. A Brief that names only
-  straights forbids turns, unless it has the requirement '0 or more turns'; other Briefs lose this
-  requirement.
+  straights forbids turns, unless it has the requirement '0 or more turns', which is removed from all other
+  Briefs.
 """
 
 from math import inf

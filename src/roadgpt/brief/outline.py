@@ -74,7 +74,8 @@ class Group:
     lo: int = 1
     hi: int | None = 1
     alternating: bool = False
-    """True if the sides alternate; ``feature.side`` is then the side of the first."""
+    """True if the features alternate between left and right; ``feature.side`` is then the direction of the
+    first."""
 
     @property
     def counted(self) -> str:
@@ -100,8 +101,8 @@ class Outline:
     each_turn: Feature = Feature("turn", "turn")
     """Limits for every turn, in addition to those of its group."""
     grade: Literal["up", "down", "flat"] | None = None
-    """The slope of the whole road: 'up' or 'down' means that every 20 m window rises or falls; 'flat' means
-    that all grades lie within 1 percent."""
+    """The slope of the whole road: 'up' means that every stretch of 20 m rises, 'down' that every one falls,
+    'flat' that all grades are between -1 and 1 percent."""
     grade_range: Range | None = None
     """Range in percent: for the mean grade of the whole road if ``grade`` is 'up' or 'down', else for the
     grade at every place."""

@@ -1,5 +1,7 @@
-"""Defines the messages with which descriptions are refused, the length of the longest one that is read, and
-two errors that contain the Brief, since a larger map may hold the road.
+"""Defines errors and messages for refused descriptions, and the greatest length of a description.
+
+``TooMuchError`` and ``NoRoomError`` contain the Brief, because a larger map may hold the road.
+``NotBuiltError`` contains the Brief of the road that can be built.
 """
 
 from roadgpt.brief.beside import NOT_BUILT, SAID_OTHERWISE

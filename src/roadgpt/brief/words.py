@@ -151,9 +151,9 @@ TURNING_SLACK = 0.10  # ratio, around the degrees of all turns together
 
 
 def degrees_slack(degrees: float) -> float:
-    """Returns the tolerance of an angle in degrees: 10 % of it, but at most 7 below 90 degrees.
+    """Returns the tolerance of an angle in degrees: 10 % of the angle, but at most 7 degrees.
 
-    From 90 degrees on, the tolerance is at most 10 degrees.
+    For angles of 90 degrees or more, the limit is 10 degrees instead of 7.
     """
     return min(0.1 * abs(degrees), 7.0 if abs(degrees) < 90 else 10.0)
 
@@ -162,11 +162,11 @@ class Quantity(NamedTuple):
     """A measurable quantity of a road: its tolerance, and phrases in which ``{}`` stands for a range."""
 
     asked: str
-    """The requirement in prompts, complaints and advice."""
+    """The phrase for a requirement in prompts, complaints and advice."""
     measured: str
-    """The measured number in complaints; ``{}`` stands for the number."""
+    """The phrase for a measured value in complaints; here ``{}`` stands for the value."""
     said: str
-    """The requirement in the sentence of a Brief; empty if no Brief requires this quantity."""
+    """The phrase for a requirement in the sentence of a Brief; empty if no Brief requires this quantity."""
     slack: Callable[[float], float]
     """Returns the tolerance around an exact number, in the unit of the number."""
     tolerance: str
@@ -226,12 +226,12 @@ WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
 
 
 class Surface(NamedTuple):
-    """A surface that the words name."""
+    """A surface that descriptions can name, such as ice."""
 
     said: str
-    """The surface as a sentence has it, behind the road: 'on an icy road'."""
+    """The phrase for the surface in a sentence, such as 'on an icy road'."""
     friction: float
-    """The friction of the World."""
+    """The friction coefficient of roads with this surface."""
     published: tuple[str, str, str]
     """Friction coefficients between tyre and road, from the three sources that ``_surfaces`` names."""
 

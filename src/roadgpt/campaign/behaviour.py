@@ -101,7 +101,7 @@ def directions(heading: Array) -> float:
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Returns the smallest and the largest value of a feature on the map.
+    """Returns the smallest and the largest value on the map's axis for a feature.
 
     Raises:
         KeyError: there is no feature of that name.

@@ -1,12 +1,12 @@
-"""Divides a campaign's limits of tokens and money among the tests that run at the same time."""
+"""Divides a campaign's limits on tokens and money among the tests that run at the same time."""
 
 from roadgpt.campaign.single_test import Allowance
 from roadgpt.chat import ChatSettings, Spent
 
 
 class BudgetAllocator:
-    """Divides a limit of tokens and money among running tests. The tests stay within the limit even if
-    each one spends its whole allowance.
+    """Divides the limits on tokens and money among the running tests. The tests stay within the limits
+    even if each one spends its whole allowance.
     """
 
     def __init__(self, chat: ChatSettings | None, tokens: int, cost: float) -> None:

@@ -24,7 +24,7 @@ class CellStatus:
     asked: int
     outcomes: Mapping[str, int]
     least_margin: float | None
-    """Smallest margin of the passed tests, metres; failed drives are left out, since they all end near 0."""
+    """Smallest margin of the passed tests, metres. Failed tests are left out; their margins are near 0."""
     partly_outside: int
     """Number of passed tests in which up to half of the car was outside its lane."""
     mostly_outside: int
@@ -32,7 +32,7 @@ class CellStatus:
     max_oob: float | None
     """Largest share of the car that was outside its lane at one time in any passed test, 0 to 1."""
     beyond: float | None
-    """Largest distance beyond the lane marking in any passed test, metres.
+    """Largest distance of the car's body beyond the lane marking in any passed test, metres.
 
     None if an earlier version of RoadGPT wrote the store.
     """

@@ -42,15 +42,16 @@ def work_in(
         folders: the folders, by name.
         draw: draws pictures and saves them in the folders; None: no pictures.
         meter: counts the use of language models, if the tests run in this process; None: a new one.
-        workers: number of worker processes; 0: the tests run in this process. The content of the files is the
-            same for any number.
+        workers: number of worker processes; 0: the tests run in this process. This number does not change the
+            content of the files.
         with_earlier: True: yields the tests of earlier sessions first; False: yields only new tests.
 
     Yields:
         The name of the folder and the test, as soon as the files of the test are complete.
 
     Raises:
-        ChatError: a language model cannot be asked, or a limit is reached; finished tests are kept.
+        ChatError: a language model cannot be reached, or a token or cost limit is reached; finished
+            tests are kept.
         GivenUpError: the simulator failed three times in a row; these three tests have to be run again.
         UsageError: a plug-in is not installed, or another process works in one of the folders.
         RoadGPTError: a file cannot be written, or there are no workers.
@@ -112,9 +113,7 @@ class Campaign(RunFolder):
     draw: Draw | None = None
     """Draws pictures into the folders of Runs; None: no pictures."""
     meter: Meter = field(default_factory=Meter)
-    """Counts the use of language models; it includes the use for roads that earlier sessions made in the
-    folder.
-    """
+    """Counts the tokens and cost of language models, including those of earlier sessions in the folder."""
 
     def __repr__(self) -> str:
         done = f"{len(self.tests)} of {self.roads} roads"
@@ -134,8 +133,8 @@ class Campaign(RunFolder):
 
         Raises:
             DesignError: no road could be designed; the folder is removed, unless it was there before.
-            ChatError: a language model cannot be asked, or a limit is reached; the roads finished before this
-                are saved.
+            ChatError: a language model cannot be reached, or a token or cost limit is reached; the
+                roads finished before this are saved.
             GivenUpError: the simulator failed three times in a row; the three roads have to be made again.
             UsageError: a plug-in is not installed, or another process is using the folder.
             RoadGPTError: a file cannot be written.
@@ -165,7 +164,7 @@ def campaign(
     """Makes many Runs of one description in one folder; each Run is written as soon as it is finished.
 
     The roads are made while you iterate over the returned Campaign. Iterate over ``.all_runs()`` instead to
-    receive also the Runs that an earlier session made. ``.folder`` is the campaign's folder. If a driver or a
+    receive the Runs of earlier sessions as well. ``.folder`` is the campaign's folder. If a driver or a
     simulator fails, only the Run in which it failed is lost.
 
     Args:

@@ -21,7 +21,7 @@ from roadgpt.run.sbft_json import test_name
 
 
 def is_store(folder: Path) -> bool:
-    """Returns whether a folder holds a campaign, whose tests are in a store."""
+    """Returns whether a folder holds a campaign with a store, unlike a folder of runs."""
     return (folder / STORE).is_file()
 
 
@@ -129,7 +129,7 @@ class FolderRecord(FolderStore):
         return result.proposal.seed
 
     def file(self, number: int) -> str:
-        """Returns the path of the file of a test."""
+        """Returns the path of a test's ``test.NNNN.json``."""
         return str(self.folder / test_name(number))
 
 

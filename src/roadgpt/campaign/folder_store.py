@@ -85,7 +85,7 @@ class FolderStore(Store):
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
         """Writes the files of tests that have ended.
 
-        A test for which no road could be designed is written only once another test of its cell has a road.
+        A test for which no road could be designed is written only after another test of its cell has a road.
         """
         super().keep(ended, *rest)
         for name, one in ended:

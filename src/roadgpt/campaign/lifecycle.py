@@ -178,7 +178,8 @@ def work(
     Raises:
         UsageError: there are no tests to run, or another process is working on them, or a plug-in is not
             installed.
-        ChatError: a language model could not be asked, or a limit is reached; finished tests are stored.
+        ChatError: a language model could not be reached, or a token or cost limit is reached; finished
+            tests are stored.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)

@@ -57,7 +57,7 @@ class Proposal:
     seed: int
     """If ``design`` is None, seed of the draft; else seed of the driver."""
     origin: str
-    """Where the road comes from, as tables show it: 'draft', 'vary 17', 'cross 3+9', 'walk'."""
+    """Where the road comes from, as in the tables: 'draft', 'cross 3+9', 'vary 17' (test 17 mutated)."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """Reads drives that earlier versions of RoadGPT stored as Apache Parquet files; this needs pyarrow.
 
-A row is one time step of a drive, as integers in the units of ``traces``. The columns ``cell`` and ``number``
-identify the test, and the metadata under ``roadgpt`` holds the headers of the drives.
+A row is one time step of a drive; its values are integer multiples of the steps in ``traces``. The columns
+``cell`` and ``number`` identify the test, and the metadata under ``roadgpt`` holds the headers of the drives.
 """
 
 import json
@@ -16,7 +16,7 @@ from roadgpt.errors import UsageError
 
 
 def read_parquet(path: Path, cell: str, number: int) -> tuple[dict[str, Any], dict[str, NDArray[np.int32]]]:
-    """Returns the header of one drive, and its columns as integers in the units of ``traces``.
+    """Returns the header of one drive, and its columns as integers.
 
     Raises:
         UsageError: pyarrow is not installed.

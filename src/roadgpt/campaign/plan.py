@@ -143,7 +143,8 @@ class Plan(Frozen):
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
         """Returns all cells; ``briefs`` maps each prompt to the Brief read from it.
 
-        If the plan's World was given no friction, a surface that a Brief names sets that of its cells.
+        If the plan's World was given no friction, the surface that a Brief names sets the friction of its
+        cells.
         """
         made = [(request, generator, briefs.get(request.words)) for request, generator in self.requests()]
         wide = max(2, len(str(len(made))))

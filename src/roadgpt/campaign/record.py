@@ -207,7 +207,7 @@ class Record:
     def results(
         self, cell: str | None = None, where: str = "1", values: Sequence[Any] = ()
     ) -> Iterator[Result]:
-        """Yields the results of tests that have ended, in order, one by one.
+        """Yields one by one the results of tests that have ended, sorted by cell and number.
 
         Args:
             cell: name of the cell; None: all cells.
@@ -251,7 +251,7 @@ class Record:
         return seed_of_driver(result.number, result.proposal)
 
     def file(self, number: int) -> str:
-        """Returns the path of the file of a test; empty if the tests have no files of their own."""
+        """Returns the path of a test's ``test.NNNN.json``; empty for a test in a store."""
         del number
         return ""
 

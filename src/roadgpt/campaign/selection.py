@@ -41,8 +41,8 @@ class Selection:
     """Number of the test; None: all tests."""
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns the Selection of one test in this folder; ``said`` becomes the argument that names the
-        test.
+        """Returns the Selection of one test in this folder; its ``said`` is the test's folder and name,
+        such as 'hard/c01/17'.
         """
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 

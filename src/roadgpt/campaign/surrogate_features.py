@@ -74,8 +74,8 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Estimates how hard each road is, before any test, as the largest curvature of its lane averaged over
-    13 m.
+    """Estimates how hard each road is, without a drive: returns the largest curvature of its lane,
+    averaged over 13 m.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]

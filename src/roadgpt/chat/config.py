@@ -66,7 +66,8 @@ def configured(flags: Mapping[str, Any] | None = None, plan: Layer | None = None
     applies.
 
     Args:
-        flags: the user's options by field; a value of None means that the option was not given.
+        flags: the command-line options, keyed by field name; a value of None means that the option was not
+            given.
         plan: the settings in a plan file, which may have been written by somebody else.
 
     Raises:
@@ -137,9 +138,9 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    If a server is named only in a file of the working folder, a key is sent there only if the key, too, is
-    from such a file; this does not apply to a server on this computer. If a server is named only in a
-    plan, a campaign or a run, it gets no key. Somebody else may have written these files.
+    If a server is named only in a file of the working folder, it is sent only a key from such a file; a
+    server on this computer may be sent any key. If a server is named only in a plan, a campaign or a run, it
+    gets no key. Somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.

@@ -28,7 +28,7 @@ def schema_of(model: type[BaseModel]) -> dict[str, Any]:
     """Returns the flat JSON schema of a model.
 
     Raises:
-        TypeError: the model refers to itself or has objects without named fields; a bug in the caller.
+        TypeError: the model refers to itself or has objects without named fields (a bug in the caller).
     """
     whole = model.model_json_schema()
     return _flat(whole, whole.get("$defs", {}), 0)

@@ -127,7 +127,7 @@ class ChatSettings(ChatValue):
     """USD per million tokens of prompt and completion, as "0.15/0.60"; None uses the built-in table."""
     record: str | None = Field(default=None, exclude=True)
     """Folder in which every exchange is stored. This setting is left out of saved files, so that a replay
-    writes the same files.
+    writes the same files as the recorded run.
     """
     replay: str | None = Field(default=None, exclude=True)
     """Folder of recorded exchanges, from which every answer is taken instead of asking a server."""

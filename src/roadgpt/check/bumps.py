@@ -1,6 +1,6 @@
 """Finds the parts of a road where the description asks for a crest, a dip or a hump.
 
-In these parts the rule ``too_abrupt`` allows vertical accelerations up to gravity.
+In these parts the rule ``too_abrupt`` allows vertical accelerations of up to 1 g.
 """
 
 from roadgpt.brief.model import Brief

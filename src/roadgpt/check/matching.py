@@ -37,7 +37,7 @@ class Match(NamedTuple, Generic[T]):
     wrong: float = 0.0
     """The number of features that are not as requested; infinite if the match is impossible."""
     items: tuple[T, ...] = ()
-    """The results for single features: complaints, or the features that elements of a road must become."""
+    """The results for single features, of the type that the caller needs, such as complaints."""
 
     def plus(self, other: "Match[T]") -> "Match[T]":
         """Returns the match of two parts of a road, one after the other."""
@@ -101,9 +101,10 @@ def best_match(
     Args:
         asked: the requirements.
         count: number of turns of the road.
-        of_turns: returns the match of a group with turns, given the index of the first and their number.
-        of_gap: returns the match of requested straights with what lies before the turn of an index; after the
-            last turn, the index is ``count``.
+        of_turns: matches a group with turns of the road, given the group, the index of the first turn and the
+            number of turns.
+        of_gap: matches requested straights with the gap before a turn, given the index of the turn (``count``
+            for the last gap) and the straights.
     """
     groups, turns_are_free = asked.groups, not asked.names_all_turns
 
@@ -130,9 +131,7 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns the complaints about the turns and straights of a road, compared in driving order.
-
-    Of all ways to match measured with requested features, the one with the fewest mismatches is used."""
+    """Returns the complaints about the turns and straights of a road, compared in driving order."""
     turns, gaps = found.turns, found.gaps
 
     def of_turns(group: Group, first: int, number: int) -> Match[Complaint]:
@@ -151,8 +150,10 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 
 
 def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
-    """Returns the required sides of successive turns of a group; if the turns alternate, the first side that
-    is not required is taken from ``sides``, the sides of the turns.
+    """Returns the side that is required of each turn of a group; None if either side is allowed.
+
+    ``sides`` are the measured sides of the turns. If the turns must alternate and the group does not say how
+    they begin, the measured side of the first turn is taken.
     """
     first = group.feature.side or (sides[0] if sides and group.alternating else None)
     other = OTHER_SIDE[first] if first and group.alternating else first

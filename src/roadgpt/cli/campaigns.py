@@ -114,7 +114,8 @@ def outside_lines(status: "Status") -> Iterator[str]:
 
 
 def headline(status: "Status") -> str:
-    """Returns the state of a campaign as one line: its folder, the number of tests, and the time."""
+    """Returns the state of a campaign as one line: its folder, number of tests, running time and time
+    left."""
     state = "finished" if status.is_finished else "at work" if status.is_running else "interrupted"
     of = "" if status.total is None else f" of {status.total:,}"
     pace = f", {status.rate:.1f} tests/s" if status.rate else ""
@@ -124,7 +125,7 @@ def headline(status: "Status") -> str:
 
 
 def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
-    """Returns a table of cells as lines; columns that do not fit into ``width`` characters are left out.
+    """Returns a table with a line for each campaign cell; columns beyond ``width`` characters are left out.
 
     The last column may be cut off, and needs room for only ``LEAST`` characters.
     """

@@ -52,8 +52,8 @@ class WithoutFailure:
 
 
 def next_steps(quiet: WithoutFailure | None) -> list[tuple[str, str]]:
-    """Returns suggestions, each with the command that carries it out; none if ``quiet``, the results without
-    a failure, is None or not worth suggestions (see ``WithoutFailure.is_worth_it``).
+    """Returns suggestions for results without a failure (``quiet``), each with the command that carries it
+    out. The list is empty if ``quiet`` is None, or if ``quiet.is_worth_it`` is False.
     """
     return [*_steps(quiet)] if quiet is not None and quiet.is_worth_it else []
 

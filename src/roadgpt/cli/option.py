@@ -44,7 +44,7 @@ class Option(click.Option):
         names: The names of the option, separated by blanks, and the name of the function's argument if it
             differs.
         sentence: The option's text in the help.
-        kind: A type as click takes it, or a function that converts the text; ``bool`` makes a switch.
+        kind: A click type, or a function that converts the text; ``bool`` makes a switch.
         default: The value if the option is not given; the help shows it unless ``sentence`` states a default.
         heading: The heading under which the help lists the option.
         is_rare: Whether --help omits the option and only --help-all lists it; has no effect on commands with
@@ -53,8 +53,7 @@ class Option(click.Option):
             A switch that files can set also gets its opposite, such as --no-lane-departure.
         key: The option's key in that table; empty if it is the option's first name.
         guard: A function that refuses values which a configuration file must not set.
-        unit: The field's value times this factor is the option's value, such as 3.6 for a field in m/s and an
-            option in km/h.
+        unit: Factor that converts the field's value to the option's value, such as 3.6 from m/s to km/h.
         advice: A sentence that says what to type if the option is required and missing.
     """
 
@@ -77,9 +76,7 @@ class Option(click.Option):
         self.advice = advice
 
     def under(self, heading: Heading) -> "Option":
-        """Returns a copy of this option that is listed under another heading, and by --help as well as by
-        --help-all.
-        """
+        """Returns a copy of this option under another heading. Both --help and --help-all list the copy."""
         twin = copy(self)
         twin.heading, twin.is_rare = heading, False
         return twin
@@ -217,7 +214,7 @@ class Argument(click.Argument):
         name: The name of the function's argument, followed by "..." if the argument takes several values.
         metavar: The name of the argument in the help.
         advice: A sentence that says what to type; empty if click's own message is enough.
-        kind: A type as click takes it, or a function that converts the text.
+        kind: A click type, or a function that converts the text.
         required: Whether the user must give the argument.
     """
 

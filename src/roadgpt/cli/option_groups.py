@@ -1,4 +1,4 @@
-"""Help texts that list options in named groups: ``--help`` the common options, ``--help-all`` all of them."""
+"""Makes help texts that list options in groups: ``--help`` lists common options, ``--help-all`` lists all."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -61,7 +61,7 @@ HELP_ALL = Option(
 
 
 class GroupedCommand(click.Command):
-    """A command whose help lists its options in groups, and that prints which settings come from files."""
+    """A command whose help lists options in groups. It also prints which settings come from files."""
 
     def __init__(self, *args: Any, **rest: Any) -> None:
         super().__init__(*args, **rest)

@@ -13,9 +13,9 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
     """Returns the type of an option that takes a finite number within bounds.
 
     Args:
-        low, high: The bounds, inclusive.
+        low, high: The bounds, inclusive unless ``above`` excludes ``low``.
         unit: Unit of the number, for messages.
-        above: Whether the lower bound is excluded.
+        above: Whether ``low`` is excluded.
     """
     bounds = f"above {low:g}, up to {high:g}" if above else f"from {low:g} to {high:g}"
     advice = f"give a number {bounds}{unit and ' ' + unit}"
@@ -33,7 +33,7 @@ def measure(low: float, high: float, unit: str = "", above: bool = False) -> Cal
 
 
 def lanes(value: str) -> str:
-    """Checks the numbers of lanes in and against the direction of the road, such as '2+1'."""
+    """Checks a text such as '2+1': the number of lanes along the road, and the number of oncoming lanes."""
     from roadgpt.road.world import lanes_in
 
     try:

@@ -1,7 +1,7 @@
 """Declares the options that several commands share, and converts their values to objects such as the World.
 
-One entry in ``WORLD`` or ``SETUP`` makes an option of ``roadgpt run``, ``campaign`` and others, a key of the
-configuration files, a line of ``roadgpt config show``, and an argument in the commands that RoadGPT prints.
+Each entry in ``WORLD`` or ``SETUP`` defines four things: an option of ``roadgpt run``, ``campaign`` and
+others, a key in configuration files, a line of ``roadgpt config show``, and an argument in printed commands.
 """
 
 import os
@@ -228,7 +228,7 @@ def formats_option(names: str, sentence: str, **more: Any) -> Option:
 def world_of(values: dict[str, Any]) -> "World":
     """Returns the World that option values describe, and removes these options from ``values``.
 
-    An option with the value None is not given: the World counts it as not set.
+    The value None means that an option was not given; the World then counts the field as not set.
     """
     from roadgpt.road import World
 
@@ -277,7 +277,8 @@ def chat_of(values: dict[str, Any], reader: str = "", designer: str = "") -> "Ch
 
 
 def choice_of(values: dict[str, Any]) -> "Choice | None":
-    """Returns which of --failures, --faults and --worst was given, or None, and removes them from ``values``.
+    """Returns which of --failures, --faults and --worst was given; None if none was. Removes all three from
+    ``values``.
 
     Raises:
         UsageError: More than one choice is given.

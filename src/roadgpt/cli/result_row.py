@@ -211,7 +211,8 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
 
 def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
-    """Returns the row of a test from its stored result, its description, the driver's seed and its name."""
+    """Returns the row of a test from its stored result, its description, the driver's seed and the test's
+    name."""
     return Row(
         "",
         result.outcome,

@@ -48,8 +48,9 @@ def roads_named(
     Args:
         files: The names, as the user typed them.
         choice: Which roads of a folder to yield, such as the failures; None if the user chose none.
-        takes_all: What a folder means if ``choice`` is None: all its roads if True, else its only road.
-        complain: Called with the error of a wrong name, which is then skipped. If None, the error is raised.
+        takes_all: If ``choice`` is None: True yields all roads of a folder, False yields its only road.
+        complain: Called with the error if a name is wrong; the name is then skipped. If None, the error is
+            raised.
 
     Raises:
         UsageError: A name is wrong, or the folder has no road that matches the choice.
@@ -252,7 +253,7 @@ def check_file(path: Path, kind: str, usual: Path, endings: Sequence[str] = ()) 
     Args:
         path: The path.
         kind: What the file is, such as 'film'.
-        usual: A usual name of such a file.
+        usual: An example of a file name, for the error message.
         endings: The file name extensions that it may have, the usual one first; empty: any.
 
     Raises:

@@ -14,9 +14,7 @@ LETTERS = "backslashreplace"  # letters that the other end has not are written a
 
 
 class OutputError(Exception):
-    """Raised if standard output cannot be written to; not an OSError, since click would handle that
-    itself.
-    """
+    """Raised if standard output cannot be written to. It is no OSError, which click would handle itself."""
 
     def __init__(self, cause: OSError) -> None:
         self.is_reader_gone = isinstance(cause, BrokenPipeError)
@@ -83,13 +81,13 @@ def warn(sentence: object) -> None:
 
 
 def is_coloured() -> bool:
-    """Returns whether output on a terminal may be coloured, from the variables NO_COLOR and TERM."""
+    """Returns whether the variables NO_COLOR and TERM permit coloured output on a terminal."""
     return not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
 
 
 def apart(steps: Iterable[Step]) -> Iterator[Step]:
-    """Yields the steps of an iterable; text printed while a step is computed, such as by a user's driver,
-    goes to standard error, so that standard output holds only result rows.
+    """Yields the steps of an iterable. Text printed meanwhile, such as by a user's driver, goes to standard
+    error, so that standard output holds only result rows.
     """
     made = iter(steps)
     while True:

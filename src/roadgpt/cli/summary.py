@@ -1,4 +1,4 @@
-"""Summaries of a Run, a folder of runs or a campaign, in plain lines or as JSON."""
+"""Summarises a Run, a folder of runs or a campaign, as lines of text or as JSON."""
 
 import shlex
 from collections import Counter
@@ -28,8 +28,8 @@ MOST_TESTS = 40  # of a cell, one by one
 
 
 def show(path: Path | str, choice: Choice | None = None) -> str:
-    """Returns the summary of a Run with the commands that repeat it, or a table of a folder, a campaign or a
-    cell.
+    """Returns the summary of a Run with the commands that repeat it, or an overview of the tests in a folder,
+    a campaign or a cell.
 
     Args:
         path: A run, its ``test.NNNN.json``, a folder of runs, a campaign, a cell or a test.

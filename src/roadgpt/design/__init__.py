@@ -1,7 +1,7 @@
 """Makes Designs from Briefs. Main function: ``draft``.
 
-A designer is a class. It is called without arguments, or with ChatSettings if it has a parameter
-``settings``. Its objects have one method:
+A designer is a class, called without arguments, or with ChatSettings if it has a parameter ``settings``. Its
+instances have one method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
@@ -37,7 +37,7 @@ class Designer(Protocol):
             brief: the requirements for the road.
             world: size of the map, and limits that the rules check, such as the steepest grade.
             notes: objections of the rules to the previous draft, one sentence each.
-            earlier: designs of the campaign so far, which are not repeated.
+            earlier: designs of the campaign so far; the new one should differ from them.
             seed: seed of the random number generator.
 
         Raises:
@@ -61,7 +61,7 @@ def draft(
         brief: the requirements for the road.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         notes: objections of the rules to the previous draft, one sentence each.
-        earlier: designs of the campaign so far, which are not repeated.
+        earlier: designs of the campaign so far; the new one should differ from them.
         seed: seed of the random number generator.
         designer: name of an installed designer.
         chat: settings of the language model, for designers that use one; None for the user's settings.

@@ -43,7 +43,7 @@ def advice(
         world: the World, for the size of its map.
         failed: the reasons why drafts failed, with the number of times that each occurred.
         boxes: side in metres of the smallest square around each draft that was too large for the map.
-        fits: tests whether roads can be drafted for another Brief, or on another map.
+        fits: function that tests whether roads can be drafted for another Brief, or on another map.
     """
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY

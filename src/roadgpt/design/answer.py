@@ -77,7 +77,7 @@ def design_of(start: AnswerStart, segments: list[AnswerSegment]) -> tuple[Design
 
     Args:
         start: the start of the road.
-        segments: its segments in driving order.
+        segments: the segments of the road in driving order.
 
     Raises:
         UsageError: the answer is not a design; the message can be shown to the model.

@@ -41,8 +41,8 @@ def rules(name: str, world: World) -> str:
 
 
 def words_of(brief: Brief) -> str:
-    """Returns the first 2000 characters of the description or, if there is none, a sentence that states the
-    Brief.
+    """Returns the first 2000 characters of the description; if there is none, the Brief's requirements in a
+    sentence.
     """
     return brief.words.strip()[:MOST_WORDS] or sentence(brief)
 
@@ -73,7 +73,7 @@ def request(brief: Brief, world: World, notes: Sequence[str], earlier: Sequence[
 
 
 def start_for(world: World, seed: int) -> str:
-    """Returns a random start in words, to be suggested to the model so that different seeds give different
+    """Returns a phrase that suggests a random start to the model, so that different seeds give different
     roads.
     """
     x, y, theta = drawn_start(world, seed)

@@ -68,7 +68,7 @@ def composed(
         windows: the grades that the requirements allow.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         rng: random number generator.
-        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
+        haste: from 0 to 1; the larger it is, the smaller the lengths, angles and radii.
     """
     narrowed = narrowed_turns(order.turns, outline, windows, world)
     turns: list[Element | None] = list(drawn_turns(narrowed, outline, world, rng, haste))
@@ -129,7 +129,7 @@ def gap_between(
         outline: the requirements for the road.
         windows: the grades that the requirements allow.
         rng: random number generator.
-        haste: from 0 (lengths from their whole ranges) to 1 (only lengths close to the shortest allowed).
+        haste: from 0 to 1; the larger it is, the shorter the straights.
     """
     if wishes:
         few = outline.turns.hi <= 1 and len(wishes) == 1

@@ -38,7 +38,7 @@ class DesignTask(NamedTuple):
     is_new: Callable[[Design], bool]
     """Returns whether a design differs from all earlier ones of the campaign."""
     seed: int
-    """Seed of the start that is used if the model gives none."""
+    """Seed of the random start that is used if the model gives no start."""
 
 
 class Outcome(NamedTuple):
@@ -122,8 +122,8 @@ def _compact(answer: BaseModel) -> str:
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
     """Asks for one segment at a time and checks each before it asks for the next.
 
-    A segment with objections is asked for again, at most as often as the setting ``rounds`` allows, and then
-    omitted. The dialogue therefore always ends, whatever the model answers.
+    The model may try each segment as often as the setting ``rounds`` allows. If the last try has objections,
+    too, the segment is omitted. So the dialogue always ends.
 
     Args:
         chat: the language model.

@@ -1,7 +1,7 @@
 """Describes in sentences how two designs differ.
 
-``changes_between`` compares them segment by segment, and ``sentences`` turn by turn, from measurements of the
-road before and after an edit.
+``changes_between`` compares them segment by segment. ``sentences`` compares them turn by turn, as
+measured on the road before and after an edit.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,7 +27,7 @@ def sentences(
         found: The measurements of that road.
         after: The road after the edit. Its elements have the same names as before the edit; if it has no
             elements, only the measured turns are compared.
-        draft: The design before segments were changed only to keep the road valid.
+        draft: The edited design before further segments were changed to keep the road valid.
     """
     new = after.found
     things = _things(elements, after.elements, new) if after.elements else _counted(found, new)

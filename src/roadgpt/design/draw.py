@@ -103,7 +103,7 @@ def drawn_turns(
         outline: the requirements for the road.
         world: the World; the size of its map limits the length of a turn.
         rng: random number generator.
-        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
+        haste: from 0 to 1; the larger it is, the smaller the angles and radii.
     """
     ranges = [turn.degrees or ANY_TURN for turn in turns]
     hands = [hand_of(turn) for turn in turns]
@@ -179,7 +179,7 @@ def drawn_turn(
         longest: greatest length of the turn in metres.
         hard: True if a hard road was requested; the radius is then near the smallest one allowed.
         rng: random number generator.
-        haste: from 0 (values from their whole ranges) to 1 (only values close to the smallest allowed).
+        haste: from 0 to 1; the larger it is, the smaller the radius.
     """
     asked, radii = turn.degrees or ANY_TURN, turn.radius or Range(0)
     least, most, is_tight = radii.lo, radii.hi, radii.hi < inf
@@ -225,8 +225,8 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
     Args:
         wish: the required straight.
         rng: random number generator.
-        haste: from 0 (lengths from their whole ranges) to 1 (only lengths close to the shortest allowed).
-        least: least length in metres; ignored as far as the required range excludes it.
+        haste: from 0 to 1; the larger it is, the shorter a straight without an upper limit.
+        least: least length in metres; reduced if the required range does not allow it.
         mean: average number of metres by which a straight without an upper limit exceeds its least length.
     """
     span = wish.length or Range(10, inf)
@@ -241,13 +241,13 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns how long to design a straight, in metres, so that ``least`` metres of it are measured."""
+    """Returns the design length in metres of a straight of which ``least`` metres must be measured."""
     return 1.05 * least + 3.0
 
 
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
     """Returns a random length, in metres, of a straight without requirements.
 
-    The length is at least ``least``; without haste, it is about ``mean`` metres more on average.
+    The length is at least ``least``; if ``haste`` is 0, it is about ``mean`` metres more on average.
     """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

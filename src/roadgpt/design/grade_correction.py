@@ -1,10 +1,9 @@
 """Adds parabolas to drafts, and corrects straights whose measured values are not as required. Main function:
 ``corrected_draft``.
 
-The parabola that joins the grades of two straights takes up a part of both. A level straight is measured only
-where the road is level, so it loses length to a steep neighbour, and the mean grade of the steep one falls.
-So the draft is measured, joints and grades of straights are corrected by the measured errors, and the draft
-is measured again.
+The parabola that joins the grades of two straights takes up a part of both. A level straight next to a steep
+one is therefore measured shorter than designed, and the mean grade of the steep one falls. So joints and
+grades of straights are corrected by the measured errors, and the draft is measured again.
 
 ``design.fit.grades`` corrects only inclines. Here the lengths of consecutive straights change, too, which
 moves the joints between them but not the road in plan view.
@@ -45,7 +44,7 @@ def corrected_draft(
     share: float,
     bumps: bool,
 ) -> tuple[tuple[Segment, ...], list[Complaint]]:
-    """Returns the segments of a draft, corrected in up to eight rounds, and the complaints that remain.
+    """Returns the segments of a draft, corrected in up to eight rounds, and Complaints about the result.
 
     Args:
         elements: the elements of the draft, with inclines.
@@ -53,9 +52,9 @@ def corrected_draft(
         outline: the requirements for the road.
         limit: range of inclines that are allowed, in percent.
         pace: the vertical radii that the expected speeds require.
-        ease: share (0 to 1) of the comfortable vertical radii to aim for between consecutive straights of
-            which one has a fixed length; where the rule requires a larger radius, that one is used.
-        share: the same kind of share for all other vertical radii.
+        ease: share (0 to 1) of the comfortable vertical radii to aim for between consecutive straights, if
+            at least one has a fixed length. If the rule requires a larger radius, that one is used.
+        share: the share to aim for everywhere else.
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
     ends = np.cumsum([element.length for element in elements])

@@ -97,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns each straight's range of grades; where nothing is required, one unlike its neighbour's."""
+        """Returns each straight's range of grades, chosen unlike its neighbour's if no grade is required."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)
@@ -383,7 +383,7 @@ def _softened(
 
 
 def climbing(grades: Array, lengths: Array, limits: Sequence[Range], metres: float) -> Array:
-    """Returns the grades, shifted alike and clipped to their limits so that the road climbs ``metres``.
+    """Returns the grades, all shifted by one amount within their limits, so that the road climbs ``metres``.
 
     Args:
         grades: grades in percent, ``(n,)``.

@@ -79,12 +79,12 @@ RoadElements = tuple[RoadElement, ...]
 
 
 def measured(design: Design, geometry: Geometry) -> Measures:
-    """Returns the measured turns, straights and grades of the road of a design."""
+    """Builds a design's road, and returns its measured turns, straights and grades."""
     return measure(build(design, geometry).centreline())
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the elements of a design, divided at the turns measured on its road, and the measurements."""
+    """Returns the elements into which the measured turns divide a design, and its measurements."""
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (
@@ -195,7 +195,7 @@ def numbered(elements: RoadElements) -> RoadElements:
 
 
 def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadElements:
-    """Returns numbered elements with other segments; the number of segments must be the same as before."""
+    """Returns the elements, each segment replaced by the one with the same index in ``segments``."""
     return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
 
 

@@ -40,8 +40,8 @@ def is_hairpin(feature: Feature) -> bool:
 
 
 def drawn_sequence(outline: Outline, rng: np.random.Generator, plain: bool) -> TurnSequence:
-    """Chooses at random what the Outline leaves open: the number of turns, left or right, places of
-    straights.
+    """Chooses at random what the Outline leaves open: the number of turns, the side of each, and
+    where straights are.
 
     Args:
         outline: the requirements for the road.

@@ -1,4 +1,4 @@
-"""Chooses vertical radii that suit the expected speed, and adjusts grades where the curves would not fit.
+"""Chooses vertical radii that suit the expected speed, and adjusts grades where the parabolas would not fit.
 
 A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint. On a slope
 of length L, the two parabolas at its ends need
@@ -260,7 +260,7 @@ def with_new_parabolas(
         pace: the vertical radii that the expected speeds require.
         ease: share (0 to 1) of the comfortable radius to aim for; if the rule requires a larger radius, that
             one is used.
-        is_widened: True to add parabolas to unchanged segments, too, and to enlarge all parabolas that are
+        is_widened: True to add parabolas to unchanged segments, too, and to increase all radii that are
             smaller than the rule allows.
     """
     known = {(a.incline, b.incline, b.vertical_radius) for a, b in pairwise(before)}
@@ -293,7 +293,7 @@ def widened(segments: Sequence[Segment], pace: Pace) -> tuple[Segment, ...]:
 
 
 def too_abrupt(segments: Sequence[Segment], pace: Pace, bumps: bool = False) -> bool:
-    """Returns whether any parabola is smaller than the rule allows.
+    """Returns whether the radius of any parabola is smaller than the rule allows.
 
     If ``bumps``, a vertical acceleration of up to 1 g is allowed, as for a requested crest or dip.
     """

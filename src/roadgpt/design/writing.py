@@ -1,4 +1,4 @@
-"""Writes elements as a Design on the map, with grades that change no faster than the speed allows."""
+"""Converts elements to a Design on the map, with grades that do not change too abruptly for the speed."""
 
 from collections.abc import Sequence
 from math import ceil

@@ -73,14 +73,14 @@ class Simulator(Protocol):
 
         At every control step the simulator checks these conditions in this order: the car has reached the
         goal; the car is stuck; the car is out of its lane; the car has fallen; the time is up. The first
-        condition that holds ends the drive. The car is out of its lane if more than ``world.oob_tolerance``
-        of its box is outside or, with ``world.lane_departure``, if a front tyre is beyond a marking. With
-        ``keep_driving``, the drive goes on when the car leaves its lane.
+        condition that holds ends the drive. The car is out of its lane if a larger share of it than
+        ``world.oob_tolerance`` is outside. With ``world.lane_departure``, one front tyre beyond a marking is
+        enough. With ``keep_driving``, the drive goes on when the car leaves its lane.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
-            SimulatorError: the simulator itself failed. A command that drives many roads gives up on it
-                after three such failures in a row.
+            SimulatorError: the simulator itself failed. Commands that drive many roads stop after three such
+                failures in a row.
             SimulationError: the physics became unstable.
         """
         ...
@@ -98,8 +98,7 @@ def simulate(
 
     Args:
         road: the road to drive on.
-        world: the World, which gives the friction, the speed limit, the tolerances, and the lanes of a road
-            that has none of its own.
+        world: the World, with friction, speed limit and tolerances, and with lanes for a road that has none.
         driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
             file.
         seed: passed to the driver and recorded; the car's physics uses no random numbers.
@@ -131,8 +130,8 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
     Args:
         simulator: the simulator or its class.
         world: the World; a field with its default value counts as not set.
-        road: the road, or None if it is not known yet. Superelevation that is stored in the road is treated
-            like ``world.section.bank``.
+        road: the road, or None if it is not known yet. Superelevation may come from the road or from
+            ``world.section.bank``.
 
     Raises:
         UsageError: the simulator cannot apply a field that the world sets, or the superelevation of the road;

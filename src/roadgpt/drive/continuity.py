@@ -1,10 +1,10 @@
 """Checks that a drive is physically possible: the car must move at the speed it reports, without jumps.
 
-Between two samples, the distance must not exceed what a car can do, plus some slack:
+Between two samples, a car can travel only a limited distance:
 
     distance <= speed * dt + 1/2 HARDEST dt^2 + SLACK
 
-Here ``speed`` is the larger speed of the two samples, at most FASTEST.
+Here ``speed`` is the larger of the speeds at the two samples, but at most FASTEST.
 """
 
 import numpy as np

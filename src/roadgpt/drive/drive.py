@@ -131,7 +131,7 @@ class Drive:
 
     @property
     def lane_steps(self) -> int:
-        """Number of steps, from the first on, at which the car's position in the lane is judged.
+        """Number of steps, from the first on, at which the verdict checks whether the car is in its lane.
 
         All steps count, except the last step if the car reached the goal or was stuck at that step: the SBFT
         competition checks for the goal first, then for motion, then for the lane.

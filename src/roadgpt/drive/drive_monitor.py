@@ -92,8 +92,8 @@ class DriveMonitor:
         return time - self._since >= STUCK_TIME - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
-        """Returns whether the car is out of its lane, or, if lane departures count, a front tyre is beyond a
-        marking.
+        """Returns whether the car is out of its lane. If lane departures count, it is also out when a front
+        tyre is beyond a marking.
 
         Args:
             outside: share of the car's box outside the lane, 0 to 1.

@@ -61,8 +61,8 @@ class DrivingLine:
     """Superelevation of the road in radians, positive where the surface falls to the right."""
 
     def place(self, s: float) -> tuple[int, float]:
-        """Returns the index of the last listed station at or before ``s``, and the fraction of the step from
-        that station to ``s``."""
+        """Returns the index of the last entry at or before ``s``, and the position of ``s`` between it and
+        the next, 0 to 1."""
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:
@@ -72,7 +72,7 @@ class DrivingLine:
 
 
 def stations(road: "Road") -> FloatArray:
-    """Returns the stations of the road at which a line is computed, in metres, both ends included, shape
+    """Returns the stations in metres at which a line is computed, from start to end of the road, shape
     ``(n,)``."""
     return np.linspace(0.0, road.length, max(2, math.ceil(road.length / STEP)) + 1)
 
@@ -119,7 +119,7 @@ def _longer(values: FloatArray, more: int, last: float) -> list[float]:
 
 
 def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
-    """Returns the curvature of the circle from the car to a point of the line ahead, in 1/m, positive to the
+    """Returns the curvature of the circle from the car to a later point of the line, in 1/m, positive to the
     left.
 
     Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01

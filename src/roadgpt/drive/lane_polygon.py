@@ -1,6 +1,6 @@
 """Computes how much of the car lies outside its lane, by clipping two polygons exactly.
 
-The lane is a strip of quadrilaterals between the edges of the driven lane. Only quadrilaterals near the car's
+The strip between the edges of the driven lane is divided into quadrilaterals, and only those near the car's
 own station count. Other sections of the same road that pass nearby, or cross above or below, are therefore
 ignored.
 """
@@ -26,7 +26,7 @@ class LanePolygon(NamedTuple):
     edges: FloatArray
     """Shape (n, 4): x and y of the left edge, x and y of the right edge, in metres."""
     step: float
-    """Distance between rows in metres along the centre line."""
+    """Distance in metres along the centre line between rows of ``edges``."""
 
     @classmethod
     def along(cls, road: "Road", world: "World") -> "LanePolygon":

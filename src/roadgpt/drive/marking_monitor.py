@@ -48,7 +48,7 @@ class MarkingMonitor(NamedTuple):
     The shape is (n, 2), with one row for each row of the table in ``sampled``.
     """
     points: FloatArray
-    """Shape (n, 3): metres ahead, to the left and up, from the car's centre of gravity."""
+    """Points of the car, shape (n, 3): metres ahead, to the left and up, from its centre of gravity."""
 
     @classmethod
     def for_tyres(cls, road: "Road", world: "World", box: Box) -> "MarkingMonitor":

@@ -31,8 +31,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use if a stored file names the driver ``spec``: a driver that the user has
-    named and that has the same file name and class, if there is one, else ``spec``."""
+    """Returns the driver to use where a stored file names ``spec``. If the user has named a driver with the
+    same file name and class, it is that driver, otherwise ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))

@@ -1,9 +1,9 @@
 """Samples a road for the physics as a table of equally spaced stations, from which the smooth road surface is
 computed at any point.
 
-Between stations the centre line is a cubic in x, y and z, continuous in its direction, so that there are no
-kinks. The table continues straight beyond both ends. On a road with superelevation, the surface is rotated
-about the pitched centre line, as ``Road.at`` does it.
+Between stations, x, y and z of the centre line are cubic polynomials, and its direction has no jumps. The
+table continues straight beyond both ends. On a road with superelevation, the surface is rotated about the
+pitched centre line, as ``Road.at`` does it.
 """
 
 import math
@@ -34,7 +34,7 @@ class SampledRoad(NamedTuple):
     first: float
     """Station of row 0 in metres; negative."""
     step: float
-    """Distance between rows in metres."""
+    """Distance in metres between rows of the table."""
     length: float
     """Length of the road itself in metres."""
 

@@ -41,9 +41,9 @@ class View(NamedTuple):
     dt: float
     """Seconds to the next control step."""
     vx: float
-    """Velocity in metres per second forward along the car; negative when the car rolls back."""
+    """Forward velocity of the car in metres per second; negative when it rolls back."""
     vy: float
-    """Velocity in metres per second to the car's left."""
+    """Velocity of the car to its left in metres per second."""
     image: Any = None
     """The driver's camera image, shape (height, width, 3), uint8; None if the driver has no attribute
     ``camera``."""

@@ -60,7 +60,7 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
         point, as in the competition's code, because ``arange`` overshoots by a rounding error.
 
     Raises:
-        UsageError: There are fewer than two points, or two neighbours are the same.
+        UsageError: There are fewer than two points, or two successive points are the same.
     """
     points = np.asarray(points, float)
     tck, _ = _spline(points)
@@ -84,7 +84,7 @@ class SplineCurve:
         """Returns the curve through control points ``(n, 2)`` or ``(n, 3)`` in metres.
 
         Raises:
-            UsageError: There are fewer than two points, or two neighbours are the same.
+            UsageError: There are fewer than two points, or two successive points are the same.
         """
         tck, knots = _spline(np.asarray(points, float))
         return cls(tck, knots)

@@ -1,4 +1,4 @@
-"""The environment ``roadgpt/LaneKeeping-v0``: keep the lane of a road that meets a description."""
+"""The environment ``roadgpt/LaneKeeping-v0``: drive a road that meets a description, and stay in the lane."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -59,7 +59,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
         world: values for fields of ``roadgpt.road.World``, such as ``{"friction": 0.6}``; all other fields
-            keep their defaults. Without a friction, a surface in the description sets it, such as a wet road.
+            keep their defaults. If ``world`` has no friction, a surface in the description, such as "icy",
+            sets it.
         camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
         reader: name of the plug-in that reads the descriptions.
 

@@ -120,8 +120,8 @@ def export_checkpoints(
     """Writes all files that the reader needs, from the checkpoints of one or two training runs.
 
     Args:
-        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``; the first network is the one whose
-            words are checked.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``; the first network is used to find the
+            unused words.
         folder: where the graphs, the pieces, the function words and the settings are written.
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
         fillers: function words, which no plan depends on.

@@ -1,5 +1,5 @@
-"""Finds the words that a reader does not report as unused: function words, and frequent words that go with no
-token of a plan, such as "please" or "question".
+"""Finds the words that a reader does not report as unused: function words, and frequent words that mean
+nothing in a plan, such as "please" or "question".
 """
 
 from collections import Counter

@@ -64,7 +64,8 @@ def contrasted(seed: int) -> Iterator[Pair]:
 
 
 def specified(seed: int) -> Iterator[Pair]:
-    """Yields an endless series of descriptions with several figures, gaps, shared values and heights."""
+    """Yields an endless series of detailed descriptions: several numbers per turn, straights between turns,
+    values that all turns share, and heights."""
     rng = np.random.default_rng([seed, 3])
     while True:
         pair = draw(_language(EVEN, rng), rng, "specs", "specs")
@@ -104,7 +105,7 @@ def draw(language: str, rng: np.random.Generator, symbol: str = "top", phrases: 
         language: code of the language, such as "en".
         rng: source of randomness.
         symbol: the symbol of the grammar to begin with.
-        phrases: more phrases that the grammar has, such as "contrasts".
+        phrases: name of further phrases for the grammar, such as "contrasts".
     """
     try:
         text, raw = Speaker(grammar_of(language, phrases), rng).say(symbol)

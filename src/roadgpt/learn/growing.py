@@ -1,7 +1,7 @@
 """Makes trained weights fit a larger network, so that training goes on instead of beginning anew.
 
-New tokens get small random embeddings. A new decoder layer is a copy of the one before it whose outputs are
-zero, so that the larger network first writes what the smaller one wrote.
+New tokens get small random embeddings. A new decoder layer is a copy of the layer before it, but its outputs
+are zero. So the larger network first writes what the smaller one wrote.
 """
 
 import re
@@ -24,16 +24,16 @@ def decoder_layers(weights: Mapping[str, Tensor]) -> int:
 
 
 def grown(weights: Mapping[str, Tensor], tokens: int, layers: int, seed: int = 0) -> dict[str, Tensor]:
-    """Returns the weights of a network with more tokens, and with a multiple of the decoder layers.
+    """Returns the weights for a larger network, with more tokens or more decoder layers.
 
     Args:
-        weights: by parameter names.
-        tokens: the number of tokens of the new network; at least as many as there are.
+        weights: the weights of the present network, keyed by parameter name.
+        tokens: the number of tokens of the new network; not less than the present number.
         layers: the number of decoder layers of the new network: a multiple of the present number.
         seed: seed of the new tokens' embeddings.
 
     Raises:
-        LearnError: the new network is smaller, or its number of layers is no multiple.
+        LearnError: ``tokens`` is too small, or ``layers`` is not a multiple of the present number.
     """
     present, old = decoder_layers(weights), weights["bias"].shape[0]
     times, rest = divmod(layers, present)

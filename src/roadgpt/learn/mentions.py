@@ -1,5 +1,5 @@
-"""Adds mentions of things beside the road to descriptions, such as "in the rain", with their names in the
-plan, denials of such things ("no traffic"), which leave the plan as it is, and talk that asks for nothing.
+"""Adds phrases to descriptions: things that plans list in ``beside(...)`` ("in the rain"), denials of such
+things ("no traffic"), and talk that asks for nothing. Denials and talk do not change the plan.
 """
 
 import json
@@ -28,8 +28,8 @@ NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
 
 
 def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with one more thing beside the road, or with one denied; None if the plan is
-    a refusal, or names the thing already.
+    """Returns the text and plan with a mention ("in the rain") or a denial ("no traffic") added; None if the
+    plan is a refusal, or names the thing already.
     """
     is_said = rng.random() < 0.7
     table = (SAID if is_said else DENIED).get(language)
@@ -50,7 +50,7 @@ def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 
 def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
-    """Returns the text with a greeting, a reason or the like before or behind it, or both."""
+    """Returns the text with a greeting, a reason or the like before it, after it, or both."""
     told = TALK.get(language, TALK["en"])
     way = rng.random()
     if way < 2 / 3:
@@ -63,13 +63,13 @@ def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
 
 
 def names_in(plan: str) -> list[str]:
-    """Returns the names that a plan has beside the road."""
+    """Returns the names that a plan lists in ``beside(...)``."""
     found = NAMED.search(plan)
     return [name.strip() for name in found[1].split(",")] if found else []
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
-    """Returns the plan with these names beside the road instead of its own."""
+    """Returns the plan with these names in ``beside(...)`` instead of its own."""
     bare = NAMED.sub("", plan).rstrip(" |")
     joint = " " if "|" in bare else " | "
     return f"{bare}{joint}beside({', '.join(names)})".strip()

@@ -1,4 +1,4 @@
-"""The standard form of a plan, and which plans are worth learning."""
+"""Defines the standard form of a plan, and which plans make sense as training data."""
 
 from roadgpt.brief.feasible import is_possible
 from roadgpt.brief.model import Brief, exactly

@@ -42,8 +42,8 @@ class TrainingSettings:
     zero.
     """
     decoder_layers: int | None = None
-    """Decoder layers: a multiple of those of the weights; None for as many as they have, or 3 in a new
-    network.
+    """Number of decoder layers: a multiple of the number in the initial weights. None keeps that number, or
+    takes 3 for a new network.
     """
     ending: str = ""
     """What follows 'encoder' and 'decoder' in the files of the exported network to start from."""

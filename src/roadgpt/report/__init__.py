@@ -36,8 +36,7 @@ __all__ = [
 
 @in_our_style
 def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draws all pictures of a Run into an existing folder, and returns their paths; empty if there is no
-    road.
+    """Draws all pictures of a Run into an existing folder, and returns their paths (none without a road).
 
     Args:
         run: the Run; it may be invalid, and it need not have a drive.
@@ -59,7 +58,7 @@ def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[
 
 @dataclass(frozen=True)
 class Drawing:
-    """Draws the pictures of a campaign during the campaign. Pass it to ``roadgpt.campaign`` as ``draw``."""
+    """Draws the pictures of a campaign while it runs. Pass it to ``roadgpt.campaign`` as ``draw``."""
 
     axes: Scale = "equal"
     formats: tuple[Format, ...] = PNG

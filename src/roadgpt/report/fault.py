@@ -21,7 +21,7 @@ def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
 
     Args:
         run: a Run that failed.
-        reason: why it failed.
+        reason: the reason for the failure.
         more: text to add after the reason, such as "fails every time (5 of 5 disturbed drives)"; may be
             empty.
     """

@@ -41,8 +41,8 @@ class Labels:
     """Points on the lines that connect labels with their places, each ``(n, 2)``."""
 
     def name_border(self, size: float) -> None:
-        """Labels the border of a square map with sides of ``size`` metres, if it is visible and there is
-        room.
+        """Labels the border of a square map with sides of ``size`` metres, if the border is visible and there
+        is room.
         """
         wide = (inches(BORDER, BORDER_SIZE) + 0.1) * self.per_inch
         offers = _offers(self.frame, size, wide, HIGH * self.per_inch, GAP * self.per_inch)

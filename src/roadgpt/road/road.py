@@ -59,7 +59,7 @@ class Samples:
 
 @dataclass(frozen=True, eq=False)
 class Road:
-    """A road: a plane curve as its centre line in plan, and an elevation profile.
+    """A road, defined by its centre line in plan (a plane curve) and its elevation profile.
 
     ``nodes`` are the control points ``(n, 2)`` or ``(n, 3)`` in metres if the road was built from points;
     None otherwise.

@@ -43,7 +43,7 @@ def bank_in(value: str | float, most: float = STEEPEST, unit: str = "a ratio") -
     """Returns the superelevation of bends unchanged if it is "none", "auto" or a number from 0 to ``most``.
 
     Raises:
-        ValueError: The value is something else; the message states the valid values, with ``unit``.
+        ValueError: The value is something else; the message states the valid values.
     """
     if value in ("none", "auto") or (isinstance(value, float) and 0 <= value <= most):
         return value
@@ -63,7 +63,7 @@ class Site(BaseModel):
     friction: Annotated[float, Field(gt=0, le=2)] = 1.0
     """Friction coefficient: 1.0 for dry asphalt, about 0.6 wet, 0.35 on snow, 0.1 on ice.
 
-    A surface that the words name, such as "wet", sets it, unless a value is given here: see
+    If no value is given here, a description that names a surface, such as "wet", sets the friction: see
     ``World.on_surface_of``.
     """
     z_floor: float = -28.0
@@ -100,7 +100,7 @@ class CrossSection(BaseModel):
     """
 
     def profile(self, length: float) -> Profile:
-        """Returns the Profile of a road of this length in metres, without superelevation."""
+        """Returns the Profile of a road that is ``length`` metres long, without superelevation."""
         forward, backward = map(int, self.lanes.split("+"))
         return Profile.of(forward, backward, self._width(length), self.shoulder)
 
@@ -261,10 +261,10 @@ class World(BaseModel):
         return World.model_validate(kept | values)
 
     def on_surface_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the friction of the surface that the words of a Brief name.
+        """Returns the World with the friction of the surface that a Brief names, such as a wet road.
 
-        A friction that was given to this World is kept, even if it is the default value. Without a Brief or a
-        surface in it, the World is returned unchanged.
+        A friction that was given to this World is kept, even if it equals the default. Without a Brief that
+        names a surface, the World is returned unchanged.
         """
         friction = brief.friction if brief is not None else None
         if friction is None or "friction" in self.site.model_fields_set:

@@ -73,7 +73,7 @@ def perform(
         words: a description, or the Brief that was read from it.
         seed: seed of the campaign; the road's own seed is derived from this seed and the road's index.
         world: the World, with the size of the map, the limits that the rules check, and the friction. If it
-            was given no friction and the words name a surface, such as a wet road, this sets the friction.
+            was given no friction, a surface that the words name, such as a wet road, sets the friction.
         setup: the Setup, which names the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         earlier: designs of earlier roads, from which the new design has to differ.
@@ -82,7 +82,7 @@ def perform(
     Raises:
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
-        ChatError: a language model could not be asked, or gave no usable answer.
+        ChatError: a language model could not be reached, or gave no usable answer.
         UsageError: a plug-in is not installed, or the driver's file does not define a driver.
     """
     check_parts(setup, world)
@@ -120,7 +120,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
         BriefError: the words cannot be read, or ask for something that the world does not allow, such as a
             road that is too long for the map.
         PartError: the reader that the setup names is not installed.
-        ChatError: a language model could not be asked, or gave no usable answer.
+        ChatError: a language model could not be reached, or gave no usable answer.
     """
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
@@ -145,7 +145,7 @@ def prove(
         blueprint: the Design, or the Road.
         seed: seed of the drive; it is used unchanged.
         world: the World, with the size of the map, the limits that the rules check, and the friction. If it
-            was given no friction and ``brief`` names a surface, this sets the friction.
+            was given no friction, a surface that ``brief`` names sets the friction.
         setup: the Setup, which names the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         brief: the requirements that the road has to meet; None if there are no requirements.

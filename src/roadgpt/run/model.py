@@ -41,7 +41,8 @@ class Setup(Frozen):
         """Returns the Setup, and records that it came from a file of unknown origin. A driver in a Python
         file and the language model's server are then used only with the user's permission.
 
-        See ``roadgpt.provenance``. A driver needs no permission if the user has also named its file.
+        See ``roadgpt.provenance``. A driver needs no permission if the user has named its file too, for
+        example with ``--driver``.
         """
         driver = permission.driver_from_file(self.driver, file)
         chat = self.chat and self.chat.came_with(file)

@@ -1,4 +1,4 @@
-"""Finds where cars left their lane and measures how much such failures differ, as the SBFT competition does.
+"""Finds where cars left their lane and measures how much the failures differ, as the SBFT competition does.
 
 Each failure is represented by the road from 30 m before to 30 m after the place where the car left its lane,
 as a sequence of steps (change of direction, length). The difference between two failures is the weighted

@@ -37,7 +37,7 @@ class TallyEntry(NamedTuple):
     simulated: float
     """Duration of the drive, seconds of simulated time; 0 if the road was not driven."""
     departure: Departure | None
-    """The place where the car left its lane; None if the test did not fail or the car did not leave it."""
+    """Where the car left its lane; None if it stayed in its lane or if the test did not fail."""
 
     @classmethod
     def of(cls, run: Run) -> "TallyEntry":

@@ -12,7 +12,7 @@ DRIVING = ("mujoco-core", "numba")
 
 
 def versions_of(setup: Setup) -> dict[str, str]:
-    """Returns the versions of RoadGPT, Python and the libraries that affect the numbers."""
+    """Returns the versions of RoadGPT, Python and the libraries that affect the results."""
     return {
         "roadgpt": __version__,
         "python": platform.python_version(),

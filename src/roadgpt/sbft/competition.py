@@ -208,8 +208,8 @@ def compete(
         seed: the driver's seed.
         out: an empty or new folder for the results. If None, a new folder is made under ``results``, with the
             name that the competition would give it.
-        draw: an object that draws pictures of every test, such as ``report.drawing()`` returns; None: no
-            pictures.
+        draw: an object that draws pictures of every test, for example the result of ``report.drawing()``;
+            None: no pictures.
 
     Raises:
         UsageError: the experiment has no budget, or a plug-in or the folder cannot be used.

@@ -109,8 +109,9 @@ class RoadGPTTestGenerator:
 
 
 def road_points(road: Road) -> Points | None:
-    """Returns control points in metres whose spline follows the road; None if the road needs more than 500
-    points."""
+    """Returns the control points, in metres, of a spline that follows the road; None if the road needs
+    more than 500 points.
+    """
     if road.length > DENSE * (MOST_POINTS - 1):
         return None
     return [(round(float(x), DECIMALS), round(float(y), DECIMALS)) for x, y in road.control_points()]

@@ -22,7 +22,7 @@ OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter to that half, if the gene
 
 
 class GeneratorExitedError(Exception):
-    """Raised when a generator's process has ended; ``status`` is its exit status, negative for a signal."""
+    """A generator's process has ended; ``status`` is its exit status, negative if a signal ended it."""
 
     def __init__(self, status: int | None) -> None:
         super().__init__(status)

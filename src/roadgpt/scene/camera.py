@@ -20,8 +20,8 @@ class Pose(NamedTuple):
     """The pose of a car, with its steering, speed and braking. Except for ``wheel``, the fields have the same
     names as the columns of a Drive.
 
-    Positions are those of the centre of gravity in metres. Angles are in radians: heading 0 along +x and
-    counter-clockwise, pitch positive with the nose up, roll positive with the left side up.
+    Positions are those of the centre of gravity in metres. Angles are in radians: heading counter-clockwise
+    from +x, pitch positive with the nose up, roll positive with the left side up.
     """
 
     x: float
@@ -86,7 +86,7 @@ class Camera:
     """Horizontal field of view in rad."""
     mount: Mount = "bonnet"
     placement: CameraPlacement | None = None
-    """Position and tilt on the car; None: the placement that MOUNTS defines for ``mount``."""
+    """Position and tilt on the car; None for those of ``mount`` in MOUNTS."""
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= LARGEST and 1 <= self.height <= LARGEST):
@@ -107,7 +107,7 @@ class Camera:
         return self.width / 2 / math.tan(self.field_of_view / 2)
 
     def eye(self, pose: Pose) -> CameraPose:
-        """Returns the pose of the camera in world coordinates if its car has the given pose."""
+        """Returns the pose of the camera in world coordinates, given the pose of its car."""
         placement = self.placement or MOUNTS[self.mount]
         if self.mount == "bonnet":
             axes = axes_of(pose.heading, pose.pitch, pose.roll)
@@ -122,7 +122,7 @@ class Camera:
 
 
 def axes_of(heading: float, pitch: float, roll: float) -> Array:
-    """Returns a body's forward, left and up unit vectors as the rows of a (3, 3) array."""
+    """Returns a car's forward, left and up unit vectors as the rows of a (3, 3) array."""
     ch, sh, cp, sp = math.cos(heading), math.sin(heading), math.cos(pitch), math.sin(pitch)
     cr, sr = math.cos(roll), math.sin(roll)
     return np.array(

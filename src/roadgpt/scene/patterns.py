@@ -77,7 +77,6 @@ def length_of(x: float, y: float) -> float:
 
 @inlined
 def smooth(low: float, high: float, x: float) -> float:
-    """Returns 0 if x is at most ``low``, 1 if x is at least ``high``, and values on a smooth step in
-    between."""
+    """Returns 0 if x is at most ``low``, 1 if x is at least ``high``, and a smooth transition in between."""
     part = min(max((x - low) / (high - low), 0.0), 1.0)
     return part * part * (3.0 - 2.0 * part)

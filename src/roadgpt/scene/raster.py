@@ -2,8 +2,9 @@
 
 For a triangle with corners P0, P1, P2 in camera coordinates (right, down, forward), every quantity a that is
 linear on it satisfies a / w = g . ray, where P_i . g = a_i, w is the depth, and ray = (x, y, 1) belongs to a
-pixel. This also holds for corners behind the camera, so only the outline needs to be clipped. Source: M.
-Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
+pixel. This also holds for corners behind the camera, so that only the outline of the triangle in the image
+needs clipping. Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates,
+1997.
 """
 
 import numpy as np

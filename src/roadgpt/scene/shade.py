@@ -214,9 +214,9 @@ def shade(
         tiles: the noise tiles from `textures.noise`.
         eye: the camera, as in `raster.draw`.
         lanes: boundaries of the road's lanes.
-        numbers: data for the shadow: the point on the ground below the car's centre of gravity (3 numbers),
-            the car's direction (2), its length, its width, how far its middle is ahead of that point, and 1
-            if there is a car, else 0.
+        numbers: data for the car's shadow: the point on the ground below the car's centre of gravity (3
+            numbers), the car's direction (2), its length, its width, how far its middle is ahead of that
+            point, and 1 if there is a car, else 0.
         picture: the image in linear light; filled by this function.
     """
     rows, columns = picture.shape[0], picture.shape[1]

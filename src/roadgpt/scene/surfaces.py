@@ -57,7 +57,7 @@ RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
 @inlined
 def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
     """Returns the colour of the sky in a unit direction: blue above, bright and hazy at the horizon and
-    around the sun, thin clouds."""
+    around the sun, with thin clouds."""
     h = max(dz, 0.0)
     pale = 1.0 / (1.0 + 5.5 * h)
     r, g, b = 0.115 + 0.505 * pale, 0.29 + 0.445 * pale, 0.62 + 0.21 * pale

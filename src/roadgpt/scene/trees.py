@@ -58,8 +58,8 @@ def plant(road: Road, world: World, land: Land) -> Trees:
 
 @cache
 def pictures() -> NDArray[np.float32]:
-    """Returns the tree pictures (looks, n, 4): for each look, the n pixels of a picture and of its mipmap
-    levels, as RGBA with premultiplied alpha."""
+    """Returns the tree pictures, shape (pictures, n, 4): each has n pixels, mipmap levels included, as RGBA
+    with premultiplied alpha."""
     rng = np.random.default_rng(SEED)
     drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
     drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]

@@ -1,5 +1,5 @@
-"""Contains the numbers of valid roads and lane departures from RoadGPT's thesis (section 6.1), which
-reports show beside the new results."""
+"""Contains results of RoadGPT's thesis (section 6.1) for reports: how many roads were valid, and on how many
+of them the car left its lane."""
 
 from typing import NamedTuple
 

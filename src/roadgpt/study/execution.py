@@ -34,7 +34,7 @@ class Problem(NamedTuple):
     """Name of the folder of the study part."""
     sentence: str
     is_of_chat: bool = False
-    """True if the reason is that a language model could not be asked."""
+    """True if the reason is a failed request to a language model."""
 
 
 def work(
@@ -53,7 +53,7 @@ def work(
         workers: number of worker processes; 1: the roads are made in this process. Parts whose designer or
             reader asks a language model are always made in this process, one after another.
         draw: function that draws pictures of a run into its folder; None: no pictures.
-        tell: called after each road with the number of finished roads.
+        tell: called with the number of finished roads, after each road.
         note: called for each part whose description names a surface, such as a wet road.
 
     Returns:
@@ -62,8 +62,8 @@ def work(
     Raises:
         GivenUpError: the simulator failed three times in a row; repeating the command makes the missing
             roads.
-        UsageError: a plug-in is not installed, the simulator cannot apply the friction of a surface that the
-            words name, or another process works in the folder.
+        UsageError: a plug-in is not installed, the simulator cannot apply the friction of a surface that a
+            description names, or another process works in the folder.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
     session = _Session(plan, folder, draw, tell, note)

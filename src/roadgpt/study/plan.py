@@ -27,7 +27,7 @@ class StudyPart(NamedTuple):
 
     designer: str
     number: int
-    """Number of the prompt in the study, from 1."""
+    """Number of the prompt in the study, counted from 1."""
     prompt: Prompt
 
     @property

@@ -1,4 +1,4 @@
-"""Reads the data for reports from each run: validity by each rule set, results of the drive, measured
+"""Reads from each run the data that reports need: validity by each rule set, results of the drive, measured
 geometry."""
 
 from collections.abc import Mapping
@@ -46,8 +46,7 @@ class RoadRecord:
     is_valid: bool
     """True if the road breaks no strict rule."""
     is_sound: bool
-    """True if the road breaks no strict rule other than the one that checks the requirements of the
-    description."""
+    """True if the road breaks no strict rule; the rule on the requirements of the description is ignored."""
     is_sbft: bool
     """True if the road passes the SBFT competition's validator."""
     sbft_says: str
@@ -56,8 +55,8 @@ class RoadRecord:
     has_left: bool
     """True if the car left its lane or fell."""
     margin: float | None
-    """Smallest distance of the car to out of bounds, metres; negative if the car failed, None if it did
-    not drive."""
+    """Smallest margin before the car is out of bounds, metres; negative if it failed, None if it did not
+    drive."""
     points: Array
     """Points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road."""
     failed_at: tuple[float, float] | None

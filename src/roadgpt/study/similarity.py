@@ -6,9 +6,9 @@
     direction   the same as sequence, with left and right turns only
     length      the shorter length in plan divided by the longer one
     incline     1 for equal grades; each 2 percentage points of mean difference in grade halves the value;
-                compared at equal fractions of each road's length
-    shape       1 for equal plans; each 5.5 m of distance (root mean square) between the plans halves the
-                value; compared at equal fractions of each road's length after the best shift and rotation
+                grades are compared at equal fractions of each road's length
+    shape       1 for equal centre lines in plan view; each 5.5 m of root mean square distance halves the
+                value; points are compared at equal fractions of the length, after the best shift and rotation
     general     the mean of these six
 
 Two roads are near duplicates if their numbers of turns are equal and shape and incline are both at least 0.5:
@@ -50,7 +50,7 @@ class Similarity:
     incline: float
     shape: float
     metres: float
-    """Distance between the plans after the best shift and rotation, root mean square in metres."""
+    """Root mean square distance between the roads in plan view after the best shift and rotation, metres."""
     points: float
     """Mean absolute difference between the grades of the two roads, percentage points."""
 
@@ -132,7 +132,8 @@ def similarity(one: Likeness, other: Likeness, mirror: bool = False) -> Similari
 
 
 def plan_apart(one: PlanShape, other: PlanShape, mirror: bool) -> float:
-    """Returns the distance between two plans after the best shift and rotation, root mean square in metres.
+    """Returns the root mean square distance in metres between two roads in plan view, after the best shift
+    and rotation.
 
     Args:
         one: the shape of a road in plan view.
@@ -178,7 +179,7 @@ class Spread:
     """How different the roads of one description are."""
 
     metres: Array
-    """Distances ``(n, n)`` between the plans of n roads, root mean square in metres; NaN on the diagonal."""
+    """Root mean square distances ``(n, n)`` between n roads in plan view, metres; NaN on the diagonal."""
     duplicates: tuple[tuple[int, int], ...]
     """Pairs of indices of roads that are near duplicates."""
     sparseness: float
@@ -224,7 +225,7 @@ class Between:
 
     general: float
     metres: float
-    """Distance between the plans of the most similar pair, root mean square in metres."""
+    """Root mean square distance in plan view between the two most similar roads, metres."""
     duplicates: int
 
 

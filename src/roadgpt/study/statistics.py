@@ -62,7 +62,7 @@ class ChiSquared:
     freedom: int
     """Degrees of freedom, computed without empty rows and columns."""
     critical: float
-    """Critical value of the statistic at the 5 % level; NaN without a degree of freedom."""
+    """Critical value of the statistic at the 5 % level; NaN if there are no degrees of freedom."""
     p: float
     cramers_v: float
 
@@ -301,9 +301,9 @@ def conover(ratings: ArrayLike) -> Array:
 def wilcoxon(one: ArrayLike, other: ArrayLike) -> Paired:
     """Returns Wilcoxon's two-sided signed-rank test of two columns ``(people,)``.
 
-    People who gave both columns the same rating are left out. For up to 50 remaining people, p is exact, also
-    if differences are tied: with only five raters, the normal approximation can report a significant
-    difference where the exact test cannot. For more than 50 people, scipy's approximation is used.
+    People who gave both columns the same rating are left out. For up to 50 remaining people, p is exact, even
+    if differences are tied. The normal approximation can report a significant difference for five raters,
+    which the exact test cannot. For more than 50 people, scipy's approximation is used.
     """
     x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T
     moved = (x - y)[x != y]
@@ -329,7 +329,7 @@ def _signed(ranks: Array, smaller: float) -> float:
 def spearman(one: ArrayLike, other: ArrayLike) -> Correlation:
     """Returns Spearman's rank correlation of two columns, two-sided; rho is NaN if a column is constant.
 
-    For up to 8 pairs, p is exact, also if values are tied: all permutations of the second column are
+    For up to 8 pairs, p is exact, even if values are tied: all permutations of the second column are
     enumerated. For more than 8 pairs, scipy's approximation by Student's t is used.
     """
     x, y = _complete(np.column_stack([np.ravel(one), np.ravel(other)])).T

@@ -86,7 +86,7 @@ class Truth(Frozen):
     climb: Bounds | None = None
     length: Bounds | None = None
     hilly: Annotated[Bounds | None, BeforeValidator(_at_least)] = None
-    """Number of changes between uphill and downhill; one number instead of a range is a lower bound."""
+    """Number of changes between uphill and downhill; a single number is a minimum."""
     min_radius: Bounds | None = None
     """Smallest radius of the road, metres."""
     turning: Bounds | None = None
@@ -97,11 +97,12 @@ class Truth(Frozen):
         return tuple(name for name in type(self).model_fields if getattr(self, name) is not None)
 
     def outline(self, *keys: str) -> Outline:
-        """Returns the requirements of the keys in ``keys``, by default of ``given()``, as an Outline.
+        """Returns an Outline with the requirements of the given keys, by default of all keys that are not
+        None.
 
-        The key ``sequence`` names all turns of the road, so it also sets their number. An Outline with
-        exactly 0 turns requires a straight road. A truth with 0 turns also accepts slight bends, because
-        SLACK widens its range beyond 0; its key ``turning`` limits how much the road bends.
+        The key ``sequence`` lists all turns of the road, so it also sets their number. An Outline that
+        requires exactly 0 turns accepts only a straight road. A Truth with 0 turns also accepts slight bends,
+        because SLACK widens every range; use the key ``turning`` to limit them.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:

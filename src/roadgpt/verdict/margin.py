@@ -4,10 +4,10 @@ r"""Computes the margin of a drive at every step: the distance to failure in met
 
 The car fails if the share of its bounding box outside its lane exceeds the tolerance. While the car is in its
 lane, the margin is at most the distance from the box to the outer edge of the carriageway and its shoulder.
-Seen across the lane, the area of a rotated box has a trapezoidal density, so the position at which the share
-equals the tolerance is computed exactly. The curvature of the lane under the box is taken into account to
-second order. If lane departures count, the car also fails as soon as the outer edge of a front tyre crosses
-the outer edge of a lane marking.
+Across the lane, the area of a rotated box is distributed as the trapezoid below. The position at which the
+share equals the tolerance is therefore computed exactly. The curvature of the lane under the box is taken
+into account to second order. If lane departures count, the car also fails as soon as the outer edge of a
+front tyre crosses the outer edge of a lane marking.
 
                  ____________
                 /|          |\          density of the box across the lane, at an angle psi to it:
@@ -43,11 +43,11 @@ class LateralExtent(NamedTuple):
     It is corrected for the curvature of the lane under the box.
     """
     long: FloatArray
-    """Half of the larger of two projections across the lane, of the box's length and of its width, in metres;
-    ``(n,)``.
+    """The box's length and width are projected across the lane; this is half of the larger projection in
+    metres, ``(n,)``.
     """
     short: FloatArray
-    """Half of the smaller of these two projections in metres; ``(n,)``."""
+    """Half of the smaller projection in metres, ``(n,)``."""
 
 
 def lateral_extent(road: "Road", drive: "Drive") -> LateralExtent:
@@ -81,8 +81,8 @@ def allowed_overhang(tolerance: float, box: LateralExtent) -> FloatArray:
 def margins(road: "Road", drive: "Drive", world: "World") -> FloatArray:
     """Returns the margin in metres at every step of a drive, shape ``(n,)``.
 
-    It is negative exactly where the car is out of its lane, and 0 where it is in its lane but extends beyond
-    the carriageway and its shoulder.
+    It is negative exactly where the car is out of its lane. It is 0 where the car still counts as in its
+    lane, but its box extends beyond the carriageway and its shoulder.
     """
     box = lateral_extent(road, drive)
     s, profile = drive["s"], world.profile_of(road)

@@ -1,4 +1,4 @@
-"""The plan reader: takes a description that is written in the language of plans, and interprets nothing."""
+"""The plan reader: reads descriptions in the plan language, which needs no interpretation."""
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, Clause

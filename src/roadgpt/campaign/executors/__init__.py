@@ -1,14 +1,14 @@
 """Executors: plug-ins that run the jobs of a campaign on workers. Each file defines one kind of worker.
 
-An executor is a class whose constructor takes a WorkerConfig; ``Executor`` describes its methods. It only
-runs jobs: the process that created it chooses the tests, receives their results, and is the only one that
-writes the store.
+An executor is a class whose constructor takes a WorkerConfig; ``Executor`` describes its methods. An executor
+only runs jobs. The process that created it chooses the tests, receives their results, and alone writes the
+store.
 
 A job runs ``function(item, *values)`` with the shared values that it needs; the function must be defined at
 the top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life,
 or takes longer for one job than ``WorkerConfig.patience``) is replaced, and its job is given to another
 worker, until ``MOST_DEATHS`` workers have died while running it. Each job ends with exactly one FinishedJob.
-A job returns the same value wherever and however often it runs, so an executor keeps no record of past jobs.
+A job that is run again, on any worker, returns the same value, so an executor keeps no record of past jobs.
 
 ``WorkerConfig.prepare`` runs once in each worker before its first job; it imports the modules that take
 seconds to import.
@@ -89,7 +89,7 @@ class Executor(Protocol):
         ...
 
     def submit(self, jobs: Sequence[Job]) -> None:
-        """Queues jobs, which begin in about this order, and returns at once."""
+        """Queues jobs and returns at once; the jobs begin roughly in the given order."""
         ...
 
     def done(self, seconds: float) -> list[FinishedJob]:
@@ -105,8 +105,9 @@ class Executor(Protocol):
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order; runs before all jobs that have not
-        begun. See ``campaign.model.Pool.map``."""
+        """Returns the results of ``function`` for all items, in order. Queued jobs run after these calls.
+        See ``campaign.model.Pool.map``.
+        """
         ...
 
     def stop(self) -> None:

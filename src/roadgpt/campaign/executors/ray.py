@@ -1,11 +1,12 @@
 """The executor ``ray``: workers that are actors on a Ray cluster, each on one core of any of its machines.
 
-Several short jobs are sent to a worker in one message, since messages cross a network. If a worker dies, the
-jobs of the message that it had received are run again one by one, so that only the job that killed the
-worker is given up. If a whole machine fails, the jobs that ran on it are run again, and no job is blamed for
-the failure. Results return to this process, the only one that writes the store.
+Several short jobs are sent in one message, because each message costs time. If a
+worker dies, the jobs of the message that it had received are run again one by one, so that only the job that
+killed the worker is given up. If a whole machine fails, the jobs that ran on it are run again, and no job is
+blamed for the failure. Results return to this process, the only one that writes the store.
 
-Ray's own retries are off: Ray cannot tell a job that kills its workers from a machine that was switched off.
+Ray's own retries are off: Ray cannot distinguish between a job that kills its workers and a machine that was
+switched off.
 """
 
 import os

@@ -33,11 +33,11 @@ MOST = 1000  # failures that are compared each with each at a time: a second, an
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """The lane around a departure, sampled every metre; both arrays have the same length."""
+    """The lane around a departure, sampled every metre."""
 
     bends: Array
-    """Smoothed curvature of the lane, 1/m, with ``SHIFT`` additional values at each end; NaN beyond the
-    ends of the road.
+    """Smoothed curvature of the lane, 1/m; NaN beyond the ends of the road. The array reaches ``SHIFT``
+    values beyond the compared part.
     """
     grades: Array
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
@@ -131,9 +131,9 @@ def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int 
     Args:
         failures: all failures to group.
         alike: largest distance between two failures of the same fault.
-        most: number of failures that are clustered at a time, since clustering compares every failure with
-            every other. Each later failure joins the fault whose most typical failure is nearest, if the
-            distance is at most ``alike``. The failures that join no fault are clustered next.
+        most: largest number of failures to cluster at a time, because clustering compares every pair of them.
+            Each later failure joins the fault whose most typical failure is nearest, if the distance is at
+            most ``alike``. The failures that join no fault are clustered next.
     """
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):

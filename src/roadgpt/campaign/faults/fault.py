@@ -49,7 +49,7 @@ class Faults:
     failures: int
     """Number of all failures in the folder."""
     compared: int
-    """Number of failures that were compared; the remaining failures are in no fault."""
+    """Number of failures that were compared; the others belong to no fault."""
 
     @property
     def headline(self) -> str:

@@ -79,7 +79,7 @@ class FailureAnalysis:
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
     """Analyses a fault: why its typical failure happens, how often it happens again, and the simplest road
-    that shows it.
+    that reproduces it.
 
     The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
     disturbed drives; if there is none, the one that fails most often. If a stored analysis exists for the

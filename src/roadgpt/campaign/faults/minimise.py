@@ -1,9 +1,8 @@
-"""Simplifies a road on which the car fails, as long as the car still fails for the same cause and on the same
-side.
+"""Simplifies a road on which the car fails; the cause and the side of the failure stay the same.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
-IEEE Transactions on Software Engineering 28 (2002). The road is 1-minimal: any single further simplification
-makes the failure disappear.
+IEEE Transactions on Software Engineering 28 (2002). The simplified road is 1-minimal: any single further
+simplification makes the failure disappear.
 """
 
 from collections.abc import Sequence

@@ -57,8 +57,8 @@ class FailureReason:
     entered: float
     """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier."""
     needed: float
-    """Largest friction coefficient that the lane's middle requires at the speeds driven; on level ground,
-    0.93 means a lateral acceleration of 0.93 g.
+    """Largest friction coefficient required to follow the middle of the lane at the speeds driven; on
+    level ground, 0.93 means a lateral acceleration of 0.93 g.
     """
     friction: float
     """Friction coefficient of the road."""

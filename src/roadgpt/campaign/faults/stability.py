@@ -124,7 +124,7 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
     """Drives a Run's road once with its driver and a disturbance, and returns the verdict.
 
     Raises:
-        DriverError, SimulationError: as ``roadgpt.drive.simulate``.
+        DriverError, SimulationError: as raised by ``roadgpt.drive.simulate``.
     """
     road, world, setup = run.road, run.world, run.request.setup
     assert road is not None

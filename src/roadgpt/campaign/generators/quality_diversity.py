@@ -4,7 +4,7 @@ car fail.
     elites of the map --mutate--> 8 candidates for each test --surrogate--> the most valuable are driven
 
 MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a drive takes far longer than
-making a candidate, so most candidates are only predicted and not driven. The goal decides which candidates
+making a candidate, so the outcomes of most candidates are only predicted. The goal decides which candidates
 are valuable. Batches 0 and 1 are requested before any result is known; they consist of diverse roads that
 look hard.
 """
@@ -43,7 +43,7 @@ CLOSE = 0.05  # apart, a pair is near enough (see pairs.distance)
 
 
 class QualityDiversity:
-    """A map of elites, a surrogate, and a goal."""
+    """A search towards a goal, with a map of elites and a surrogate model."""
 
     goals = GOALS
 

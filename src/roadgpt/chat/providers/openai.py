@@ -172,7 +172,7 @@ class FormatFallback:
     messages: list[Message]
     response_format: ResponseFormat
     is_last: bool
-    """True if no other attempt follows an unusable reply in plain text."""
+    """True if the next unusable reply in plain text ends the attempts."""
     refused: set[ResponseFormat] = field(default_factory=set)
     why: str = ""
     """The reason why the last answer was not usable."""

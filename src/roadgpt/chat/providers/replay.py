@@ -1,5 +1,5 @@
-"""Returns recorded answers instead of asking a server. It needs no network and no API key, and always
-returns the same bytes.
+"""Returns recorded answers instead of asking a server. It needs no network and no API key, and always returns
+the same answers.
 """
 
 from collections.abc import Sequence

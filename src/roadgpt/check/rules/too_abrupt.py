@@ -1,8 +1,8 @@
 """Requires crests and dips to cause a vertical acceleration of the car of at most 3 m/s^2.
 
 The vertical radius R of the parabola between two grades is 1 / (change of grade per metre). At speed v, the
-vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, acceleration up to gravity
-is allowed; beyond that, the wheels would lose contact with the road.
+vertical acceleration is v^2 / R. Where the description asks for a crest or a dip, accelerations of up to 1 g
+are allowed; beyond that, the wheels would lose contact with the road.
 
 v is the speed expected at this place: the car starts from rest, respects the speed limit and slows down only
 for bends (``road.speed_profile.expected_speed``). Sources: ``docs/decisions/0028-vertical-radii.md``.

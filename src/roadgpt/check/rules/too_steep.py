@@ -1,8 +1,7 @@
 """Requires grades of at most 15 %, uphill and downhill, at every place and over every 10 m.
 
 The limit is that of the prompt in the RoadGPT thesis. The code of the thesis checked only uphill grades,
-averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %. This rule checks every
-10 m of the road, uphill and downhill.
+averaged over blocks of ten nodes, so it accepted a road with a downhill grade of 60 %.
 """
 
 import numpy as np

@@ -101,8 +101,7 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
 
 
 def usual_job(words: str, roads: int, is_plan: bool = False) -> RunJob:
-    """Returns the job of ``roadgpt run`` without options: values are those of configuration files, or
-    defaults.
+    """Returns the RunJob of ``roadgpt run`` without options: all settings are configured values or defaults.
 
     Args:
         words: the description, or a plan.
@@ -165,8 +164,8 @@ def _seed(job: RunJob) -> int:
 def understood(brief: "Brief", world: "World | None" = None) -> str:
     """Returns lines of text: how a description was read, a warning if that is uncertain, and remarks.
 
-    The remarks say what does not fit on the map of the World, and whether its friction is that of the words.
-    Without a World they say what a map of any size can hold.
+    The remarks name what is not built. They also check the World's friction against the surface in the
+    description, and whether a motorway fits on its map. Without a World, neither is checked.
     """
     from roadgpt.brief import SURE, remarks
 
@@ -181,7 +180,7 @@ def understood(brief: "Brief", world: "World | None" = None) -> str:
 
 
 def other_reading(brief: "Brief") -> str:
-    """Returns the second likeliest reading of a description as a text; the Brief must have one."""
+    """Returns the second likeliest reading of a description as text; ``brief.other`` must not be empty."""
     from roadgpt.brief import sentence
     from roadgpt.brief.plan import read_plan
 

@@ -33,7 +33,7 @@ class Edited(NamedTuple):
     unused: tuple[str, ...] = ()
     """Words of the request that were not understood."""
     confidence: float = 1.0
-    """How often readings like that of the request were right, from 0 to 1."""
+    """Estimated probability that the request was read correctly."""
 
 
 def edit(
@@ -48,7 +48,7 @@ def edit(
 
     Args:
         design: the Design before the edit; this value itself is not changed.
-        words: a change request, or what was read from it.
+        words: the text of a change request, or the EditRequest read from it.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that the road is built with.
         designer: name of a designer. If it uses a language model, the model makes the change; otherwise rules

@@ -1,7 +1,8 @@
 """Lists ways to make a change: target values, and ranges for the values measured on the changed road.
 
-Words ('sharper') allow wide ranges. If a number is given, such as the angle of a turn, only other values may
-vary, such as its radius. A second candidate has wider ranges, or lets more elements change.
+A request without a number ('sharper') allows wide ranges. If the request gives a value, such as the angle of
+a turn, only other values may vary, such as the radius. A second candidate has wider ranges, or lets more
+elements change.
 """
 
 from collections.abc import Iterable, Sequence

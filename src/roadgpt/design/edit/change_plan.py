@@ -50,7 +50,7 @@ PAGE = "the page 'Plans' of the reference describes the language"
 
 
 def change_plan(request: EditRequest) -> str:
-    """Returns the plan of a change request; the plan omits the words of the request and the unused words."""
+    """Returns the plan of a change request, without the text of the request."""
     return "; ".join(_change(change) for change in request.changes)
 
 
@@ -139,7 +139,7 @@ def read_change_plan(line: str) -> EditRequest:
     """Returns the changes that a plan describes.
 
     Raises:
-        EditError: A word or number is not part of the language, or stands where it cannot; the message names
+        EditError: A word or number is not part of the language, or is in the wrong place; the message names
             it.
     """
     changes = tuple(_Parser(part).change() for part in line.split(";") if part.strip())

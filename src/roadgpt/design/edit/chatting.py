@@ -70,14 +70,14 @@ def edited_by_chat(
         words: the change request.
         elements: the elements of that road.
         found: the measurements of that road.
-        allowed: numbers of the only segments that the model may change, from 1; None if rules cannot tell
-            them: the model may then change those that it names itself.
+        allowed: numbers, from 1, of the segments that the model may change. None if the rules could not
+            find them; the model then lists them itself.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that roads are built with.
 
     Returns:
-        A Look at the road. Its elements are those measured on it if their names are the same as before;
-        otherwise it has none.
+        A Look at the road. It contains the elements measured on the road if they have the same names as
+        before; otherwise it contains none.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

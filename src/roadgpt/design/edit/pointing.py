@@ -25,7 +25,7 @@ class PlacedChange(NamedTuple):
     marks: RoadElements = ()
     """The elements after, before or on which something is added."""
     stop: RoadElement | None = None
-    """The element at the end of a place between two elements."""
+    """The second element if something is added between two; else None."""
 
 
 def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedChange, ...]:

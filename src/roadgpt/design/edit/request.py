@@ -144,4 +144,4 @@ class EditRequest:
     unused: tuple[str, ...] = ()
     """Words of the request that were not understood."""
     confidence: float = 1.0
-    """How often readings like this one were right, from 0 to 1."""
+    """Estimated probability that the request was read correctly."""

@@ -39,9 +39,9 @@ class Made(NamedTuple):
 
     road: Look
     draft: Design
-    """The design before elements were changed that the request does not name; else that of the road."""
+    """The design before any element was changed that the request does not name."""
     idle: tuple[Change, ...]
-    """The changes that the road had already."""
+    """The changes not needed because the road already was as requested."""
 
 
 def made(

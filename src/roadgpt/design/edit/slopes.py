@@ -27,7 +27,7 @@ def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> EditStep:
 
 
 def slope_steps(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
-    """Returns the steps that give one turn or straight another grade; none if it has it already.
+    """Returns the steps that give one turn or straight another grade; none if it already has this grade.
 
     Raises:
         EditError: the grade is steeper than the rules allow.
@@ -81,7 +81,7 @@ def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, fl
 def road_slope_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change the grades of many elements; none if the road is so already.
+    """Returns the candidates that change the grades of many elements; none if the grades are as requested.
 
     Raises:
         EditError: the grade is steeper than the rules allow.

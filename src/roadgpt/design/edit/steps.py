@@ -56,7 +56,7 @@ class Wanted(NamedTuple):
     room: Range
 
     def nearer_to(self, now: float) -> "Wanted":
-        """Returns the same range; the new aim is halfway from the old one to the value in the range that
+        """Returns the same range with a new aim: halfway between the old aim and the value in the range that
         is nearest to ``now``.
         """
         return Wanted((self.aim + min(max(now, self.room.lo), self.room.hi)) / 2, self.room)
@@ -93,7 +93,7 @@ class Adjust:
         )
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements, with new values for this one; the ranges of these values become its
+        """Returns the elements, with new values for ``self.element``; the ranges of these values become its
         requirement.
         """
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
@@ -194,7 +194,7 @@ def gap(name: str, length: float, incline: float) -> RoadElement:
 
 
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
-    """Returns a turn with a new angle and radius that goes left or right, and up or down, as before."""
+    """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
     transitions = [s.transition for s in element.segments if s.transition]
     transition = transitions[0] if transitions else TRANSITION_SHARE * radius * radians(degrees)
     segments = turn_segments(
@@ -313,7 +313,7 @@ class Become:
     segments: Sequence[Segment] = ()
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with a gap in place of this one."""
+        """Returns the elements with a gap in place of ``self.element``."""
         gap = replace(
             self.element, kind="gap", side=None, seen=None, segments=tuple(self.segments), asked=FREE_STRAIGHT
         )
@@ -327,11 +327,11 @@ class Insert:
     before: str
     elements: RoadElements
     split: str = ""
-    """Name of a gap to split in two; the new elements are then inserted between its halves. Empty for
-    none.
+    """Name of a gap to split in two, so that the new elements are inserted between its halves; empty to
+    split none.
     """
     index: int = 0
-    """Number of segments in the first half of the split gap; 0 halves the gap's longest segment."""
+    """Number of segments in the first half of the split gap; 0 to split its longest segment in half."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in driving order, with the new ones inserted."""
@@ -365,7 +365,7 @@ class Insert:
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
     """Inserts straights between turns that bend the same way and newly follow each other, to keep them apart.
 
-    Turns that followed each other before the edit, in the same directions, are measured as two already.
+    Two turns need no straight if they already followed each other, to the same sides, before the edit.
     """
     known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
     out: list[RoadElement] = []

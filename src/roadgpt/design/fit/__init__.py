@@ -36,9 +36,9 @@ def fit(
         frozen: Names of the elements whose lengths, turns and radii stay as they are.
 
     Returns:
-        A Look at that road, with an empty ``objection``. If no such road is found: a Look at a road that
-        breaks no rule but where turns have other slopes than proposed, or else a Look at the design, moved
-        inside the map if possible.
+        A Look at that road, with an empty ``objection``. If there is none, a Look at a road that breaks
+        no rule, but whose turns have other slopes than proposed. Failing both, a Look at the design,
+        moved inside the map if possible.
 
     Raises:
         UsageError: No road can be built from these segments.

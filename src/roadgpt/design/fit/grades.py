@@ -6,9 +6,9 @@ and a short slope is measured flatter than it is written. So the inclines of an 
 measured error, and the road is measured again. If an incline is at its limit, the neighbouring inclines are
 changed instead.
 
-In a proposal, every turn must be measured with the slope that was proposed or is required, and all inclines
-may change as long as they stay up, down or level. In an edited road, only the inclines of elements with a
-required grade may change, and joints of slopes that did not meet before get parabolas.
+In a proposal, every turn must be measured with the slope that was proposed or is required. All inclines may
+change, as long as each still climbs, falls or is level. In an edited road, only the inclines of
+elements with a required grade may change; parabolas are added where two slopes newly meet.
 """
 
 from collections.abc import Iterator, Sequence

@@ -66,7 +66,7 @@ class Look:
 
     @cached_property
     def seen(self) -> tuple[MeasuredFeature | None, ...]:
-        """The measured feature of each element, if the road has the turns of the elements."""
+        """The measured feature of each element; only defined if ``has_turns`` is True."""
         return features_of(self.elements, self.found)
 
     @cached_property
@@ -87,7 +87,7 @@ class Look:
 
     @property
     def keeps_all_but_slopes(self) -> bool:
-        """Whether the road breaks no rule, and its measured turns go left and right like the elements."""
+        """Whether the road breaks no rule, and its measured turns go left and right as its elements do."""
         return not self.findings and self.has_turns
 
     def _unmet(self) -> str:
@@ -110,9 +110,9 @@ class Look:
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Returns a Look at a design; the elements are given the segments of the design.
+    """Returns a Look at a design, after its segments have replaced those of ``elements``.
 
-    The road is moved inside the map, and above the ground, if it is not there and if this is possible.
+    If the road is not inside the map and above the ground, it is moved there if possible.
     """
     world, geometry = requirements.world, requirements.geometry
     elements = with_segments(elements, design.segments)
@@ -134,10 +134,10 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
 
 
 def restored(mended: Look, first: Look) -> Look:
-    """Returns the mended road, with proposed values restored as long as it stays without objection.
+    """Returns the repaired road, with each proposed value restored unless that causes an objection.
 
     Args:
-        mended: a road without an objection.
+        mended: the repaired road, without objections.
         first: the road as it was proposed.
     """
     trials: list[tuple[float, int, str]] = []

@@ -27,8 +27,8 @@ class BeamngLike:
     """Cuts the inside of every bend, as BeamNG's AI did in recordings.
 
     Its planned line is shifted from the lane's middle towards the inside of the bend by ``cut * tanh(k /
-    sharpness)`` metres, where k is the curvature of the middle of its lane. It steers towards a point
-    of this line ahead of the car, and limits its speed in bends to a given lateral acceleration.
+    sharpness)`` metres, where k is the curvature of the middle of its lane. It steers towards a point of this
+    line ahead of the car, and slows down in bends to keep the lateral acceleration below a limit.
 
     It imitates BeamNG's AI at aggression 0.7 under a speed limit of 70 km/h, as the SBFT tool competition
     uses it. Its parameters were fitted to the recorded outcomes of 2,388 flat roads, and tested on 2,129
@@ -47,8 +47,8 @@ class BeamngLike:
         joining: distance from the road's start, in metres, over which the driver moves from the lane's middle
             to its line.
         eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
-        risk: lateral acceleration in bends, in g (BeamNG's AI at aggression 0.7 reaches 0.64); at most 0.95
-            of the friction is used.
+        risk: planned lateral acceleration in bends, in g, at most 0.95 times the friction; BeamNG's AI at
+            aggression 0.7 reaches 0.64.
         headway: time in seconds in which the car would reach the point that it steers towards.
         nearest: smallest distance to the point that it steers towards, in metres.
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.

@@ -12,13 +12,12 @@ if TYPE_CHECKING:
 
 
 class PurePursuit:
-    """Steers on the circle that leads to a point ahead in the middle of the lane, and does not model tyre
-    slip.
+    """Steers along a circle to a point ahead in the middle of the lane; ignores tyre slip.
 
     It cuts bends at low speed and runs wide at high speed: a weak baseline.
 
     Args:
-        risk: lateral acceleration in bends, in g; at most 0.95 of the friction is used.
+        risk: planned lateral acceleration in bends, in g; at most 0.95 times the friction.
         headway: time in seconds in which the car would reach the point that it steers towards.
         nearest: smallest distance to the point that it steers towards, in metres.
         wheelbase: wheelbase in metres.

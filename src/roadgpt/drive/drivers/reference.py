@@ -24,7 +24,7 @@ class Reference:
     grades, crests and superelevation into account.
 
     Args:
-        risk: lateral acceleration in bends, in g; at most 0.72 of the friction is used.
+        risk: planned lateral acceleration in bends, in g; at most 0.72 times the friction.
         wheelbase: wheelbase in metres.
         to_rear: distance in metres from the centre of gravity to the rear axle.
         understeer: steering angle beyond the Ackermann angle per lateral acceleration, in rad per m/s^2.

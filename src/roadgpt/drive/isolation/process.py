@@ -164,7 +164,7 @@ def take() -> DriverProcess:
 
 
 def give_back(process: DriverProcess) -> None:
-    """Keeps a process for the next driver and discards the driver in it."""
+    """Discards the driver of a process, and keeps the process for another driver."""
     if not process.is_alive:
         process.end()
         return

@@ -1,7 +1,4 @@
-"""Describes repeated patterns, and turns whose directions are given as letters, such as 'L, L, R'.
-
-Turns given as letters may have one angle for all left turns and one for all right turns.
-"""
+"""Describes repeated patterns, and turns whose directions are given as letters, such as 'L, L, R'."""
 
 from roadgpt.learn.compositions.voice import SIDES, Composition, DescribedTurn, Voice, clauses
 

@@ -42,7 +42,7 @@ class DescribedTurn:
 
     kind: str = "turn"
     mods: dict[str, str] = field(default_factory=dict)
-    """The plan's words for the turn, by 'side', 'sharpness', 'slope' or 'deg', such as {'deg': 'deg=90'}."""
+    """The plan's words for the turn, keyed by 'side', 'sharpness', 'slope' or 'deg': {'deg': 'deg=90'}."""
 
     @property
     def clause(self) -> str:

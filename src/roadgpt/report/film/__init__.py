@@ -51,7 +51,7 @@ class Settings:
     height: int = 360
     fps: int = 25
     begin: float = 0.0
-    """Time of the drive in seconds at which the film begins."""
+    """Seconds from the start of the drive to that of the film."""
     seconds: float | None = None
     """Largest number of seconds of the drive that the film shows; None for all of it."""
 
@@ -70,7 +70,7 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Pane:
-    """Renders what one camera sees at a time of the drive; several threads may call ``draw`` at once."""
+    """Renders what one camera sees at any time of a drive; several threads may call ``draw`` at once."""
 
     scene: Scene
     trip: Trip
@@ -177,7 +177,8 @@ def film_of(run: Run, path: Path | str, view: View | str = "chase", settings: Se
 def split_film(
     run_a: Run, run_b: Run, path: Path | str, view: View | str = "chase", settings: Settings | None = None
 ) -> Path:
-    """Films two drives side by side; each frame shows both drives at the same time. See ``film_of``."""
+    """Films two drives side by side; each frame shows both at the same time after the start. See
+    ``film_of``."""
     return write([run_a, run_b], path, view, settings)
 
 

@@ -26,7 +26,7 @@ def _rgb(colour: str) -> tuple[int, int, int]:
 
 @dataclass(frozen=True)
 class Overlay:
-    """Writes the text of one Run into pictures of one size."""
+    """Writes a Run's speed, outcome and other text into pictures of one size."""
 
     run: Run
     width: int

@@ -29,7 +29,7 @@ class Readout(NamedTuple):
     s: float
     """Distance along the road, m."""
     margin: float | None
-    """Distance to out of bounds as the verdict defines it, in metres; None if there is no drive."""
+    """Margin in metres: how far the car could be shifted sideways before it fails; None without a drive."""
     outside: float = 0.0
     """Share of the car that is outside its lane."""
 

@@ -37,7 +37,7 @@ def palette() -> dict[str, str]:
 
 
 def series_colour(number: int) -> str:
-    """Returns the colour of a series; colours repeat after ``SERIES`` series."""
+    """Returns the colour of a series; after ``SERIES`` series, the colours repeat."""
     return palette()[f"s{number % SERIES}"]
 
 
@@ -82,7 +82,7 @@ def round_ticks(axis: Axis, most: int, is_count: bool = False) -> None:
 
 
 def tick_text(value: float) -> str:
-    """Returns a short text for the number of a tick, with separators between thousands."""
+    """Returns a short text for the number of a tick, with thousands separators."""
     return f"{value:,.0f}" if abs(value) >= 1000 else f"{value:.6g}".replace("-", "\N{MINUS SIGN}")
 
 

@@ -32,8 +32,8 @@ class AxisRange(NamedTuple):
 
 
 def is_map(values: NDArray[np.float64]) -> bool:
-    """Returns whether a map is worth drawing: it has at least two different positive numbers, or at least 10
-    equal ones."""
+    """Returns whether a map is worth drawing: its positive numbers differ, or there are at least 10 of
+    them."""
     filled = values[np.isfinite(values) & (values > 0)]
     return len(np.unique(filled)) > 1 or len(filled) >= FEW
 

@@ -1,4 +1,4 @@
-"""Draws line charts, such as the number of failures found over the number of tests, and histograms."""
+"""Draws histograms and line charts, such as the number of failures against the number of tests."""
 
 from collections.abc import Sequence
 

@@ -32,7 +32,7 @@ def linked(text: str, href: str) -> TableCell:
 
 @dataclass(frozen=True)
 class Table:
-    """A table."""
+    """A table with caption and column heads."""
 
     name: str
     """Name of the table's files: letters, digits and '-'."""
@@ -127,5 +127,5 @@ def _tables(blocks: Sequence[Block]) -> list[Table]:
 
 
 def pieces_of(line: Line) -> Sequence[str | TableCell]:
-    """Returns the pieces of a line of text (strings and links); a line that is a string is a single piece."""
+    """Returns the strings and links that make up a line of text; for a plain string, only this string."""
     return (line,) if isinstance(line, str) else line

@@ -112,8 +112,8 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """Returns the value; in text, every line end becomes a newline. Text that a spreadsheet would read as a
-    formula gets an apostrophe in front."""
+    """Returns a value for a CSV file. In text, line ends become newlines, and a formula gets an apostrophe in
+    front."""
     if not isinstance(value, str):
         return value
     words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there

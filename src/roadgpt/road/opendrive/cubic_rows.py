@@ -82,7 +82,8 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the rows as a profile that is constant after ``length``, the end of the road in metres.
+    """Returns the rows as a profile. It keeps its last value beyond the end of the road, which is ``length``
+    metres long.
 
     A constant row that repeats the value of the previous constant row is left out.
     """

@@ -1,8 +1,9 @@
 """Reads the lane sections, speed limits and friction of an OpenDRIVE road, and the edge that becomes the
 centre line.
 
-The driven side is the right one, unless driving lanes cover less than half as much length there as on the
-left. The inner edge of its innermost driving lane becomes the centre line of the Road.
+The driven side is the right-hand side, or the left-hand side if driving lanes cover more than twice as much
+length there. The inner edge of the innermost driving lane on the driven side becomes the centre line of the
+Road.
 """
 
 from collections.abc import Sequence
@@ -48,7 +49,7 @@ class LaneSection:
     centre: tuple[Node, ...]
     """Lane 0, if there is one."""
     first: int
-    """Index in ``lanes`` of the innermost driving lane; the number of lanes if there is none."""
+    """Index in ``lanes`` of the innermost driving lane; ``len(lanes)`` if there is none."""
 
     @property
     def is_driven(self) -> bool:

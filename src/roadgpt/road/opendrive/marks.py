@@ -42,7 +42,7 @@ def marking(lanes: Iterable[MarkedLane]) -> tuple[Marking, bool]:
     If it changes, the marking with the largest total length is returned.
 
     Args:
-        lanes: The lane, once for each lane section in which it exists.
+        lanes: The parts of the lane, one from each lane section in which it exists.
     """
     lengths: dict[Marking, float] = {}
     for span, lane in lanes:

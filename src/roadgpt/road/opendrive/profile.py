@@ -63,7 +63,7 @@ class FileProfile:
     """Sentences about properties of the file that were changed."""
 
     def used(self) -> set[int]:
-        """Returns Python's ``id`` of the XML element of every lane that the cross-section contains."""
+        """Returns the Python object ids of the XML elements of all lanes in the cross-section."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
     def driven_nodes(self) -> list[Node]:

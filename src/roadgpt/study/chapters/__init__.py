@@ -1,1 +1,1 @@
-"""The sections of the reports of studies, runs and campaigns: one file for each section or two."""
+"""Makes the sections of the reports on studies, runs and campaigns."""

@@ -29,8 +29,8 @@ EXPLAINED = (
 
 
 class Side(NamedTuple):
-    """A pair of similar roads from one campaign cell, with the results of their tests: the test ``kept``
-    passed, and the test ``lost`` failed."""
+    """Two similar roads from one campaign cell, with their test results: ``kept`` is the test that passed,
+    ``lost`` the test that failed."""
 
     cell: str
     pair: BoundaryPair
@@ -39,8 +39,8 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns, for every campaign cell, the pairs of roads with the smallest distances. A pair is a road that
-    passed and a road that failed; ``campaign.boundary_pairs`` defines their distance."""
+    """Returns, for every campaign cell, the pairs of roads that differ least. A pair is a road that passed
+    and a road that failed; ``campaign.boundary_pairs`` measures the difference."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))
@@ -51,8 +51,8 @@ def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
 
 
 def nearest_sentence(pairs: Sequence[Side]) -> list[str]:
-    """Returns a sentence about the two roads with the smallest distance, for the summary; empty if there is
-    no pair."""
+    """Returns a sentence for the summary about the pair of roads that differ least; empty if there is no
+    pair."""
     if not pairs:
         return []
     best = min(pairs, key=lambda side: side.pair.distance)

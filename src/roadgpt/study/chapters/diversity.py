@@ -1,5 +1,5 @@
-"""Makes the section on diversity: how different the roads of one description, and of two descriptions,
-are."""
+"""Makes the section on diversity: how much roads differ within one description, and between two
+descriptions."""
 
 from collections.abc import Sequence
 from itertools import combinations

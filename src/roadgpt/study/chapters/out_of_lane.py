@@ -15,8 +15,8 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """The passed tests of one grade of ``verdict.severity``, such as "partly outside": their number, and the
-    largest share and distance by which the car was outside its lane."""
+    """The passed tests with one result of ``verdict.severity``, such as "partly outside": their number, and
+    the largest share and distance by which the car was outside its lane."""
 
     severity: Severity
     tests: int
@@ -27,8 +27,8 @@ class Passed(NamedTuple):
 
 
 def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
-    """Groups the passed roads of a study by how far outside its lane the car was. Returns one ``Passed`` for
-    each grade: inside, partly outside, mostly outside."""
+    """Groups the passed roads of a study by how far outside its lane the car was: inside, partly outside, or
+    mostly outside. Returns one ``Passed`` per group."""
     kept = [road for road in roads if road.outcome == "PASS" and road.max_oob is not None]
     found = []
     for name in SEVERITIES:
@@ -40,8 +40,8 @@ def passed_roads(roads: Sequence[RoadRecord]) -> list[Passed]:
 
 
 def passed_tests(record: Record) -> list[Passed]:
-    """Groups the passed tests in a campaign's database by how far outside its lane the car was. Returns one
-    ``Passed`` for each grade: inside, partly outside, mostly outside."""
+    """Groups the passed tests in a campaign's database by how far outside its lane the car was: inside,
+    partly outside, or mostly outside. Returns one ``Passed`` per group."""
     rows = record.query(
         "SELECT (max_oob > 0) + (max_oob > ?), count(*), max(max_oob), max(beyond) FROM tests "
         "WHERE outcome = 'PASS' AND max_oob IS NOT NULL GROUP BY 1",

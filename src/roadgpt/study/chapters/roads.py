@@ -30,8 +30,8 @@ BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0)
 
 
 def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
-    """Returns pictures of the roads of three study parts and a table row for every part; None if there are no
-    roads.
+    """Returns a table of all study parts that have roads, and pictures of the first three; None if there are
+    no roads.
 
     Args:
         parts: the parts of the study.
@@ -128,7 +128,7 @@ def feature_map(
     what: str,
     caption: str,
 ) -> list[Block]:
-    """Returns a map of two features as a figure; empty if the map would show nothing.
+    """Returns a map of two features as a figure; empty if too few cells of the map are filled.
 
     Args:
         name: first part of the name of the figure's file.

@@ -22,7 +22,7 @@ class Count(NamedTuple):
 
 
 class Source(NamedTuple):
-    """The counts of one designer, or of the thesis: one Count for each prompt, a row in ``table``."""
+    """The counts of one designer, or of the thesis, with one Count for each prompt."""
 
     name: str
     counts: tuple[Count, ...]

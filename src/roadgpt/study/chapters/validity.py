@@ -30,13 +30,13 @@ Parts = Sequence[StudyPartRecord]
 
 
 class Kind(NamedTuple):
-    """A rule set by which roads are counted as valid: its name in files, its name in reports, and the
-    RoadRecord property that holds its result."""
+    """A rule set for valid roads: its name in files, its name in reports, and the RoadRecord property that is
+    True for valid roads."""
 
     slug: str
     name: str
     which: str
-    """Name of the boolean property of RoadRecord that is True for valid roads, such as "is_valid"."""
+    """Name of the RoadRecord property, such as "is_valid"."""
 
 
 STRICT = Kind("strict", "strict rules", "is_valid")

@@ -36,8 +36,7 @@ def plural(n: int, word: str) -> str:
 
 
 def row(*values: Raw | TableCell) -> list[TableCell]:
-    """Returns a table row in which each value is a TableCell; values that already are a TableCell stay
-    unchanged."""
+    """Returns a table row. Each value is converted to a TableCell, unless it is one already."""
     return [value if isinstance(value, TableCell) else cell(value) for value in values]
 
 

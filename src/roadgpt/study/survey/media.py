@@ -50,7 +50,7 @@ class Axes:
 
     @classmethod
     def of(cls, roads: Sequence[Road]) -> "Axes":
-        """Returns the thesis' axes or, where some road does not fit on them, axes on which all roads fit."""
+        """Returns the thesis' axes if all roads fit on them; otherwise, axes on which all roads fit."""
         lines = [road.at(stations_of(road)) for road in roads]
         points = np.concatenate(lines)[:, :2]
         frame = THESIS

@@ -55,7 +55,7 @@ class PairPlan(Frozen):
 
 
 class AboutPlan(Frozen):
-    """A question about the rater. The questions of a plan replace the standard ones."""
+    """A question about the rater. Questions in SURVEY.toml replace the standard questions."""
 
     text: Words
     answers: Annotated[tuple[Words, ...], Field(min_length=2, max_length=20)]

@@ -1,4 +1,4 @@
-"""Defines the questions of the three parts of the thesis' survey, with its answers and criteria.
+"""Defines the questions in the three parts of the thesis' survey, with their answers and criteria.
 
 Source: RoadGPT's thesis, section 6.2. The thesis gives all five answers to questions about a road and its
 description. For questions about two roads, it gives only the first, the second and the last of five answers;

@@ -1,8 +1,8 @@
 """Draws bar charts of ratings, and of the answers to questions about the raters, for the report and for
 papers.
 
-A bar of ratings shows all answers about one road in one criterion. The middle of the third answer is at 0, so
-the part of the bar to the right of 0 is in favour of the road.
+A bar of ratings shows all answers about one road for one criterion. The middle of the third answer is at 0,
+so the part of the bar to the right of 0 is in favour of the road.
 """
 
 from collections.abc import Sequence
@@ -114,7 +114,7 @@ def about_bars(
     """Draws how often each answer was given to each question about the raters.
 
     Args:
-        counts: for each question its text, and each answer with the number of raters who gave it.
+        counts: for each question, its text and how many raters gave each answer.
         folder: the folder into which the figure is written as PNG, PDF and SVG.
         is_synthetic: True if the raters are simulated; the figure then says so.
     """

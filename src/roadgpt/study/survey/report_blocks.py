@@ -17,7 +17,7 @@ Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
 
 
 def marked(block: Block) -> Block:
-    """Returns a block of a report with "synthetic" added to captions and file names, for simulated raters."""
+    """Returns a copy of a report block, marked as synthetic; used if raters are simulated."""
     if isinstance(block, Details):
         return replace(block, blocks=[*map(marked, block.blocks)])
     if not isinstance(block, Table | Figure):
@@ -107,7 +107,7 @@ def differences(found: RatingTally) -> list[Block]:
     """Returns a sentence on whether the overall ratings differ between items (roads, or pairs of roads).
 
     Two items are compared by Wilcoxon's test, and three or more by Friedman's test. If Friedman's test finds
-    a significant difference, a table follows with the p-values of Conover's test for every two items.
+    a significant difference, a table follows with the p-values of Conover's test for each pair of items.
     """
     units = found.overall
     if len(units) < 2 or not found.raters:

@@ -1,4 +1,4 @@
-"""Serves a survey with uvicorn, with more limits on connections than uvicorn has."""
+"""Serves a survey with uvicorn, and adds limits on connections that uvicorn lacks."""
 
 import logging
 import socket

@@ -99,8 +99,8 @@ class AnswerStore:
         return token
 
     def rater_of(self, token: str) -> Rater | None:
-        """Returns the rater with a token; None if there is none. The search takes equally long for every
-        token."""
+        """Returns the rater to whom a token belongs; None if it belongs to nobody. The search takes equally
+        long for every token."""
         digest = digest_of(token)
         found = self._read("SELECT digest, state, agreed_on FROM raters WHERE digest = ?", digest)
         rater = Rater(*found[0]) if found else NOBODY

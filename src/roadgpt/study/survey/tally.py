@@ -91,8 +91,7 @@ class RatingTally:
 
 
 def about_counts(answers: Answers) -> list[tuple[str, list[tuple[str, int]]]]:
-    """Returns, for each question about the raters, its text, and each answer with the number of raters who
-    gave it."""
+    """Returns, for each question about the raters, its text and how many raters gave each answer."""
     given = Counter((row.question, row.answer) for row in answers.used if row.part == "about")
     return [
         (question.text, [(answer, given[question.id, answer]) for answer in question.answers])

@@ -3,8 +3,8 @@ milliseconds.
 
 Rules take the numbers out of the text before the network reads it, and insert them into the plan that the
 network writes. The decoding is constrained, so that the network can only write valid plans. A second network,
-trained beside the first, reads the same words; that they agree says much of whether they are right. The
-weights and their documentation are in ``weights/``.
+trained separately, reads the same words; a plan that both networks write is likely to be right. The weights
+and their documentation are in ``weights/``.
 """
 
 from collections.abc import Callable, Sequence
@@ -47,7 +47,7 @@ TOO_MUCH = (
 
 
 class ChangeReading(NamedTuple):
-    """What the network reads in a change request."""
+    """The network's reading of a change request."""
 
     plan: str
     """A plan of changes, or a refusal."""
@@ -57,7 +57,7 @@ class ChangeReading(NamedTuple):
 
 
 class UncalibratedReading(NamedTuple):
-    """A reading, and what its confidence is computed from."""
+    """A plan, and the features from which the confidence in it is computed."""
 
     plan: str
     features: dict[str, float]
@@ -112,8 +112,9 @@ class ModelReader:
         """Returns what a change request asks for, as a plan.
 
         Args:
-            words: the change request, up to 2,000 letters.
-            key: returns the normal form of a plan of changes, and raises an error if it cannot be read.
+            words: the change request, up to 2,000 characters.
+            key: function that returns the normal form of a plan of changes, or raises an error for an invalid
+                plan.
 
         Raises:
             BriefError: the network wrote no plan that can be read.
@@ -133,8 +134,8 @@ class ModelReader:
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:
-        """Returns the likeliest plan of a description and what its confidence is computed from; None if no
-        plan could be read.
+        """Returns the likeliest plan of a description as an UncalibratedReading; None if no plan could be
+        read.
         """
         text = slotted(words)
         found = scored_plans(self.networks, words, refuse_from)
@@ -150,12 +151,13 @@ class ModelReader:
         return UncalibratedReading(plan(normal(brief)), features(draft, text))
 
     def uncalibrated_change(self, words: str, key: Callable[[str], str]) -> UncalibratedReading | None:
-        """Returns the likeliest plan of a change request in its normal form, and what its confidence is
-        computed from; None if no plan could be read.
+        """Returns the likeliest plan of a change request, in normal form, as an UncalibratedReading; None if
+        no plan could be read.
 
         Args:
             words: the change request.
-            key: returns the normal form of a plan of changes, and raises an error if it cannot be read.
+            key: function that returns the normal form of a plan of changes, or raises an error for an invalid
+                plan.
         """
         found = scored_plans(self.networks, words, 2.0, key=key)
         if not found:
@@ -247,7 +249,7 @@ class ModelReader:
 
     @cached_property
     def networks(self) -> tuple[Network, ...]:
-        """The networks that read every text."""
+        """The one or two networks that read every text."""
         names = ["", *([SECOND] if (self.folder / f"encoder{SECOND}.onnx").is_file() else [])]
         return tuple(Network(self.folder, name) for name in names)
 

@@ -1,5 +1,5 @@
-"""Corrects the bounds of lengths and other measured values in a plan by the words next to each number, such
-as "at least".
+"""Uses the words next to each number, such as "at least", to correct the bounds of lengths and other measured
+values in a plan.
 
 A small network sometimes reads "no larger than" as "at least", or drops the bound. Only phrases that have the
 same meaning throughout the training pairs are used for corrections; "over 60 m" is ignored, because it often

@@ -2,9 +2,9 @@
 
 A small network copies numbers well and calculates badly: for "seven turns, the first two uphill", it wrote
 counts of 2 and 4. Here 4 is the only count that is not in the text, and 7 the only number in the text that is
-not a count. In such a case, that number is taken as the total, and the count is corrected to 7 - 2 = 5. If
-every count is in the text, but the text also gives a number of turns that is not a sum of the counts, that
-number is kept in the Brief as the total number of turns, so that the contradiction is reported.
+not a count. In such a case, 7 is taken as the total, and the wrong count is corrected to 7 - 2 = 5. If every
+count is in the text, but the text also gives a number of turns that is not the sum of any counts, the Brief
+keeps this number as its total number of turns. The contradiction is then reported.
 """
 
 from collections.abc import Iterator

@@ -31,7 +31,7 @@ class Number:
     is_bare: bool = True
     factor: float = 1.0
     spread: int = 0
-    """Tolerance of a count: counts that differ from it by up to this number are accepted."""
+    """Tolerance of a count: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:
@@ -120,7 +120,7 @@ def is_count(tokens: Sequence[str], number: Number) -> bool:
 
 
 def is_radius(tokens: Sequence[str], number: Number) -> bool:
-    """Returns True if the number follows "R", or a word for a radius, and is 10 or more, as in R15."""
+    """Returns True if the number is 10 or more and follows "R" or a word for a radius, as in "R15"."""
     at = number.first - 1
     while at >= 0 and tokens[at] in LEADING_TO:
         at -= 1

@@ -39,7 +39,7 @@ class WrittenPlan:
     position.
     """
     refusal: float
-    """The probability, at the first token, that the network refuses the description."""
+    """The probability that the network writes a refusal as the first token."""
 
     @property
     def score(self) -> float:
@@ -84,11 +84,11 @@ class Network:
         Args:
             texts: variants of one text.
             tokens: the plan.
-            allowed: the text whose plans are allowed.
+            allowed: the text whose words and numbers determine which tokens are allowed.
 
         Returns:
-            The log-probability of each token and of the end, of shape (texts, tokens + 1), and the difference
-            to the likeliest other token, of the same shape; it is below zero where another one is likelier.
+            Two arrays of shape (texts, tokens + 1), for each token of the plan and its end: the
+            log-probability, and its lead over the likeliest other token (negative if that one is likelier).
         """
         rows = [self.pieces.encode(word.text for word in text.words)[0] for text in texts]
         pieces = np.zeros((len(rows), max(map(len, rows))), dtype=np.int64)
@@ -161,8 +161,9 @@ class Network:
     def drawn(
         self, across: Array, text: SlottedText, rng: np.random.Generator, temperature: float
     ) -> WrittenPlan:
-        """Returns a plan sampled token by token, more freely at a higher temperature; the plan is never a
-        refusal.
+        """Returns a plan sampled token by token, but never a refusal.
+
+        A higher temperature gives more varied plans.
         """
         draft, own = Draft.of(text), _nothing(across)
         for place in range(MOST_TOKENS):

@@ -1,4 +1,4 @@
-"""Words for turns and sides in five languages, in lower case without accents, used by several rules."""
+"""Words for turns, left and right in five languages, in lower case without accents."""
 
 from roadgpt.brief.readers.model.word_set import word_set
 

@@ -103,14 +103,15 @@ class PlanAutomaton:
 
 @dataclass(frozen=True, slots=True)
 class Numbers:
-    """The numbers that a plan of one text may have."""
+    """The numbers that may occur in the plan of a text."""
 
     slots: Sequence[NumberSlot]
     said: frozenset[str]
     evidence: Evidence
 
     def of(self, key: str) -> list[str]:
-        """Returns the numbers that a key can have; a key without any is never written."""
+        """Returns the numbers that may follow a key such as "len="; if there are none, the key is never
+        written."""
         fitting = self._fitting(UNIT_OF.get(key, ""))
         if key == "hills=" and not self.evidence.hills:
             return [number for number in COUNTS if number in self.said]
@@ -141,7 +142,7 @@ class Numbers:
 
 @dataclass(frozen=True, slots=True)
 class Keyed:
-    """A key and its amount: exact, at least, at most, or a range; nothing if no number suits the key."""
+    """A key and its amount, such as "len=60" or "len=60..80"; never written if no number suits the key."""
 
     key: str
     numbers: Numbers
@@ -158,7 +159,8 @@ class Keyed:
 
 @dataclass(frozen=True, slots=True)
 class AmountTokens:
-    """The number, bound or range behind a key; behind ``low``, the upper bound of a range."""
+    """The number, bound or range that follows a key; if ``low`` is set, the upper end of a range from
+    ``low``."""
 
     key: str
     numbers: Numbers
@@ -166,7 +168,7 @@ class AmountTokens:
     may_be_empty: bool = False
 
     def first(self) -> Iterable[str]:
-        """Returns the numbers, and the signs with which an amount can begin."""
+        """Returns the numbers and signs with which the amount can begin."""
         numbers = self.numbers.of(self.key)
         if self.low:
             low = self.numbers.value(self.low)

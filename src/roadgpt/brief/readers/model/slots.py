@@ -3,8 +3,9 @@ slots.
 
     "three bends in 300 ft at 1:8"  ->  3 bends in [1] metres at [2] percent        [1] = 91.4, [2] = 12.5
 
-Small numbers without a unit remain digits, because the model needs counts ("4 turns, the first two uphill").
-Every other number becomes a slot: a token whose value is stored separately, in metres, degrees or percent.
+Small numbers without a unit remain digits, because the model must know the counts ("4 turns, the first two
+uphill"). Every other number becomes a slot: a token whose value is stored separately, in metres, degrees or
+percent.
 """
 
 import re
@@ -88,7 +89,7 @@ class SlottedText:
 
 
 def slotted(text: str, is_change: bool = False) -> SlottedText:
-    """Returns a description, or a change request behind its mark, with its numbers replaced by slots."""
+    """Returns the text with its numbers replaced by slots; a change request gets a special first token."""
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)

@@ -101,14 +101,14 @@ def scored_plans(
     """Returns plans for a description or a change request, the likeliest first.
 
     Args:
-        networks: write the plans.
+        networks: the networks that write the plans.
         words: the description or the change request.
         refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan;
             with a value above 1, refusals are never allowed.
         shown: function that is applied to the text before the network reads it, for example to replace
             unusual numbers.
-        key: returns the normal form of a plan of changes, and raises an error if it cannot be read; if it is
-            given, the words are a change request.
+        key: function that returns the normal form of a plan of changes, or raises an error for an invalid
+            plan; if it is given, the words are a change request.
     """
     is_change = key is not None
     normal_form = key or _normal_form

@@ -1,7 +1,7 @@
-"""Grammars over tokens, as data: which tokens may come next, and what is left of a grammar behind a token.
+"""Grammars of tokens, made of objects that return which tokens may come next and what follows each token.
 
-A grammar is built of the symbols below. No two alternatives of a symbol begin with the same token, so one
-token decides (LL(1)), and the state of a text that is being written is a stack of symbols.
+A grammar is built of the symbols below. No two alternatives of a symbol begin with the same token, so the
+next token decides between them (LL(1)). The state of an unfinished text is a stack of symbols.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -10,7 +10,7 @@ from typing import Protocol
 
 
 class Symbol(Protocol):
-    """A part of a grammar."""
+    """A part of a grammar, such as a choice between tokens."""
 
     @property
     def may_be_empty(self) -> bool:
@@ -35,15 +35,15 @@ class OneOf:
         return self.tokens
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns that nothing follows."""
+        """Returns an empty tuple."""
         return ()
 
 
 @dataclass(frozen=True, slots=True)
 class Sequel:
-    """A token or another symbol that begins, and the symbols that follow it.
+    """A first symbol, the head, and the symbols that follow it.
 
-    With ``is_open`` the whole may be left out.
+    With ``is_open``, the whole sequence may be left out.
     """
 
     head: Symbol
@@ -52,7 +52,7 @@ class Sequel:
 
     @property
     def may_be_empty(self) -> bool:
-        """Whether the whole may be left out."""
+        """Whether the whole sequence may be left out."""
         return self.is_open
 
     def first(self) -> Iterable[str]:
@@ -60,7 +60,7 @@ class Sequel:
         return self.head.first()
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the head, and the rest."""
+        """Returns what is left of the head, and the symbols after the head."""
         return (*self.head.after(token), *self.rest)
 
 
@@ -72,7 +72,7 @@ class AnyOf:
 
     @property
     def may_be_empty(self) -> bool:
-        """False: a choice is made."""
+        """Always False: a symbol must be chosen."""
         return False
 
     def first(self) -> Iterable[str]:
@@ -86,7 +86,7 @@ class AnyOf:
 
 @dataclass(frozen=True, slots=True)
 class InOrder:
-    """Some of several symbols, each at most once, in their order, and at least ``least`` of them."""
+    """At least ``least`` of several symbols, each at most once and in the given order."""
 
     parts: tuple[Symbol, ...]
     least: int = 0
@@ -101,7 +101,7 @@ class InOrder:
         return [token for part in self.parts for token in part.first()]
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the symbol that begins with the token, and the symbols behind it."""
+        """Returns what is left of the symbol that begins with the token, and the symbols after it."""
         index = next(index for index, part in enumerate(self.parts) if token in part.first())
         later = self.parts[index + 1 :]
         return (*self.parts[index].after(token), *([InOrder(later, self.least - 1)] if later else []))
@@ -109,7 +109,7 @@ class InOrder:
 
 @dataclass(frozen=True, slots=True)
 class ListTail:
-    """Further items of a list, each behind a joint such as ';', at most ``most`` of them."""
+    """At most ``most`` further items of a list, each after a separator such as ';'."""
 
     joint: str
     item: Symbol
@@ -117,21 +117,21 @@ class ListTail:
 
     @property
     def may_be_empty(self) -> bool:
-        """True: a list can end."""
+        """Always True: the list may end here."""
         return True
 
     def first(self) -> Iterable[str]:
-        """Returns the joint, or nothing if the list is full."""
+        """Returns the separator, or nothing if the list is full."""
         return [self.joint] if self.most else []
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns the item and the list behind it."""
+        """Returns the item and the rest of the list."""
         return (self.item, ListTail(self.joint, self.item, self.most - 1))
 
 
 @dataclass(frozen=True, slots=True)
 class Later:
-    """A symbol that is made when it is needed, because it contains itself."""
+    """A symbol that is created when it is needed; a symbol can thus contain itself."""
 
     make: Callable[[], Symbol]
     may_be_empty: bool = False
@@ -160,7 +160,7 @@ def allowed(stack: Stack) -> list[str]:
 
 
 def pushed(stack: Stack, token: str) -> Stack:
-    """Returns the stack behind one more token, which must be allowed."""
+    """Returns the stack after one more token; the token must be allowed."""
     for index, symbol in enumerate(stack):
         if token in symbol.first():
             return (*symbol.after(token), *stack[index + 1 :])

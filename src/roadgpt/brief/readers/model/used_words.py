@@ -1,7 +1,7 @@
 """Finds the words of a text that its plan does not depend on: the plan stays the likeliest without them.
 
-Each content word is left out in turn, and the network says how likely the same plan is for what remains. A
-word that changes nothing was not used, which the user is told; function words are not tried.
+Every word except function words is left out once, and the network computes how likely the plan is for the
+remaining words. If this hardly changes, the word is reported as unused.
 """
 
 from collections.abc import Collection, Sequence
@@ -31,10 +31,10 @@ def unused_words(
     """Returns the words that the plan does not depend on, in their spelling, each once and in text order.
 
     Args:
-        network: wrote the plan.
+        network: the network that wrote the plan.
         text: the description or change request.
-        tokens: its plan.
-        fillers: words that are not tried.
+        tokens: the tokens of its plan.
+        fillers: function words, which are never reported.
     """
     idle = _idle(network, text, tokens, fillers)
     out: list[str] = []
@@ -51,7 +51,7 @@ def unused_words(
 
 
 def passes_over_a_negation(unused: Sequence[str]) -> bool:
-    """True if a word that denies or limits is among those that the plan does not depend on."""
+    """True if the unused words include one that denies or limits something, such as "not" or "only"."""
     return any(plain(word.removesuffix("'t")) in NEGATORS for word in unused)
 
 

@@ -2,5 +2,5 @@
 
 
 def word_set(*lines: str) -> frozenset[str]:
-    """Returns the set of the words in some strings; the words are separated by spaces."""
+    """Returns the set of the words in some strings."""
     return frozenset(word for line in lines for word in line.split())

@@ -23,9 +23,9 @@ class BeamngSimulator:
     """Simulates an ETK 800 in BeamNG.tech on a mesh road; BeamNG's AI drives, or the driver is asked at every
     step.
 
-    If the driver is ``beamng_like``, BeamNG's own AI, which it imitates, drives in its place (Drive.driver is
-    ``beamng_ai`` then). If BeamNG hangs, ends or loses its connection, the road is tried once more on a new
-    BeamNG; a second failure raises SimulatorError.
+    The driver ``beamng_like`` is replaced by BeamNG's own AI, which it imitates; Drive.driver is then
+    ``beamng_ai``. If BeamNG hangs, ends or loses its connection, the road is tried once more on a new BeamNG;
+    a second failure raises SimulatorError.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.

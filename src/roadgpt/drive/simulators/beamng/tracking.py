@@ -91,7 +91,7 @@ def frame_of(state: Mapping[str, Any]) -> FloatArray:
     the car's state as BeamNG reports it.
 
     Raises:
-        SimulationError: the state has no direction, which happens after the physics has failed.
+        SimulationError: the physics has failed, and the car has no valid direction.
     """
     ahead, up = np.asarray(state["dir"], float), np.asarray(state["up"], float)
     size = float(np.linalg.norm(ahead))
@@ -134,7 +134,7 @@ class RoadTracker:
         self._near = 0.0
 
     def place(self, x: float, y: float) -> tuple[float, float, float]:
-        """Returns station, offset and height of the road at a point."""
+        """Returns the station and the offset of a point, and the height of the road there."""
         sampled = self._sampled
         s, t, height = station_of(sampled.table, sampled.first, sampled.step, x, y, self._near)
         self._near = s
@@ -156,7 +156,7 @@ class RoadTracker:
 def station_of(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float]:
-    """Returns station, offset and height of the road at a point, searching near station s."""
+    """Returns the station and the offset of a point near station s, and the height of the road there."""
     at, t, height, _, _, _ = locate_on(table, first, step, x, y, s)
     return at, t, height
 

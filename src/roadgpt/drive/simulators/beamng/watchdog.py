@@ -36,8 +36,8 @@ class Watchdog:
 
     @contextmanager
     def within(self, seconds: float, doing: str) -> Iterator[None]:
-        """Context manager: ends a call that takes longer than ``seconds``; ``doing`` describes the call in
-        messages.
+        """Context manager: ends a call that takes longer than ``seconds``; ``doing`` says in error messages
+        what the call does.
 
         Raises:
             OverdueError: the call took too long. This error replaces the exception that the interrupted call

@@ -14,7 +14,7 @@ call: Any = call_at if COMPILES else lambda function, model, data: function(mode
 
 @functools.cache
 def functions() -> tuple[Any, ...]:
-    """Returns MuJoCo's two half steps and its kinematics function, in the form that ``call`` expects."""
+    """Returns mj_step1, mj_step2 and mj_kinematics in the form that ``call`` expects."""
     # MuJoCo would log warnings to a file in the current folder; our simulator reports what failed.
     mujoco.set_mju_user_warning(lambda _: None)
     return addresses() if COMPILES else tuple(getattr(mujoco, name) for name in FUNCTIONS)

@@ -89,8 +89,8 @@ class Axle:
     roll_centre_height: float = 0.06
     """Height of the roll centre in m above the road."""
     camber_gain: float = -0.4
-    """Camber in rad per metre of rebound, as CommonRoad's D_f: with a negative value the tops of the
-    wheels move inwards in compression.
+    """Camber in rad per metre of rebound (CommonRoad's D_f). If it is negative, the tops of the wheels move
+    inwards in compression.
     """
     drive_torque_share: float = 0.5
     """Share of the engine's torque that goes to this axle, 0 to 1."""
@@ -167,7 +167,7 @@ class Car:
     tcs_slip_threshold: float = 0.10
     """Slip beyond which traction control reduces the drive torque; 0 for no traction control."""
     esc_gain: float = 9000.0
-    """Braking torque in Nm per rad/s of yaw rate beyond the tolerance; 0 for no ESC."""
+    """Braking torque in Nm per rad/s of yaw rate error beyond the tolerance; 0 for no ESC."""
     esc_understeer_gradient: float = 0.0025
     """Understeer gradient in s^2/m that the ESC expects: yaw rate = v steer / (wheelbase + gradient v^2)."""
 

@@ -82,7 +82,7 @@ class CarState(NamedTuple):
     wheels: FloatArray
     """State of each wheel, shape (4, WHEEL_STATE)."""
     hull: FloatArray
-    """Constant points of the hull, shape (n, 3), metres."""
+    """Points of the hull in the body's axes, shape (n, 3), metres."""
     box: FloatArray
     """Corners of the car's box in plan, shape (4, 2), metres."""
     scratch: FloatArray

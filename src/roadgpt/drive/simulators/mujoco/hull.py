@@ -24,8 +24,8 @@ DEEP = 0.3  # m below the surface, beyond which a point has no contact any more
 
 
 def hull_points(car: Car) -> FloatArray:
-    """Returns points in the body's axes, shape (n, 3), metres: a grid on the underbody, and the corners of
-    the roof."""
+    """Returns the hull's points in the body's axes, shape (n, 3), metres: a grid on the underbody, and the
+    roof's corners."""
     front = car.box_offset + car.length / 2
     floor = car.ground_clearance - car.cg_height
     under = [

@@ -24,8 +24,8 @@ def cross(a: Vector, b: Vector) -> Vector:
 
 @inlined
 def normal_of(slope: float, lateral: float, heading: float) -> Vector:
-    """Returns the unit normal of a surface, given two slopes of the surface: one along a heading, and one
-    at a right angle to the left of that heading."""
+    """Returns the unit normal of a surface from its slope along a heading and its slope to the left of that
+    heading."""
     nz = 1.0 / math.sqrt(1.0 + slope * slope + lateral * lateral)
     cos, sin = math.cos(heading), math.sin(heading)
     return (lateral * sin - slope * cos) * nz, -(slope * sin + lateral * cos) * nz, nz
@@ -33,7 +33,7 @@ def normal_of(slope: float, lateral: float, heading: float) -> Vector:
 
 @inlined
 def velocity_at(mj: Any, body: int, point: Vector) -> Vector:
-    """Returns the velocity in m/s of the point of a rigid body that is at this place in world coordinates."""
+    """Returns the velocity in m/s of a point of a rigid body; ``point`` is in world coordinates."""
     # MuJoCo stores angular and linear velocity, the latter at the centre of gravity of the whole car.
     v = mj.cvel[body]
     rx, ry, rz = point[0] - mj.com[BODY, 0], point[1] - mj.com[BODY, 1], point[2] - mj.com[BODY, 2]

@@ -62,7 +62,7 @@ class Strip:
     """Shape (n, 5) for a mesh: x, y, z, width, depth; shape (n, 4) for a decal: x, y, z, width."""
     drivability: int = NOT_DRIVABLE
     priority: int = 0
-    """Drawing order of a decal, so that painted lines are drawn on top of the asphalt."""
+    """Drawing order of a decal: painted lines have higher numbers, and are drawn on the asphalt."""
     is_dashed: bool = False
     """Whether a painted line is dashed. Dashes and gaps are as long as in exported OpenDRIVE files."""
     normals: Array | None = None
@@ -95,7 +95,7 @@ class LevelRoad:
 def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
 ) -> LevelRoad:
-    """Returns the strips of a road, its shoulder and its markings, with the start and the goal of the drive.
+    """Returns the mesh roads and decal roads of a road with its shoulder and markings, and start and goal.
 
     The same arguments always give the same result.
 

@@ -42,7 +42,7 @@ class DecalRoad:
 
     @classmethod
     def from_dict(cls, d: Dict[str, Any]) -> DecalRoad:
-        """Returns a road with the name and nodes of a dictionary from ``to_dict``."""
+        """Restores a road from a dictionary that ``to_dict`` returned."""
         return cls(name=d["name"]).add_4d_points(nodes=d["nodes"])
 
     def to_json(self) -> str:
