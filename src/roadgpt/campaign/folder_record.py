@@ -96,7 +96,7 @@ class FolderRecord(FolderStore):
         return [NumberedTest("", number) for number in self._places]
 
     def check_ended(self, cell: str, number: int) -> None:
-        """Raises UsageError if there is no such run."""
+        """Raises UsageError if the folder has no finished run of this number."""
         del cell
         if number not in self._places:
             there = [*self._places]

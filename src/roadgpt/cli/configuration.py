@@ -121,7 +121,7 @@ def place_guard(value: str, place: str) -> str:
 
 
 def path_guard(value: str, place: str) -> str:
-    """Refuses a path that a file in the working folder sets, or a relative path in the user's own file."""
+    """Refuses any path in a configuration file of the working folder, and relative ones in the user's own."""
     if place == OF_USER and not Path(value).expanduser().is_absolute():
         return WHOLE_PATH
     return place_guard(value, place)

@@ -58,13 +58,13 @@ WORLD = (
     _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
     _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
-    _world("--friction", "Friction: dry 1, wet 0.6, snow 0.35; words may set it.",
+    _world("--friction", "Friction coefficient: dry 1, wet 0.6, snow 0.35.",
            measure(0, 2, above=True)),
 )
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "What reads the description: model, chat, or plan (if it is a plan already).",
+    _run("--reader", "How to read the description: model, chat (a language model), or plan (it is one).",
          str, "model", guard=reader_guard),
     _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
          guard=designer_guard),
@@ -183,7 +183,7 @@ _work = partial(Option, heading=Heading.WORKERS)
 WORKERS = (
     _work("-j --workers", "Number of tests run in parallel; use one per core.",
           whole(1, 4096, "the number of workers"), 1),
-    _work("--executor", "Where workers run: processes of this machine, or ray.", str, "processes"),
+    _work("--executor", "Where workers run: 'processes' of this machine, or 'ray'.", str, "processes"),
     _work("--address", "Address of a Ray cluster. [default: this machine]", str, ""),
 )
 # fmt: on

@@ -148,7 +148,7 @@ def metres(margin: float) -> str:
 
 
 def spending(spent: "Spent") -> str:
-    """Returns as text how many answers language models gave, and their tokens, seconds and cost."""
+    """Returns a text with the number of answers of language models, their tokens, seconds and cost."""
     money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
     answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"

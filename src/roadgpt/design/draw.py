@@ -248,6 +248,7 @@ def inside(least: float) -> float:
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
     """Returns a random length, in metres, of a straight without requirements.
 
-    The length is at least ``least``; if ``haste`` is 0, it is about ``mean`` metres more on average.
+    The length is ``least`` plus a random part of about ``mean`` metres on average; the larger ``haste`` is, the
+    shorter is that part.
     """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

@@ -52,7 +52,7 @@ class RoadElement:
 
     @property
     def incline(self) -> float:
-        """Mean incline of its segments in percent, weighted by their distances."""
+        """Mean grade of its segments in percent, weighted by their lengths."""
         return sum(s.distance * s.incline for s in self.segments) / max(self.length, 1e-9)
 
     @property

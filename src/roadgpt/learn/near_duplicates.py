@@ -35,7 +35,7 @@ class NearDuplicate:
 
 
 def masked(text: str) -> tuple[str, ...]:
-    """Returns the words of a text. Numbers, and words of one kind such as left and right, become masks."""
+    """Returns the words of a text, with masks for numbers and for words such as left and right."""
     return tuple(_mask(word) for word in re.findall(r"\d+(?:[.,]\d+)?|[^\W\d_]+", plain(text)))
 
 

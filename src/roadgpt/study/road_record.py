@@ -1,5 +1,6 @@
-"""Reads from each run the data that reports need: validity by each rule set, results of the drive, measured
-geometry."""
+"""Reads the data for reports from each run: validity by each rule set, results of the drive, measured
+geometry.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -101,7 +101,7 @@ class Truth(Frozen):
         None.
 
         The key ``sequence`` lists all turns of the road, so it also sets their number. An Outline that
-        requires exactly 0 turns accepts only a straight road. A Truth with 0 turns also accepts slight bends,
+        requires exactly 0 turns accepts only a straight road, but that of a Truth also accepts slight bends,
         because SLACK widens every range; use the key ``turning`` to limit them.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}

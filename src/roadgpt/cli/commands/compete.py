@@ -143,7 +143,7 @@ OPTIONS = (
 
 @click.command("sdc", cls=GroupedCommand, params=[*OPTIONS])
 def sdc_command(port: int, host: str, quiet: bool) -> None:
-    """Select and prioritise tests over gRPC, by how likely the car is to leave its lane.
+    """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
     The likelihood is estimated from the distance between the driver's planned path and the middle of the
     lane; nothing is driven. Once the evaluator has sent enough outcomes, the estimate learns from them, and

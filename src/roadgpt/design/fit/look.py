@@ -134,7 +134,7 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
 
 
 def restored(mended: Look, first: Look) -> Look:
-    """Returns the repaired road, with each proposed value restored unless that causes an objection.
+    """Returns the repaired road with all proposed values put back that break no rule or requirement.
 
     Args:
         mended: the repaired road, without objections.

@@ -1,5 +1,6 @@
-"""Makes the sections that count, for each prompt, the valid roads and the roads on which the car left its
-lane."""
+"""Makes the sections of a report with the numbers of valid roads, and of roads on which the car left its
+lane, for each prompt.
+"""
 
 import textwrap
 from collections.abc import Callable, Sequence
