@@ -248,7 +248,7 @@ def inside(least: float) -> float:
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
     """Returns a random length, in metres, of a straight without requirements.
 
-    The length is ``least`` plus a random part of about ``mean`` metres on average; the larger ``haste`` is, the
-    shorter is that part.
+    The length is ``least`` plus a random part of about ``mean`` metres on average, which is shorter the
+    larger ``haste`` is.
     """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

@@ -105,7 +105,7 @@ def softened(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> list[float]:
-    """Returns the grades with the smallest changes within their bounds that let the parabolas between them fit.
+    """Returns the grades, changed as little as possible within their bounds so that the parabolas fit.
 
     Slopes with too little room are corrected one after another by changing their grades and those of their
     neighbours. These are projections onto convex sets, which converge if a solution exists.
