@@ -26,7 +26,6 @@ def test_numbers_that_the_plan_does_not_have_are_counted() -> None:
     )
     found = features(draft("turn"), text)
     assert found["numbers"] == pytest.approx(log(4))
-    assert found["words"] == pytest.approx(log(1 + len(text.words)))
 
 
 def test_equal_odds_are_one_half_and_threefold_odds_three_quarters() -> None:

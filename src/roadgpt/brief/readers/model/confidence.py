@@ -1,7 +1,7 @@
 """How sure a reading is: from how likely the networks find its plan, and from what the plan leaves out."""
 
 from collections.abc import Mapping, Sequence
-from math import exp, log, log1p
+from math import exp, log1p
 
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
@@ -13,15 +13,10 @@ DOUBT = 0.5
 
 
 def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
-    """Returns what the confidence in a plan is computed from, by name: besides the probabilities of the plan,
-    the numbers of the text that it does not have, and the lengths of both.
+    """Returns what the confidence in a plan is computed from, by name: how likely the plan is, and how many
+    numbers of the text it does not have.
     """
-    return {
-        **draft.features,
-        "numbers": log1p(len(left_out(draft, text))),
-        "words": log(1 + len(text.words)),
-        "tokens": log(1 + len(draft.tokens)),
-    }
+    return {**draft.features, "numbers": log1p(len(left_out(draft, text)))}
 
 
 def left_out(draft: ScoredPlan, text: SlottedText) -> list[str]:
