@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, left_out
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial, left_out
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 
@@ -39,3 +39,17 @@ def test_a_negation_without_effect_leaves_doubt(bias: float, word: str) -> None:
     sure = confidence({"bias": bias}, {}, ("tree", word))
     assert sure <= DOUBT
     assert sure == min(DOUBT, confidence({"bias": bias}, {}, ("tree",)))
+
+
+@pytest.mark.parametrize(
+    ("words", "denies"),
+    [
+        ("don't make the second turn sharper", True),
+        ("Please do not touch the hairpin.", True),
+        ("don’t lengthen the last straight!", True),
+        ("don't make it longer, make it steeper", False),
+        ("make it longer but don't touch the turns", False),
+    ],
+)
+def test_what_only_denies_is_told_from_what_also_asks(words: str, denies: bool) -> None:
+    assert is_denial(words) == denies

@@ -352,5 +352,5 @@ def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -
     return lines + [f"| {' | '.join(row)} |" for row in rows]
 
 
-SURE = 0.7
+SURE = 0.8
 """Confidence under which a reading is so often wrong that the user is asked or warned."""

@@ -14,7 +14,7 @@ from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
-MOST_WRONGLY = 0.004  # share of these valid descriptions that may be refused; for new ones it will be higher
+MOST_WRONGLY = 0.012  # share of these valid descriptions that may be refused; for new ones it will be higher
 STEPS = 30
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 

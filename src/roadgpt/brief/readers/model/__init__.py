@@ -19,7 +19,7 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.confidence import confidence, features
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.negative_numbers import negative_number
@@ -131,6 +131,7 @@ class ModelReader:
         lost = _lost_numbers(draft, text)
         unused = unused_words(self._network, text, draft.tokens, self._fillers)
         sure = confidence(self._settings["changes"], found_in, unused)
+        sure = min(sure, DOUBT) if is_denial(words) else sure
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:

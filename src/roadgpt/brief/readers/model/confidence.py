@@ -1,5 +1,6 @@
 """How sure a reading is: from how likely the networks find its plan, and from what the plan leaves out."""
 
+import re
 from collections.abc import Mapping, Sequence
 from math import exp, log1p
 
@@ -10,6 +11,14 @@ from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 
 DOUBT = 0.5
 """The highest confidence of a reading that does not change without a "not"."""
+
+DENIAL = re.compile(r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*", re.IGNORECASE)
+"""A change request that says only what shall not be."""
+
+
+def is_denial(words: str) -> bool:
+    """Returns whether a change request says only what shall not be, such as "don't make it longer"."""
+    return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
 
 
 def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
