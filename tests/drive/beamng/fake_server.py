@@ -7,6 +7,7 @@ an empty map goes out as an empty list, and what is nil is missing.
 
 import json
 import os
+import random
 import socket
 import struct
 import threading
@@ -57,6 +58,31 @@ class BeamngSettings:
     """A file that survives restarts: scenarios so far, and faults that have been."""
 
 
+QUIET = (20_000, 30_000)
+"""Ports below those that systems give to clients (32768 and up on Linux, 49152 elsewhere)."""
+
+
+def _bound(port):
+    server = socket.socket()
+    server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    try:
+        server.bind(("127.0.0.1", port))
+    except OSError:
+        server.close()
+        raise
+    return server
+
+
+def _on_a_quiet_port():
+    """A server on a port from which no client calls, and of which the next ports are as quiet: the simulator
+    tries those if it may not take this one.
+    """
+    draw = random.Random()
+    while True:
+        with suppress(OSError):
+            return _bound(draw.randrange(*QUIET, 10))
+
+
 class FakeServer(ABC):
     """Answers a message by its method ``ge_TYPE`` or, of a vehicle, ``veh_TYPE``.
 
@@ -94,9 +120,7 @@ class FakeServer(ABC):
     # --- sockets -----------------------------------------------------------------------------------------
 
     def _serve(self, vehicle, port=0):
-        server = socket.socket()
-        server.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        server.bind(("127.0.0.1", port))
+        server = _bound(port) if port else _on_a_quiet_port()
         server.listen()
         self._sockets.append(server)
         threading.Thread(target=self._accept, args=(server, vehicle), daemon=True).start()
