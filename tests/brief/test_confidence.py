@@ -6,9 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial, left_out
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.readers.model.used_words import left_out
 
 HALF = {"bias": 0.0, "numbers": 0.0}
 
@@ -19,11 +20,9 @@ def draft(*tokens: str) -> ScoredPlan:
 
 def test_numbers_that_the_plan_does_not_have_are_counted() -> None:
     text = slotted("a left of 90 degrees with a radius of 30 m, then 45 m of straight")
-    assert left_out(draft("turn", "left", "deg=", "[1]", "r=", "[2]"), text) == ["[3]"]
-    assert (
-        left_out(draft("turn", "left", "deg=", "[1]", "r=", "[2]", ";", "straight", "len=", "[3]"), text)
-        == []
-    )
+    turn = ("turn", "left", "deg=", "[1]", "r=", "[2]")
+    assert left_out(turn, text) == [2]
+    assert left_out((*turn, ";", "straight", "len=", "[3]"), text) == []
     found = features(draft("turn"), text)
     assert found["numbers"] == pytest.approx(log(4))
 

@@ -2,20 +2,19 @@
 
 from typing import get_args
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from random_plans import random_plan
 from roadgpt.brief import model
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import vocabulary
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.numerals import LANGUAGES, spell, words
-from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import NumberSlot, slotted
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
+from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 
 
@@ -110,24 +109,11 @@ def test_a_number_that_nobody_said_has_no_token() -> None:
 
 @given(st.integers(0, 10_000), st.lists(st.floats(1, 900).map(lambda x: round(x, 1)), max_size=4))
 def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) -> None:
-    rng = np.random.default_rng(seed)
-    units = ("metres", "percent", "degrees", "")
-    slots = [NumberSlot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
-    writer = PlanAutomaton(slots, frozenset({"3", "15"}))
-    tokens: list[str] = []
-    while len(tokens) < 60:
-        allowed = writer.allowed()
-        ends = NUMBER_OF[END] in allowed and rng.random() < 0.2
-        word = END if ends else TOKENS[int(rng.choice(allowed))]
-        if word == END:
-            line = plan_of(tokens, slots)
-            if not line.startswith("!"):
-                brief = read_plan(line)
-                assert plan(brief) == line
-                assert plan(normal(brief))
-            return
-        tokens.append(word)
-        writer.push(word)
+    line = random_plan(seed, values)
+    if line and not line.startswith("!"):
+        brief = read_plan(line)
+        assert plan(brief) == line
+        assert plan(normal(brief))
 
 
 def test_word_pieces_are_the_longest_that_fit() -> None:

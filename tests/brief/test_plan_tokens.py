@@ -3,14 +3,14 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from random_plans import random_plan
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
-from roadgpt.brief.readers.model.slots import NumberSlot, slotted
+from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.refusal import OF_CAUSES, refused
@@ -56,24 +56,11 @@ def test_plans_of_changes_survive_being_cut_into_tokens(path: Path) -> None:
 def test_whatever_the_network_may_write_of_changes_can_be_read(
     seed: int, values: list[float], is_change: bool
 ) -> None:
-    rng = np.random.default_rng(seed)
-    units = ("metres", "percent", "degrees", "")
-    slots = [NumberSlot(value, units[index % 4]) for index, value in enumerate(values)]  # type: ignore[arg-type]
-    writer = PlanAutomaton(slots, frozenset({"3", "15"}), is_change=is_change)
-    tokens: list[str] = []
-    while len(tokens) < 70:
-        may = writer.allowed()
-        ends = NUMBER_OF[END] in may and rng.random() < 0.3
-        word = END if ends else TOKENS[int(rng.choice(may))]
-        if word == END:
-            line = plan_of(tokens, slots)
-            if line.startswith("!"):
-                assert "has no refusal" not in str(refused(line))
-            elif is_change:
-                assert normal(normal(line)) == normal(line)
-            return
-        tokens.append(word)
-        writer.push(word)
+    line = random_plan(seed, values, is_change)
+    if line.startswith("!"):
+        assert "has no refusal" not in str(refused(line))
+    elif line and is_change:
+        assert normal(normal(line)) == normal(line)
 
 
 @pytest.mark.parametrize(

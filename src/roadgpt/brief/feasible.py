@@ -110,7 +110,7 @@ def _counts(brief: Brief) -> None:
 
 def _limits_of_every_turn(brief: Brief) -> None:
     """Checks that no turn has a figure beyond a limit that holds for all turns."""
-    for name, noun in (("radius", "a radius"), ("degrees", "an angle")):
+    for name, noun, unit in (("radius", "a radius", "m"), ("degrees", "an angle", "degrees")):
         limit: Amount | None = getattr(brief, name)
         if limit is None or None not in (limit.lo, limit.hi):
             continue
@@ -121,8 +121,8 @@ def _limits_of_every_turn(brief: Brief) -> None:
             meant = span(own) if own else _meant(clause, name)
             if _exclude(meant, span(limit)):
                 raise BriefError(
-                    f"every turn is to have {noun} of {limit}, but a {_noun(clause)} has"
-                    f" {own or meant}; leave out one of the two"
+                    f"every turn must have {noun} of {limit} {unit}, but a {_noun(clause)} has"
+                    f" {own or meant} {unit}; leave out one of the two"
                 )
 
 

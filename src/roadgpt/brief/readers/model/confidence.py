@@ -1,4 +1,4 @@
-"""How sure a reading is: from how likely the networks find its plan, and from what the plan leaves out."""
+"""Computes the confidence in a reading from how likely its plan is and which numbers it lacks."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -6,31 +6,25 @@ from math import exp, log1p
 
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.used_words import passes_over_a_negation
-from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.brief.readers.model.used_words import left_out, passes_over_a_negation
 
 DOUBT = 0.5
 """The highest confidence of a reading that does not change without a "not"."""
 
 DENIAL = re.compile(r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*", re.IGNORECASE)
-"""A change request that says only what shall not be."""
+"""Matches a change request that says only what must not change."""
 
 
 def is_denial(words: str) -> bool:
-    """Returns whether a change request says only what shall not be, such as "don't make it longer"."""
+    """Returns whether a change request says only what must not change, such as "don't make it longer"."""
     return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
 
 
 def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
-    """Returns what the confidence in a plan is computed from, by name: how likely the plan is, and how many
-    numbers of the text it does not have.
+    """Returns the inputs of the confidence model by name: how likely the plan is, and how many numbers of the
+    text it lacks.
     """
-    return {**draft.features, "numbers": log1p(len(left_out(draft, text)))}
-
-
-def left_out(draft: ScoredPlan, text: SlottedText) -> list[str]:
-    """Returns the measured numbers of a text that are not in its plan."""
-    return [slot for slot in SLOT_TOKENS[: len(text.slots)] if slot not in draft.tokens]
+    return {**draft.features, "numbers": log1p(len(left_out(draft.tokens, text)))}
 
 
 def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 
 LARGEST_SEEN = 20
 """Numbers without a unit up to this one remain digits in the text for the model; larger ones become slots."""
-SIDES = frozenset(
-    ["left", "right", "l", "r", "lh", "rh", "links", "rechts", "gauche", "droite", "g", "d"]
-    + ["izquierda", "derecha", "izq", "der", "i", "sinistra", "destra", "sx", "dx", "sn", "ds"]
-)
+SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
+"""Words for left and right, and the short ones that stand only before numbers, as in "G90"."""
 RADIUS = frozenset(
     ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
     + ["raggi"]

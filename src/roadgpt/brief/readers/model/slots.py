@@ -50,7 +50,7 @@ CHANGE = "[unused13]"
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 FAR = 100
-"""The least size in metres of a unit that stands for one of itself: "a mile and a half"."""
+"""The smallest unit, in metres, that may stand for one of it without a number, as in "mile and a half"."""
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 

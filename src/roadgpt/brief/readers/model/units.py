@@ -25,7 +25,7 @@ _SAID: tuple[tuple[str, Unit, float], ...] = (
         "percent",
         1.0,
     ),
-    ("‰ promille permille permil per_mille per_mil pour_mille por_mil per_mille", "percent", 0.1),
+    ("‰ promille permille permil per_mille per_mil pour_mille por_mil", "percent", 0.1),
     ("° º deg degs degree degrees degre degrees grad degrés degré grado grados gradi", "degrees", 1.0),
     ("gon gons gradians grades_centésimaux", "degrees", 0.9),
     ("kmh kph mph km/h", "kmh", 1.0),

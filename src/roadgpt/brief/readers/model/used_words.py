@@ -38,16 +38,21 @@ def unused_words(
     """
     idle = _idle(network, text, tokens, fillers)
     out: list[str] = []
-    slot = 0
+    missing, slot = left_out(tokens, text), 0
     for place, word in enumerate(text.words):
         if word.text.startswith("[unused") and word.written:
-            if slot < len(text.slots) and SLOT_TOKENS[slot] not in tokens:
+            if slot in missing:
                 out.append(word.written)
             slot += 1
         elif place in idle:
             is_short = [each.text for each in text.words[place + 1 : place + 3]] == ["'", "t"]
             out.append(f"{word.written}'t" if is_short else word.written)
     return tuple(dict.fromkeys(out))
+
+
+def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
+    """Returns the indices of the slots of a text that do not occur among the tokens of its plan."""
+    return [index for index in range(len(text.slots)) if SLOT_TOKENS[index] not in tokens]
 
 
 def passes_over_a_negation(unused: Sequence[str]) -> bool:
