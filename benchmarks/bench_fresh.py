@@ -139,9 +139,11 @@ def main() -> None:
     )
     parser.add_argument("--reader", default="model")
     parser.add_argument("--json", type=Path, help="where the verdict on each row is kept, by its id")
-    parser.add_argument("--retired", action="store_true", help="the first set, whose misses have been read")
+    parser.add_argument(
+        "--retired", choices=("first", "second"), help="an older set, whose misses have been read"
+    )
     given = parser.parse_args()
-    fresh = FRESH / "retired" if given.retired else FRESH
+    fresh = FRESH / "retired" / given.retired if given.retired else FRESH
     found = {
         name: {row["id"]: judged(row, given.reader) for row in rows(fresh / f"{name}.jsonl")}
         for name in ("descriptions", "contrasts", "refusals")
