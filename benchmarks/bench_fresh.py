@@ -18,11 +18,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief import SURE, Brief, read
+from roadgpt.brief import SURE
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
+from roadgpt.design.room import world_for
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import World, build
+from roadgpt.run import Setup, brief_of
 from roadgpt.study.truth import Truth, holds
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -81,8 +83,9 @@ def judged(row: dict[str, Any], reader: str) -> Judged:
     """Reads a description, builds its roads and compares them with what its writer meant."""
     cannot = "refuse" in row["truth"]
     try:
-        brief: Brief = read(row["text"], reader)
-        roads = [measure(build(draft(brief, WORLD, seed=seed)).sample().points) for seed in range(ROADS)]
+        brief = brief_of(row["text"], WORLD, Setup(reader=reader))
+        world = world_for(brief, WORLD)
+        roads = [measure(build(draft(brief, world, seed=seed)).sample().points) for seed in range(ROADS)]
     except RoadGPTError as error:
         parts = CAUSES.get(row.get("cause", ""), NO_ROAD)
         return Judged(REFUSED if cannot else HONEST, names_cause=any(part in str(error) for part in parts))

@@ -84,7 +84,9 @@ def split(name: str) -> Iterator[dict[str, Any]]:
         yield from rows(path)
 
 
-@pytest.mark.parametrize("folder", [DATA / "fresh", *sorted((DATA / "fresh" / "retired").iterdir())], ids=lambda path: path.name)
+@pytest.mark.parametrize(
+    "folder", [DATA / "fresh", *sorted((DATA / "fresh" / "retired").iterdir())], ids=lambda path: path.name
+)
 def test_the_fresh_sentences_are_there_whole(folder: Path) -> None:
     counts = {path.stem: len(rows(path)) for path in folder.glob("*.jsonl")}
     assert counts == {"descriptions": 200, "contrasts": 100, "changes": 100, "refusals": 130}

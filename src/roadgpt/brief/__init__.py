@@ -114,6 +114,7 @@ def read(
     max_grade: float = STEEPEST / 100,
     chat: ChatSettings | None = None,
     road_width: float = ROAD_WIDTH,
+    is_map_fixed: bool = True,
 ) -> Brief:
     """Reads a description and returns what it asks for.
 
@@ -127,6 +128,7 @@ def read(
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
         chat: settings of the language model, for readers that use one; None takes the user's settings.
         road_width: width of the carriageway in metres.
+        is_map_fixed: False if the map may be enlarged for the road, which is then not checked against it.
 
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
@@ -139,15 +141,16 @@ def read(
         ChatError: the language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
+    limits = (map_size if is_map_fixed else None, min_radius, max_grade, road_width)
     try:
         brief = reader_of(reader, chat).read(words)
     except TooMuchError as refusal:
         brief = refusal.brief
-        check(brief, map_size, min_radius, max_grade, road_width)
+        check(brief, *limits)
         if map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS:
             raise
     else:
-        check(brief, map_size, min_radius, max_grade, road_width)
+        check(brief, *limits)
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
         raise NotBuiltError(missing, plan(rest), rest)

@@ -29,6 +29,10 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
+FIGURE_WINS = 0.5
+"""A figure that goes with a word, such as the radius of a "wide" turn, may miss the usual range of the word
+by this factor: the figure is what is meant."""
+LEAST_CLIMB = 1.0  # percent: less is level
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
 GRADES = {slope: meaning.grade or Range() for slope, meaning in SLOPES.items()}
@@ -169,7 +173,7 @@ def _radius(clause: Clause, noun: str) -> None:
     radius = Range(asked.lo * (1 - LENGTH_SLACK), asked.hi * (1 + LENGTH_SLACK))
     limits = SHARPNESS[sharpness].radius if sharpness else None
     own = KINDS[clause.kind].radius
-    if _exclude(radius, limits):
+    if limits and _exclude(radius, Range(FIGURE_WINS * limits.lo, limits.hi / FIGURE_WINS)):
         raise BriefError(
             f"a {sharpness} turn has a radius of {limits} m; leave out '{sharpness}', or the number"
         )
@@ -316,11 +320,11 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
     if brief.slope == "flat" and (climb.lo > 10 or climb.hi < -10):
         raise BriefError("a flat road cannot gain or lose that much height; leave out one of the two")
     if brief.slope and not brief.incline:
-        grade = GRADES[brief.slope]
-        least = 0.0 if 0 in grade else min(abs(grade.lo), abs(grade.hi))
-        if steepest.hi < least - 1:
+        least = FIGURE_WINS * min(abs(GRADES[brief.slope].lo), abs(GRADES[brief.slope].hi))
+        if brief.slope not in LEVEL and steepest.hi < max(least, LEAST_CLIMB):
             raise BriefError(
-                f"such a slope is {least:g} percent or more; allow the steepest place to be that steep"
+                f"such a slope is {max(least, LEAST_CLIMB):g} percent or more;"
+                " allow the steepest place to be that steep"
             )
         if steepest.lo > 4 and brief.slope in LEVEL:
             raise BriefError("a level road cannot have a steep place; leave out one of the two")

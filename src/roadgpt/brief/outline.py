@@ -8,7 +8,7 @@ are measured as in ``check.measures``.
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Any, Literal
+from typing import Any, Literal, TypeVar
 
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
@@ -33,10 +33,13 @@ SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share
 LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
+LEAST_GRADE = 1.0  # percent: a road that climbs less is level
+EASIER = 0.75  # share of a limit, above which the usual grades of a word would keep too close to the limit
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
 OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
 """The names of features that consist of several turns, such as 'S-bend'."""
+Sloped = TypeVar("Sloped", Brief, Clause)
 KEEPS_OWN_ANGLE = frozenset({"hairpin", "switchback", "u_turn", "serpentine", "zigzag", "slalom"})
 
 
@@ -141,6 +144,7 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
             40 m, as gentle turns do; a motorway gets wide turns only if the map can hold them.
     """
     roomy = map_size >= ROOMY
+    brief = _with_figures_first(brief)
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
     whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}
@@ -170,6 +174,32 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         hard=brief.hard,
     )
     return _widened(found) if has_wide_turns(brief, map_size) else found
+
+
+def _with_figures_first(brief: Brief) -> Brief:
+    """Replaces the usual grade of a word for a slope where a figure of the Brief leaves less.
+
+    "Uphill" usually means 3 to 12 percent; "uphill, at most 2 percent" means 1 to 2 percent, "uphill, 6 m
+    over 300 m" a mean of 2 percent, and "uphill, 6 m" whatever the length of the road makes of it.
+    """
+    most = span(brief.steepest).hi
+    clauses = tuple(_within(clause, most) for clause in brief.clauses)
+    brief = _within(brief.model_copy(update={"clauses": clauses}), most)
+    usual = SLOPES[brief.slope].grade if brief.slope and not brief.incline else None
+    height, metres = _near(brief.climb, ROAD["climb"]), _near(brief.length, ROAD["length"])
+    if usual is None or 0 in usual or height is None:
+        return brief
+    low, high = sorted((abs(usual.lo), abs(usual.hi)))
+    mean = 100 * min(abs(height.lo), abs(height.hi)) / metres.hi if metres else 0.0
+    return brief.model_copy(update={"incline": Amount(lo=min(max(mean, LEAST_GRADE), low), hi=high)})
+
+
+def _within(said: Sloped, most: float) -> Sloped:
+    """Returns a Brief or a clause whose slope, if it has no figure, keeps to a limit in percent."""
+    usual = SLOPES[said.slope].grade if said.slope and not said.incline else None
+    if usual is None or 0 in usual or min(abs(usual.lo), abs(usual.hi)) <= EASIER * most:
+        return said
+    return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
 
 
 def _widened(found: Outline) -> Outline:

@@ -17,6 +17,7 @@ from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import ChatError, Meter
 from roadgpt.design import designer_of
+from roadgpt.design.room import world_for
 from roadgpt.errors import DesignError
 from roadgpt.road import World
 from roadgpt.run import PLAIN, USUAL, Draw, Request, Run, Setup, brief_of, check_parts, read_run
@@ -184,7 +185,7 @@ def campaign(
     """
     meter = meter or Meter.of(setup.chat)
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world.on_surface_of(brief), setup=setup)
+    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
     designer_of(setup.designer, setup.chat)
     check_parts(setup, request.world)
     made = Campaign.opened(request, brief, n, out)

@@ -25,6 +25,7 @@ from roadgpt.campaign.traces import OLD_SUFFIX, SUFFIX, TRACES
 from roadgpt.campaign.workers.worker_log import LOG
 from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
+from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
 from roadgpt.drive.loading import driver_of
 from roadgpt.drive.permission import require_permission
@@ -67,7 +68,7 @@ def begin(plan: Plan, folder: Path) -> bool:
         _drivers_come(plan)
         briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
-        _refuse_ignored(plan, *(plan.world.on_surface_of(brief) for brief in briefs.values()))
+        _refuse_ignored(plan, *(world_for(brief, plan.world) for brief in briefs.values()))
         for name in plan.generators:  # one that cannot use its settings says so now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
         versions = versions_of(cells[0].request.setup)

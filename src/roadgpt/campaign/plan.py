@@ -15,6 +15,7 @@ from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
 from roadgpt.campaign.model import PATIENCE, UNLIMITED, WITH_GOAL, WITHOUT_GOAL, Budget, Cell, Goal
 from roadgpt.chat import ChatSettings, asks_a_model
+from roadgpt.design.room import world_for
 from roadgpt.drive import permission
 from roadgpt.errors import UsageError
 from roadgpt.road import Geometry, World
@@ -151,7 +152,7 @@ class Plan(Frozen):
         return [
             Cell(
                 name=f"c{number:0{wide}d}",
-                request=request.model_copy(update={"world": request.world.on_surface_of(brief)}),
+                request=request.model_copy(update={"world": world_for(brief, request.world)}),
                 brief=brief,
                 generator=generator,
                 goal=self.goal if self._searches(generator) else None,

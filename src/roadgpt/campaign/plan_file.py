@@ -78,8 +78,11 @@ class WorldTable(_Strict):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World with these values, and without a friction if the file gives none."""
-        values = self.model_dump(exclude={"speed_limit_kmh", *({"friction"} - self.model_fields_set)})
+        """Returns the World with these values, and without a friction or a map size that the file does not
+        give.
+        """
+        open_ = {"friction", "map_size"} - self.model_fields_set
+        values = self.model_dump(exclude={"speed_limit_kmh", *open_})
         bank = self.bank / 100 if isinstance(self.bank, float) else self.bank
         return World().changed(**values | {"speed_limit": self.speed_limit_kmh / 3.6, "bank": bank})
 

@@ -45,7 +45,8 @@ _files = partial(Option, heading=Heading.FILES)
 
 # fmt: off
 WORLD = (
-    _world("--map-size", "Side of the square map, m.", measure(50, 10_000, "metres"), 250),
+    _world("--map-size", "Side of the square map, m. [default: 250, or what the road needs]",
+           measure(50, 10_000, "metres")),
     _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
             key="speed_limit_kmh"),
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),

@@ -18,6 +18,8 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
+FOR_ROOM = ("too large", "over itself")
+"""Reasons that a larger map may mend."""
 TOO_ABRUPT = "slopes that change too fast for the speed"
 MANY = 60  # drafts that fitted on the map and failed: then the map was large enough
 SIDES = 7.0  # of the map: longer roads were never drafted, so the search for the longest starts here
@@ -45,12 +47,10 @@ def advice(
         boxes: side in metres of the smallest square around each draft that was too large for the map.
         fits: function that tests whether roads can be drafted for another Brief, or on another map.
     """
-    broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
-    fitted = broken.total() >= MANY
-    reason = (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
+    reason = main_reason(failed)
     wishes = _wishes_of(outline)
-    if reason in ("too large", "over itself"):
-        found = _offer(brief, world, fits, _roomier(world, boxes))
+    if reason in FOR_ROOM:
+        found = _offer(brief, world, fits, roomier(world, boxes))
         where = f"on a {world.site.map_size:g} m map" + (
             " without crossing" if reason == "over itself" else ""
         )
@@ -79,6 +79,16 @@ def too_fast(world: World, slower: float | None) -> str:
     )
 
 
+def main_reason(failed: Counter[str]) -> str:
+    """Returns the reason why most drafts failed; if many drafts fitted on the map, only these count.
+
+    ``failed`` holds the reasons, with the number of times that each occurred.
+    """
+    broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
+    fitted = broken.total() >= MANY
+    return (broken if fitted else failed or Counter(["too large"])).most_common(1)[0][0]
+
+
 def _wishes_of(outline: Outline) -> str:
     """Returns the requirements as the start of a sentence that continues with 'not fit'."""
     parts = [group.counted for group in outline.groups if group.feature.kind == "turn"]
@@ -94,7 +104,7 @@ def _wishes_of(outline: Outline) -> str:
     return f"{listed} {'does' if single else 'do'}"
 
 
-def _roomier(world: World, boxes: Sequence[float]) -> float:
+def roomier(world: World, boxes: Sequence[float]) -> float:
     """Returns the side in metres of a map that a quarter of the drafts that were too large would fit on."""
     needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
     return max(needed, 1.2 * world.site.map_size)
@@ -106,7 +116,7 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
 
     ``likely`` is the side in metres of a map that may be large enough.
     """
-    larger = _larger(brief, world, fits, likely)
+    larger = larger_map(brief, world, fits, likely)
     less = f"ask for {_less(brief, world, fits) or 'less'}"
     return f"{less} or use --map-size {larger:g}" if larger else less
 
@@ -120,13 +130,18 @@ def no_room(error: NoRoomError, world: World) -> str:
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known
-    said = (brief.length.lo or 0.0) if brief.length else 0.0
-    metres = max(least_length(brief, world.limits.min_radius), said)
+    metres = metres_of(brief, world)
     found = _offer(brief, world, fits, LIKELY * metres)
     room = f"a map of {world.site.map_size:g} m has no room for"
     if brief.length is None:
         return f"{room} a straight of {_asked(brief):g} m and what else is asked for; {found}"
     return f"{room} {metres:.0f} m of such road; {found}"
+
+
+def metres_of(brief: Brief, world: World) -> float:
+    """Returns the least length in metres of a road of this Brief."""
+    said = (brief.length.lo or 0.0) if brief.length else 0.0
+    return max(least_length(brief, world.limits.min_radius), said)
 
 
 def _less(brief: Brief, world: World, fits: Fits) -> str | None:
@@ -150,7 +165,11 @@ def _less(brief: Brief, world: World, fits: Fits) -> str | None:
     return f"{metres:g} m" if brief.length else f"a straight of {metres:g} m"
 
 
-def _larger(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
+def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
+    """Returns the side in metres of a larger map on which roads can be drafted; None if none was found.
+
+    ``likely`` is the side of a map that may be large enough; sizes are tried from there on.
+    """
     if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
         return None
     size = min(ceil(max(likely, world.site.map_size + ROUND_MAP) / ROUND_MAP) * ROUND_MAP, LARGEST_MAP)

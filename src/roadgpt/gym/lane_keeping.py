@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from pydantic import ValidationError
 
 from roadgpt.brief import sentence
+from roadgpt.design.room import world_for
 from roadgpt.drive.camera_sensor import CameraSensor
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE
@@ -117,7 +118,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:
             brief = brief_of(str(options["prompt"]), self._given, self._setup)
-        self._words, self._world = brief.words, self._given.on_surface_of(brief)
+        self._words, self._world = brief.words, world_for(brief, self._given)
         self.road = road = self._drawn(brief)
         self._vehicle = Vehicle.on(road, self._world, ETK_LIKE)
         self._monitor = DriveMonitor(road, self._world, ETK_LIKE.box)

@@ -22,6 +22,7 @@ from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import designer_of
 from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
+from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
@@ -90,7 +91,7 @@ def perform(
     meter = meter or Meter.of(setup.chat)
     before = meter.spent
     brief = words if isinstance(words, Brief) else brief_of(words, world, setup, meter)
-    request = Request(words=brief.words, seed=seed, world=world.on_surface_of(brief), setup=setup)
+    request = Request(words=brief.words, seed=seed, world=world_for(brief, world), setup=setup)
     check_parts(setup, request.world)
     own = seed_of(seed, index)
     with counting(meter, f"road {index}"):
@@ -125,7 +126,8 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
     with counting(meter or Meter.of(setup.chat), "reading"):
         try:
             limits = (world.site.map_size, world.limits.min_radius, world.limits.max_grade)
-            return read(words, setup.reader, *limits, setup.chat, world.section.road_width)
+            fixed = "map_size" in world.site.model_fields_set
+            return read(words, setup.reader, *limits, setup.chat, world.section.road_width, fixed)
         except NoRoomError as error:
             raise BriefError(no_room(error, world)) from error
 

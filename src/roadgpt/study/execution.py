@@ -13,6 +13,7 @@ from roadgpt.brief.beside import surface_remark
 from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
+from roadgpt.design.room import map_remark, world_for
 from roadgpt.errors import BriefError
 from roadgpt.run import Request, brief_of, check_parts
 from roadgpt.run.atomic import alone_in
@@ -94,10 +95,11 @@ class _Session:
             except BriefError as error:
                 self.problems[part.name] = Problem(part.name, str(error))
                 continue
-            world = plan.world.on_surface_of(brief)
+            world = world_for(brief, plan.world)
             check_parts(setup, world)
-            if said := surface_remark(brief.beside, world.site.friction):
-                self.note(f"{part.name}: {said}")
+            for said in (surface_remark(brief.beside, world.site.friction), map_remark(plan.world, world)):
+                if said:
+                    self.note(f"{part.name}: {said}")
             request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
             folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, self._place(part))
             if meter is not None:

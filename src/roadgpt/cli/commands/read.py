@@ -42,17 +42,21 @@ def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, 
     roadgpt read "a road" --alternatives 3
     """
     from roadgpt.cli.commands.run import understood
+    from roadgpt.design.room import map_remark, world_for
 
     world, reader = options.world_of(rest), options.reader_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
-        found = [_as_data(brief, world.on_surface_of(brief)) for brief in briefs]
+        found = [_as_data(brief, world_for(brief, world)) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
     if number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
         return
-    click.echo(understood(briefs[0], world.on_surface_of(briefs[0])))
+    its = world_for(briefs[0], world)
+    click.echo(understood(briefs[0], its))
+    if said := map_remark(world, its):
+        click.echo(f"note: {said}")
     if as_table:
         click.echo(_table(briefs[0]))
 

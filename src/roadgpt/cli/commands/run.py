@@ -128,6 +128,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     """
     from roadgpt.campaign import campaign
     from roadgpt.chat import Meter
+    from roadgpt.design.room import map_remark
     from roadgpt.run import brief_of
 
     draw = beside(job.pictures, job.axes, job.formats)
@@ -141,6 +142,8 @@ def carry_out(job: RunJob, screen: Screen) -> None:
 
         screen.junit = junit_writer(job.junit, work.request)
     screen.say(understood(brief, work.request.world))
+    if said := map_remark(job.world, work.request.world):
+        screen.say(f"note: {said}")
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")

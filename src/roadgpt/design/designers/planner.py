@@ -9,14 +9,27 @@ refused.
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.map_fit import check_room
 from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Outline, outline
+from roadgpt.brief.refusal import NoRoomError
 from roadgpt.check.bumps import asks_for_bumps
-from roadgpt.design.advice import advice, too_fast
+from roadgpt.design.advice import (
+    FOR_ROOM,
+    LIKELY,
+    advice,
+    larger_map,
+    main_reason,
+    metres_of,
+    roomier,
+    too_fast,
+)
 from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
@@ -26,7 +39,7 @@ from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
 from roadgpt.design.writing import design_at
-from roadgpt.errors import DesignError
+from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.road import Design, Road, Segment, World, build
 
 DRAFTS = 320  # for one road, at most
@@ -82,6 +95,25 @@ def fits(brief: Brief, world: World) -> bool:
         return all(search.found(TRIED) is not None for search in searches)
     except DesignError:
         return False
+
+
+@lru_cache(maxsize=256)
+def sufficient_map(brief: Brief, world: World) -> float | None:
+    """Returns the side in metres of a map that holds a road, if the map of the World does not.
+
+    Returns None if that map is large enough, or if no larger one would help.
+    """
+    try:
+        check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
+        searches = [_Search(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+    except NoRoomError:
+        return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
+    except RoadGPTError:
+        return None
+    failed = next((search for search in searches if search.found(TRIED) is None), None)
+    if failed is None or main_reason(failed.failed) not in FOR_ROOM:
+        return None
+    return larger_map(brief, world, fits, roomier(world, failed.boxes))
 
 
 class _Search:

@@ -1,0 +1,33 @@
+"""Finds the World for the roads of a description: with a surface that the words name, and with a map that can
+hold such roads.
+"""
+
+from roadgpt.brief.model import Brief
+from roadgpt.design.designers.planner import sufficient_map
+from roadgpt.road import World
+
+
+def world_for(brief: Brief | None, world: World) -> World:
+    """Returns the World for the roads of a Brief.
+
+    A surface that the Brief names, such as a wet road, sets the friction, unless the World was given one. If
+    the World was given no map size and roads of this Brief do not fit on the usual map, the map is enlarged.
+    """
+    found = world.on_surface_of(brief)
+    if brief is None or "map_size" in world.site.model_fields_set:
+        return found
+    size = sufficient_map(brief, found)
+    return found if size is None else found.changed(map_size=size)
+
+
+def map_remark(usual: World, found: World) -> str:
+    """Returns a sentence that says how large the map has become; empty if it is as large as before.
+
+    Args:
+        usual: the World that was given.
+        found: the World for the roads, as ``world_for`` returns it.
+    """
+    before, now = usual.site.map_size, found.site.map_size
+    if now == before:
+        return ""
+    return f"this does not fit on a map of {before:g} m, so the map is {now:g} m wide; --map-size sets it"

@@ -1,0 +1,88 @@
+"""A map that nobody gave grows with the road that is asked for; one that was given is kept."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.cli.commands.run import command
+from roadgpt.design import draft
+from roadgpt.design.room import map_remark, world_for
+from roadgpt.errors import RoadGPTError
+from roadgpt.road import Limits, Site, World, build
+from roadgpt.run import Setup, brief_of, perform
+
+PLAN = Setup(reader="plan", drives=False)
+TOO_LARGE = (
+    "straight len=700",
+    "turn right gentle | len=700",
+    "turn x11 alternating | len=850",
+    "serpentine x8 sweeping",
+    "hairpin left; straight len=300; hairpin right; straight len=300; hairpin left",
+    "| turns=0 up pct=3 len=500",
+)
+
+
+@pytest.mark.parametrize("line", TOO_LARGE)
+def test_the_map_grows_until_any_seed_finds_room(line: str) -> None:
+    brief = read_plan(line)
+    world = world_for(brief, World())
+    assert world == World().changed(map_size=world.site.map_size)
+    assert 250 < world.site.map_size <= 1000
+    for seed in range(20, 26):
+        points = build(draft(brief, world, seed=seed)).sample().points
+        assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
+    assert f"the map is {world.site.map_size:g} m wide" in map_remark(World(), world)
+
+
+@pytest.mark.parametrize(
+    "line", ["turn x3 | up", "straight len=300", "hairpin x4 | up climb=12", "winding | hard"]
+)
+def test_it_stays_where_there_is_room(line: str) -> None:
+    assert world_for(read_plan(line), World()) == World()
+    assert map_remark(World(), World()) == ""
+
+
+@pytest.mark.parametrize("given", [World(site=Site(map_size=250)), World().changed(map_size=200)])
+def test_a_map_that_was_given_is_kept(given: World) -> None:
+    brief = read_plan(TOO_LARGE[1])
+    assert world_for(brief, given) == given
+    with pytest.raises(RoadGPTError, match="--map-size"):
+        perform(TOO_LARGE[1], 1, given, PLAN)
+
+
+def test_no_map_helps_against_slopes_that_change_too_fast() -> None:
+    brief = read_plan("straight steeply_up len=12; straight steeply_down len=12; straight steeply_up len=12")
+    assert world_for(brief, World(limits=Limits(speed_limit=60))).site.map_size == 250
+
+
+def test_it_takes_the_surface_as_well() -> None:
+    world = world_for(read_plan("straight len=700 | beside(ice)"), World())
+    assert world.site.friction == 0.1
+    assert world.site.map_size > 250
+
+
+def test_the_reader_refuses_only_what_a_given_map_cannot_hold() -> None:
+    assert brief_of("straight len=700", World(), PLAN).clauses
+    with pytest.raises(RoadGPTError, match="does not fit"):
+        brief_of("straight len=700", World(site=Site(map_size=250)), PLAN)
+
+
+def test_the_command_says_how_large_the_map_is_and_resumes(tmp_path: Path) -> None:
+    words = ["turn right gentle | len=700", "--plan", "--no-drive", "--no-plot", "--seed", "3"]
+    first = CliRunner().invoke(command, [*words, "-n", "1", "--out", str(tmp_path / "a")])
+    assert first.exit_code == 0, first.output
+    said = re.search(r"so the map is (\d+) m wide; --map-size sets it", first.output)
+    assert said is not None
+    size = int(said[1])
+    again = CliRunner().invoke(command, [*words, "-n", "2", "--out", str(tmp_path / "a")])
+    assert "1 roads were finished before; continuing" in again.output
+    told = CliRunner().invoke(
+        command, [*words, "-n", "1", "--out", str(tmp_path / "b"), "--map-size", str(size)]
+    )
+    assert "so the map is" not in told.output
+    roads = [next((tmp_path / name).glob("test.0001.json")).read_bytes() for name in "ab"]
+    assert roads[0] == roads[1]
