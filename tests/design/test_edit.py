@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from edit_truth import changed_besides, roads
 from roadgpt import check
 from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
@@ -154,6 +155,16 @@ def test_half_of_a_road_has_turns_of_its_own() -> None:
                      (ROADS["h08"], changed("h08", "turn all half2: radius less")))  # fmt: skip
     assert after[0].radius == pytest.approx(before[0].radius, rel=0.03)
     assert after[-1].radius < 0.95 * before[-1].radius
+
+
+def test_halves_of_one_straight_have_no_slopes_of_their_own() -> None:
+    straight = draft(read_plan("straight flat len=240"), WORLD, seed=1)
+    for plan in ("road half1: slope up =4", "road half1: slope up; road half2: slope down"):
+        with pytest.raises(EditError, match=r"middle of this road lies in a straight of \d+ m"):
+            edited(straight, plan)
+    winding = draft(read_plan("turn x8"), WORLD, seed=2)
+    found = seen(edited(winding, "road half2: slope up =5").design)
+    assert found.turns[-1].grade == pytest.approx(5, abs=0.5)
 
 
 def test_a_changed_road_is_told_as_it_measures() -> None:

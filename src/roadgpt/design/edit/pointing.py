@@ -11,6 +11,7 @@ from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
+MUCH = 0.3  # share of half a road: an element that reaches farther into both halves belongs to neither
 SINGLE = ("hairpin", "u_turn", "switchback")
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
@@ -96,6 +97,8 @@ def straights(elements: RoadElements) -> list[RoadElement]:
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     found = list(elements)
     if target.half:
+        if what == "slope":
+            _refuse_a_split(elements)
         found = _half(elements, target.half)
     place = target.place
     if place and place.target and place.how != "on":
@@ -127,6 +130,19 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
             out.append(element)
         at += element.length
     return out
+
+
+def _refuse_a_split(elements: RoadElements) -> None:
+    """Raises EditError if one turn or straight makes up much of both halves: it can get only one slope."""
+    middle, at = sum(element.length for element in elements) / 2, 0.0
+    for element in elements:
+        if min(middle - at, at + element.length - middle) > MUCH * middle:
+            noun = "turn" if element.is_turn else "straight"
+            raise EditError(
+                f"the middle of this road lies in a {noun} of {element.length:.0f} m, which has one slope;"
+                " name turns and straights, or describe a new road: 'uphill, then downhill'"
+            )
+        at += element.length
 
 
 def _end(elements: RoadElements, what: What, last: bool) -> RoadElement:
