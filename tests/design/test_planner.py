@@ -231,7 +231,10 @@ ADVICE = [
     (Brief(clauses=(turns(2, side="left"),), right=exactly(1)), "sides asked for the 2 turns contradict"),
     (Brief(clauses=(turns(1, slope="down"),), slope="up"), "contradicts a road that is uphill all the way"),
     (Brief(clauses=(turns(1, slope="steeply_up"),), steepest=exactly(3)), "steeper than the 4 % that"),
-    (Brief(slope="up", steepest=at_most(2)), "a road of 3 to 12 % is steeper than the 2 % that it may have"),
+    (
+        Brief(slope="steeply_up", steepest=at_most(4)),
+        "of 8 to 15 % is steeper than the 4 % that it may have",
+    ),
     (Brief(clauses=(turns(2),), turns=exactly(3)), "asked for 3 turns, and for 2 at most"),
     (Brief(clauses=(turns(1, degrees=exactly(5)),)), "not seen as a turn"),
 ]
@@ -308,3 +311,11 @@ def test_a_turn_between_slopes_is_one_turn_of_its_angle(line: str, degrees: list
     assert sum(abs(segment.turn_degrees) for segment in design.segments) == pytest.approx(
         sum(degrees), rel=0.12
     )
+
+
+@pytest.mark.parametrize("line", ["crest x3", "crest x3.. | hills=3..", "crest; crest; crest"])
+def test_crests_that_are_counted_are_all_there(line: str) -> None:
+    for seed in range(3):
+        heights = build(draft(read_plan(line), World(), seed=seed)).sample().points[:, 2]
+        ways = np.sign(np.diff(heights)[np.abs(np.diff(heights)) > 1e-3])
+        assert np.count_nonzero(ways[1:] != ways[:-1]) == 5  # up, down, three times

@@ -29,7 +29,7 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
-FIGURE_WINS = 0.5
+FIGURE_WINS = 0.6
 """A figure that goes with a word, such as the radius of a "wide" turn, may miss the usual range of the word
 by this factor: the figure is what is meant."""
 LEAST_CLIMB = 1.0  # percent: less is level
@@ -320,11 +320,11 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
     if brief.slope == "flat" and (climb.lo > 10 or climb.hi < -10):
         raise BriefError("a flat road cannot gain or lose that much height; leave out one of the two")
     if brief.slope and not brief.incline:
-        least = FIGURE_WINS * min(abs(GRADES[brief.slope].lo), abs(GRADES[brief.slope].hi))
-        if brief.slope not in LEVEL and steepest.hi < max(least, LEAST_CLIMB):
+        usual = min(abs(GRADES[brief.slope].lo), abs(GRADES[brief.slope].hi))
+        least = FIGURE_WINS * usual if brief.slope.startswith("steeply") else LEAST_CLIMB
+        if brief.slope not in LEVEL and steepest.hi < least:
             raise BriefError(
-                f"such a slope is {max(least, LEAST_CLIMB):g} percent or more;"
-                " allow the steepest place to be that steep"
+                f"such a slope is {least:g} percent or more; allow the steepest place to be that steep"
             )
         if steepest.lo > 4 and brief.slope in LEVEL:
             raise BriefError("a level road cannot have a steep place; leave out one of the two")

@@ -35,6 +35,7 @@ USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns 
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 LEAST_GRADE = 1.0  # percent: a road that climbs less is level
 EASIER = 0.75  # share of a limit, above which the usual grades of a word would keep too close to the limit
+STILL_STEEP = 0.6  # share of the usual grade of a steep slope: a limit below it contradicts the word
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
 OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
@@ -197,7 +198,10 @@ def _with_figures_first(brief: Brief) -> Brief:
 def _within(said: Sloped, most: float) -> Sloped:
     """Returns a Brief or a clause whose slope, if it has no figure, keeps to a limit in percent."""
     usual = SLOPES[said.slope].grade if said.slope and not said.incline else None
-    if usual is None or 0 in usual or min(abs(usual.lo), abs(usual.hi)) <= EASIER * most:
+    if said.slope is None or usual is None or 0 in usual:
+        return said
+    least = min(abs(usual.lo), abs(usual.hi))
+    if least <= EASIER * most or (said.slope.startswith("steeply") and most < STILL_STEEP * least):
         return said
     return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
 
@@ -213,7 +217,8 @@ def _groups(clause: Clause, roomy: bool) -> list[Group]:
     """Returns the groups of a clause; a crest or a dip becomes two straights."""
     if clause.kind in BUMPS:
         slopes: tuple[Slope, Slope] = ("up", "down") if clause.kind == "crest" else ("down", "up")
-        return [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
+        one = [Group(_straight(clause.model_copy(update={"slope": slope}))) for slope in slopes]
+        return int(max(span(clause.count).lo, 1)) * one
     if clause.kind == "straight":
         return [Group(_straight(clause))]
     lo, hi = turns_of(clause)

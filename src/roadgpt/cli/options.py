@@ -45,7 +45,7 @@ _files = partial(Option, heading=Heading.FILES)
 
 # fmt: off
 WORLD = (
-    _world("--map-size", "Side of the square map, m. [default: 250, more if a description needs it]",
+    _world("--map-size", "Side of the square map, m. [default: 250 or more]",
            measure(50, 10_000, "metres")),
     _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
             key="speed_limit_kmh"),

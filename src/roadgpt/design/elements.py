@@ -155,3 +155,10 @@ def _of_group(group: Sequence[Segment]) -> Iterator[Element]:
     bend = Element(turn=round(turn, 6), radius=radius, transition=transition, incline=first.incline)
     row = (straight, bend, straight) if spare > SPARE else (bend,)
     yield from (row[0]._replace(vertical_radius=first.vertical_radius), *row[1:])
+
+
+def required_hills(plan: Sequence[Element]) -> int:
+    """Returns how often a road changes between climbing and falling by the required grades alone."""
+    required = (element.required_grade for element in plan)
+    climbs = [grade.lo > 0 for grade in required if grade and 0 not in grade]
+    return sum(one != other for one, other in pairwise(climbs))

@@ -11,7 +11,7 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import STEEPEST, Range, overlap
 from roadgpt.check.measures import LEVEL
 from roadgpt.check.rules.too_abrupt import MOST
-from roadgpt.design.elements import TENTH
+from roadgpt.design.elements import TENTH, required_hills
 from roadgpt.design.sequence import is_hairpin
 from roadgpt.design.vertical import COMFORT, Pace, softened
 from roadgpt.errors import DesignError
@@ -150,7 +150,7 @@ def drawn_heights(
             radius, that one is used.
         bumps: True allows vertical accelerations of up to 1 g, as for a requested crest or dip.
     """
-    is_hilly = bool(outline.hills and outline.hills.lo > 0)
+    is_hilly = bool(outline.hills and outline.hills.lo > required_hills(plan))
     if is_hilly:
         assert outline.hills is not None
         drawn = _hilly(plan, outline.hills, rng)
