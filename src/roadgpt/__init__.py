@@ -16,7 +16,7 @@ from typing import Any
 
 __version__ = "0.1.0"
 
-# Every value and function, and the room that owns it.
+# Every public class and function, and the sub-package or module that defines it.
 _ROOMS = {
     "Brief": "brief",
     "Outline": "brief",

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from typing import IO, Any
 
-FAREWELL = 10.0  # s for a process that was killed to be gone
+FAREWELL = 10.0  # s in which a killed process must have ended
 _APART: Mapping[str, Any] = (
     {"start_new_session": True}
     if os.name == "posix"
@@ -48,7 +48,7 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
     """
     words = [
         sys.executable,
-        "-P",  # a module that lies where the user stands is not taken for one of ours
+        "-P",  # modules in the user's current folder do not replace ours
         "-c",
         f"from {entry} import main; main()",
     ]
@@ -58,11 +58,11 @@ def python(entry: str, **how: Any) -> "subprocess.Popen[bytes]":
 
 
 def kill(process: "subprocess.Popen[bytes]") -> None:
-    """Kills a process and its child processes, without waiting until they have ended. It may also be
-    called for a process that has already ended.
+    """Kills a process and its child processes, without waiting until they have ended. The process may
+    already have ended.
     """
     if os.name == "posix":
-        # its group may outlive it, so it is signalled even if the process has ended
+        # the process group may outlive the process, so the group is signalled even if the process has ended
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(process.pid, signal.SIGKILL)
     elif process.poll() is None:

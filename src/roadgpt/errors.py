@@ -66,7 +66,9 @@ class ExportError(RoadGPTError):
 
 
 class LearnError(UsageError):
-    """Pairs of descriptions and plans, or a grammar of phrases, cannot be used."""
+    """A reader cannot be trained or exported, for example because its training data (pairs of descriptions
+    and plans, or a grammar of phrases) or its weights cannot be used.
+    """
 
 
 class ChatError(RoadGPTError):

@@ -25,7 +25,7 @@ KINDS = (
 
 @cache
 def _registered(kind: str) -> dict[str, list[EntryPoint]]:
-    """Returns plug-ins by name; several under one name where packages disagree."""
+    """Returns the plug-ins of one kind by name; several if packages register different ones under a name."""
     found: dict[str, list[EntryPoint]] = {}
     for part in entry_points(group=f"roadgpt.{kind}"):
         same = found.setdefault(part.name, [])

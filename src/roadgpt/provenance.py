@@ -57,8 +57,8 @@ def _nobody(question: str) -> bool:
 
 
 class Confirmation:
-    """Asks the user to confirm something. Unless a program has set ``ask``, nobody is asked and the answer
-    is no.
+    """Asks the user to confirm something. Until a program sets ``ask``, the user is not asked and the
+    answer is always no.
     """
 
     def __init__(self) -> None:
@@ -78,6 +78,6 @@ def known() -> tuple[NameOrigins, NameOrigins]:
 
 
 def join(names: tuple[NameOrigins, NameOrigins]) -> None:
-    """Adds the names that the parent process recorded to those of this worker process."""
+    """Adds all names recorded by the parent process to the names of this worker process."""
     for ours, theirs in zip((CODE, SERVERS), names, strict=True):
         ours.join(theirs)

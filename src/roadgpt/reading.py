@@ -24,7 +24,7 @@ T = TypeVar("T")
 M = TypeVar("M", bound="BaseModel")
 
 LARGEST = 50_000_000  # bytes, where a caller gives no other limit
-MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # of a JSON text: each costs many bytes of memory
+MOST_OPENED, MOST_COMMAS = 2_000_000, 6_000_000  # brackets and commas of a JSON text, which cost memory
 DIGITS = 300  # of a whole number; a floating-point number has at most 308
 ANY = "a file of this kind"
 HOW = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
@@ -106,11 +106,12 @@ def read_model(
     advice: str = "name another folder",
     most: int = LARGEST,
 ) -> M:
-    """Returns the pydantic model in a JSON file that RoadGPT wrote, of at most ``most`` bytes.
+    """Reads a JSON file that RoadGPT wrote, and returns the pydantic model in it. The file may have at most
+    ``most`` bytes.
 
     Raises:
-        UsageError: The file does not exist; the message is then ``absent``. Or it is damaged, or another
-            version of RoadGPT wrote it; the message then ends with ``advice``.
+        UsageError: The file does not exist (the message is then ``absent``); or it cannot be read, is
+            damaged, or was written by another version of RoadGPT (the message then ends with ``advice``).
     """
     try:
         data = read_json(path, most, what)
@@ -145,7 +146,7 @@ def check_unpacked(entries: Iterable[zipfile.ZipInfo], most: int) -> None:
     """Checks that a zip archive does not unpack to more than ``most`` bytes.
 
     Raises:
-        ValueError: It would unpack to more.
+        ValueError: The archive would unpack to more.
     """
     if sum(entry.file_size for entry in entries) > most:
         raise ValueError(f"it unpacks to more than {most / 1e6:g} MB")

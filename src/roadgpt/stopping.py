@@ -34,7 +34,7 @@ class _State:
     """Number of the signal that was received; 0 for none."""
     since = 0.0
     is_raised = False
-    """Whether a caller of ``look`` has been interrupted."""
+    """Whether ``look`` has raised a KeyboardInterrupt for this signal."""
     is_again = False
     """Whether the next signal will be one that this process sent to itself."""
     drops = 0

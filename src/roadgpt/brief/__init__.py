@@ -74,7 +74,8 @@ __all__ = [
 ]
 
 PLAN = "plan"
-"""The name of the reader of plans, which build what they say and leave out what they name beside the road."""
+"""The name of the plan reader. A plan may list a junction or the like in ``beside(...)``: the road is then
+built without the junction. With other readers, ``read`` refuses a description that asks for one."""
 
 
 class Reader(Protocol):
@@ -128,7 +129,7 @@ def read(
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
         chat: settings of the language model, for readers that use one; None takes the user's settings.
         road_width: width of the carriageway in metres.
-        is_map_fixed: False if the map may be enlarged for the road, which is then not checked against it.
+        is_map_fixed: False if the map may be enlarged for the road; ``check`` then ignores the map.
 
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on

@@ -1,8 +1,8 @@
 """Lists things that descriptions mention but no requirement of a Brief can express, such as a roundabout.
 
-A reader that recognises one of them writes its name into ``Brief.beside``. RoadGPT then tells the user that
-it is not built, must be given as a number, is set by an option or sets the friction, so that nothing is
-ignored silently.
+A reader that recognises such a thing adds the name of the thing to ``Brief.beside``. RoadGPT then tells the
+user that the thing is not built, must be given as a number, is set by an option or sets the friction, so that
+nothing is ignored silently.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -53,23 +53,24 @@ NOT_BUILT = {
     "gravel": "a gravel or dirt surface",
     "cobbles": "a cobbled surface",
 }
-"""Names of what RoadGPT does not build, with the words of the remark."""
+"""The things that RoadGPT does not build, by name, with their wording in the remark."""
 NETWORKS = ("junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "loop")
-"""Names of what is no single road: a description that asks for one of them is answered with a question."""
+"""Names of the things that are not a single road. If a description asks for one of them, ``brief.read``
+raises NotBuiltError, which proposes the road without it."""
 NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
     "compared": "how one part compares with another is not built yet; give each its own number",
     "alike": "equal or evenly spaced parts are not built yet; give each its own number",
 }
-"""Names of wishes that are understood and that only numbers can express yet, with the remark."""
+"""Wishes that are understood, but that so far must be given as numbers: their names, with the remarks."""
 OPTIONS = {
     "lanes": "the number of lanes is set with --lanes, such as --lanes 2+1",
     "lane_width": "the width of lanes is set with --lane-width, such as --lane-width 3",
     "bank": "superelevation is set with --bank, such as --bank auto",
     "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
 }
-"""Names of what an option sets and words do not, with the remark."""
+"""Properties that are set by an option, not by a description: their names, with the remarks."""
 SAID_OTHERWISE = NEEDS_NUMBERS | OPTIONS
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
@@ -91,8 +92,8 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 
 def networks_in(names: Iterable[str]) -> str:
-    """Returns, in words, those things that are not a single road, such as "a roundabout and an exit or a slip
-    road"; empty if there are none.
+    """Returns the wording of those things that are not a single road, joined by "and", such as "a junction
+    and a roundabout"; empty if there are none.
     """
     return " and ".join(NOT_BUILT[name] for name in names if name in NETWORKS)
 

@@ -30,8 +30,9 @@ LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
 FIGURE_WINS = 0.6
-"""A figure that goes with a word, such as the radius of a "wide" turn, may miss the usual range of the word
-by this factor: the figure is what is meant."""
+"""If a description gives both a word and a number, such as a "wide" turn and its radius, the number takes
+precedence. It may lie outside the usual range of the word: down to this factor times the lower end, or up to
+the upper end divided by this factor."""
 LEAST_CLIMB = 1.0  # percent: less is level
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
@@ -131,7 +132,7 @@ def _limits_of_every_turn(brief: Brief) -> None:
 
 
 def _meant(clause: Clause, name: str) -> Range | None:
-    """Returns the range of radii or degrees that the words for a turn mean; None if they leave them open."""
+    """Returns the range of radii or degrees that the words for a turn imply; None if they imply no range."""
     own: Range | None = getattr(KINDS[clause.kind], name)
     if clause.kind == "turn":
         sharp = SHARPNESS[clause.sharpness] if clause.sharpness else None
@@ -262,7 +263,7 @@ def _degrees_of(clause: Clause, each: Amount | None) -> Range:
 
 
 def _sides(brief: Brief) -> None:
-    """Checks that lefts and rights make up all turns, and no more."""
+    """Checks that the numbers of left and right turns can add up to the number of all turns."""
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     turns = span(total(turning) if turning else brief.turns)
     least = 0.0
@@ -292,7 +293,7 @@ def _sides(brief: Brief) -> None:
 
 
 def _sure(clause: Clause, side: str) -> float:
-    """Returns how many turns of a clause must go to this side."""
+    """Returns the least number of turns of a clause that go to this side."""
     least, _ = turns_of(clause)
     if (KINDS[clause.kind].alternating and clause.kind != "switchback") or clause.alternating:
         return least // 2

@@ -38,7 +38,7 @@ NOT_ONE = _bag(
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
 )
 """Words that, right before "motorway", mean that the road is not a motorway, or only near one."""
-BACK = 3  # how many words before it are checked
+BACK = 3  # how many words before "motorway" are checked
 PARTS_OF_ONE = _bag(
     "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
 )
@@ -47,7 +47,7 @@ OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
 """The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
 BETWEEN = 17.5  # metres from one turn to the next, at least
-LEADS = 33.0  # metres of straight before the first and after the last
+LEADS = 33.0  # metres of straight before the first turn and after the last turn together
 SIDES = 1.3  # sides of the map that a nearly straight road may take up
 COMFORT = 1.5  # the proposed map is this many times the least length of the road
 ROUND = 500.0  # metres: the proposed map is rounded up to this
@@ -68,8 +68,8 @@ def says_motorway(words: str) -> bool:
 
 
 def has_wide_turns(brief: Brief, map_size: float) -> bool:
-    """Returns True if the Brief asks for a motorway and the map can hold its wide turns; ``map_size`` in
-    metres.
+    """Returns True if the Brief asks for a motorway and for no tighter turns, and if the wide turns of a
+    motorway fit on the map and into the required length; ``map_size`` is in metres.
     """
     return brief.motorway and not _is_tighter(brief) and not _lack_of_room(brief, map_size)
 
@@ -102,7 +102,7 @@ def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
 
 
 def _lack_of_room(brief: Brief, map_size: float) -> str:
-    """Returns why the map cannot hold a motorway and what to do about it; empty if it can."""
+    """Returns why the map or the required length is too small for a motorway, and what to do; else empty."""
     needed = _needed(brief)
     most = brief.length.hi * (1 + ROAD_LENGTH_SLACK) if brief.length and brief.length.hi else needed
     if needed > most:
@@ -117,7 +117,7 @@ def _lack_of_room(brief: Brief, map_size: float) -> str:
 
 
 def _needed(brief: Brief) -> float:
-    """Returns the least length in metres of a motorway with these turns; 0 if it has no turns."""
+    """Returns the least length in metres of a motorway with the turns of the Brief; 0 if it has no turns."""
     said = normal(brief)
     if said.turns and said.turns.hi == 0:
         return 0.0

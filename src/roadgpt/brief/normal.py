@@ -175,7 +175,7 @@ def _singles(clause: Clause) -> list[Clause]:
 
 
 def _ends(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Turns the first and last feature into clauses where possible."""
+    """Converts the first and last feature to clauses where possible."""
     starts, ends = (None if c is None else _plain(c) for c in (whole.starts, whole.ends))
     if not clauses and (whole.turns is None or whole.turns == at_least(1)):
         return whole.model_copy(update={"starts": starts, "ends": ends}), clauses
@@ -198,7 +198,7 @@ def _ends_of_a_straight(whole: Brief, things: list[Clause]) -> tuple[Brief, list
 
 
 def _folded(edge: list[Clause], thing: Clause) -> list[Clause] | None:
-    """Returns the feature and what remains of the clause at that edge; None if that cannot be expressed."""
+    """Returns the first or last feature and the rest of the clause there; None if they cannot be split."""
     if not edge or edge[0] == thing:
         return edge or None
     if thing.kind in STRAIGHT:
@@ -219,7 +219,7 @@ def _is_plain(clause: Clause) -> bool:
 
 
 def _turns_as_clause(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Turns 'exactly 3 turns', or '3 turns or more, none to the right', into a clause."""
+    """Converts 'exactly 3 turns', or '3 turns or more, none to the right', to a clause."""
     turns, side = whole.turns, _forced_side(whole)
     if clauses or not turns or not turns.lo or whole.starts or whole.ends or not (turns.exact or side):
         return whole, clauses
@@ -266,7 +266,7 @@ def _forced_side(whole: Brief) -> Side | None:
 
 
 def _turns_as_wish(whole: Brief, clauses: list[Clause]) -> tuple[Brief, list[Clause]]:
-    """Turns the clause '3 turns or more' into a requirement for the road."""
+    """Converts the clause '3 turns or more' to a requirement for the whole road."""
     if len(clauses) != 1 or not _is_plain(clauses[0]) or clauses[0].count.exact or whole.turns:
         return whole, clauses
     only = clauses[0]

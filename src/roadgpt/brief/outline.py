@@ -29,12 +29,12 @@ from roadgpt.brief.words import (
 )
 
 SMALLEST_TURN = 12.0  # degrees; a bend of less than 10 is not measured as a turn
-SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of it
+SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share of the 20 degrees
 LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
 LEAST_GRADE = 1.0  # percent: a road that climbs less is level
-EASIER = 0.75  # share of a limit, above which the usual grades of a word would keep too close to the limit
+EASIER = 0.75  # the usual grades of a word are kept if the least of them is at most this share of a limit
 STILL_STEEP = 0.6  # share of the usual grade of a steep slope: a limit below it contradicts the word
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
@@ -178,10 +178,11 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
 
 
 def _with_figures_first(brief: Brief) -> Brief:
-    """Replaces the usual grade of a word for a slope where a figure of the Brief leaves less.
+    """Replaces the usual grades of a word for a slope if a number in the Brief requires lower ones.
 
-    "Uphill" usually means 3 to 12 percent; "uphill, at most 2 percent" means 1 to 2 percent, "uphill, 6 m
-    over 300 m" a mean of 2 percent, and "uphill, 6 m" whatever the length of the road makes of it.
+    "Uphill" usually means 3 to 12 percent. "Uphill, at most 2 percent" means 1 to 2 percent. "Uphill, 6 m
+    over 300 m" also allows the 2 percent that follow from these numbers. "Uphill, 6 m" allows 1 to 12
+    percent, since the length of the road is open.
     """
     most = span(brief.steepest).hi
     clauses = tuple(_within(clause, most) for clause in brief.clauses)
@@ -196,7 +197,9 @@ def _with_figures_first(brief: Brief) -> Brief:
 
 
 def _within(said: Sloped, most: float) -> Sloped:
-    """Returns a Brief or a clause whose slope, if it has no figure, keeps to a limit in percent."""
+    """Returns a Brief or a clause with an incline of ``most`` percent or less, if its slope has no number of
+    its own and the usual grades of the slope are too close to ``most`` or above it; else unchanged.
+    """
     usual = SLOPES[said.slope].grade if said.slope and not said.incline else None
     if said.slope is None or usual is None or 0 in usual:
         return said

@@ -28,7 +28,7 @@ WORDS = {
     **dict.fromkeys(("steeply_up", "steeply_down"), "slope"),
 }
 BARE = dict.fromkeys(("straight", "crest", "dip"), "length")
-"""The field that a number without a key has in a clause; turns have it for their degrees."""
+"""The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
 FLAGS = ("alternating", "hard", "motorway")
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
 ROAD_KEYS = {
@@ -48,7 +48,7 @@ Model = TypeVar("Model", Brief, Clause)
 
 
 def plan(brief: Brief) -> str:
-    """Returns the plan of a Brief; the plan omits the description, the unused words and the confidence."""
+    """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
     wishes = _mods(brief, ROAD_KEYS)
     for place in PLACES:
         clause = getattr(brief, place)

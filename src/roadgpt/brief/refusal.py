@@ -12,7 +12,7 @@ from roadgpt.errors import BriefError
 MOST_CHARACTERS = 2000
 """Longest description that is read."""
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
-"""Ends refusals of what says nothing about a road."""
+"""The end of the message for a description that is empty or says nothing about a road."""
 ADVICE = {
     "!nonsense": "this does not describe a road; say what it should be like: 'uphill with three turns'",
     "!contradiction": "the description contradicts itself; leave something out, or say which part of"
@@ -21,7 +21,7 @@ ADVICE = {
     " above 15 percent are not possible; leave that out",
     "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
 }
-"""The refusals of the language of plans, with what they say if no cause is named."""
+"""The refusals of the plan language, with the message of each if no cause is named."""
 CLASHING = {
     "turns": "the number of turns",
     "sides": "left and right",
@@ -34,7 +34,7 @@ CLASHING = {
     "climb": "its heights",
     "length": "its length",
 }
-"""Causes of a contradiction, with what they concern."""
+"""Causes of a contradiction, with the requirements that contradict each other."""
 BEYOND = {
     "grade": "grades above 15 percent",
     "radius": "radii below 15 m",
@@ -51,13 +51,13 @@ BY_OPTION = {
     **{name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()},
     "climb": "a height in metres cannot be changed yet; say the slope in percent",
 }
-"""Causes that another option or other words meet, with what to do."""
+"""Requests that a description cannot make, but an option or other words can, with the advice for each."""
 OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_OPTION}
-"""The causes that each refusal can have, with what the message says of each."""
+"""The causes that each refusal can have, with the wording of each cause in the message."""
 
 
 def causes_of(line: str) -> tuple[str, str]:
-    """Returns the kind of a refusal, such as "!impossible", and its causes in words; "" if it names none.
+    """Returns the kind of a refusal, such as "!impossible", and its causes in words ("" if it names none).
 
     Raises:
         BriefError: the plan is no refusal, or has causes that this kind of refusal cannot have.
@@ -97,12 +97,12 @@ class TooMuchError(BriefError):
 
 
 class NotBuiltError(BriefError):
-    """Raised if a description asks for something that is no single road, such as a roundabout.
+    """Raised if a description asks for something that is not a single road, such as a roundabout.
 
     Attributes:
         missing: what cannot be built, in words.
-        plan: the plan of the road without it.
-        brief: the requirements for the road without it.
+        plan: the plan of the road without what is missing.
+        brief: the requirements for the road without what is missing.
     """
 
     def __init__(self, missing: str, plan: str, brief: Brief) -> None:

@@ -1,4 +1,4 @@
-"""Writes a Brief as one plain English sentence. The reader reads it back to check its own reading."""
+"""Writes a Brief as one plain English sentence, which the model reader can read back."""
 
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
@@ -68,7 +68,7 @@ def _said(name: str, amount: Amount) -> str:
 
 
 def _slope(thing: Brief | Clause) -> str:
-    """Returns the slope as an adjective; a slope with a number is said behind the noun."""
+    """Returns the slope as an adjective; empty for a slope with a number, which is written after the noun."""
     return SLOPES[thing.slope].names[0] if thing.slope and not thing.incline else ""
 
 

@@ -60,7 +60,7 @@ class Meaning:
     names: tuple[str, ...]
     """The English words with this meaning; RoadGPT's own texts use the first one."""
     turns: Range | None = None
-    """The number of turns of one such feature, if the description gives no number."""
+    """The number of turns in one feature of this kind, if the description gives no number."""
     alternating: bool = False
     degrees: Range | None = None
     """The change of heading of each turn in degrees; for a straight, the total change of heading along it."""
@@ -181,7 +181,7 @@ Tolerance = tuple[Callable[[float], float], str]
 
 
 def _share(share: float, least: float = 0.0) -> Tolerance:
-    """Returns a tolerance of a share of the number, but of ``least`` metres or more, as code and in words."""
+    """Returns a tolerance of ``share`` of the number, but at least ``least`` metres, as code and in words."""
     more = f", at least {least:g} m" if least else ""
     return lambda number: max(share * abs(number), least), f"{100 * share:g} %{more}"
 
@@ -219,7 +219,7 @@ FEATURE = {
 """The quantities of one turn or straight, by their names in a Feature and in a MeasuredFeature."""
 
 COUNTS = {"turns": "turn", "left": "left turn", "right": "right turn"}
-"""The nouns of the numbers of turns, by their names in the Brief and in the Outline."""
+"""The nouns for the fields of the Brief and the Outline that count turns, by the name of the field."""
 
 WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
 """What the whole road does; it stands after 'the whole road' and 'a road that'."""
@@ -353,4 +353,4 @@ def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -
 
 
 SURE = 0.8
-"""Confidence under which a reading is so often wrong that the user is asked or warned."""
+"""If the confidence is below this, a reading is wrong so often that the user is asked or warned."""

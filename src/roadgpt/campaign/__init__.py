@@ -15,7 +15,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-# Each is imported when it is first used: a worker that starts wants none of it yet.
+# Each module is imported when it is first used, because a starting worker needs none of them yet.
 _MODULES = {
     "Budget": "model",
     "Campaign": "folder_campaign",
@@ -47,11 +47,11 @@ def __getattr__(name: str) -> Any:
 
 
 class _Room(ModuleType):
-    """This package, which has the name of a function that ``roadgpt`` offers: a call of it calls that
-    function."""
+    """The type of this package. It makes the package callable, because ``roadgpt.campaign`` is also the name
+    of a function."""
 
     def __call__(self, *values: Any, **named: Any) -> Any:
-        """Calls ``roadgpt.campaign.campaign``: once imported, ``roadgpt.campaign`` names the room."""
+        """Calls the function ``campaign`` of this package."""
         return self.campaign(*values, **named)
 
 

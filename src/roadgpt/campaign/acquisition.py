@@ -20,7 +20,7 @@ from roadgpt.campaign.variation import Candidate
 from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
 
-ANYWHERE = 0.05  # of a first failure in a cell: what one in a cell with many counts
+ANYWHERE = 0.05  # weight of a failure in a cell with many failures; a first failure weighs about 1
 
 
 class Predictions(NamedTuple):
@@ -95,9 +95,9 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
 
 
 def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Chooses candidates before the surrogate has learned from enough drives.
+    """Chooses candidates as long as the surrogate has too few drives to learn from.
 
-    They come from the half that looks hardest, and their features are diverse.
+    The chosen roads are among the half of the candidates that looks hardest, and their features are diverse.
 
     Args:
         candidates: the roads to choose from.

@@ -19,9 +19,9 @@ from roadgpt.campaign.behaviour import bounds_of
 from roadgpt.geometry.curve import Array
 
 NICHES_SEED = 0  # of the centroids: they belong to the map, not to a search
-SAMPLES = 20_000  # points, evenly spread over the map, whose clusters the centroids are
+SAMPLES = 20_000  # random points on the map; the centroids are the centres of their clusters
 MOST_ROUNDS = 300  # of k-means
-SETTLED = 1e-4  # of the samples' variance: k-means ends when all centroids together move by less, squared
+SETTLED = 1e-4  # of the samples' variance: k-means ends when the squared moves of all centroids sum to less
 EDGE = 1e-6  # added to a feature times the number of cells, so that rounding puts no edge into the cell below
 
 Cells = NDArray[np.intp]
@@ -82,7 +82,7 @@ class Grid:
     """
 
     def __init__(self, bounds: Array, cells: int) -> None:
-        """Takes the ends ``(axes, 2)`` of the map, and the number of cells along each axis."""
+        """Takes the bounds ``(axes, 2)``, lower and upper, and the number of cells along each axis."""
         self._low, self._width = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
         self._along = cells
 
@@ -99,7 +99,7 @@ class Niches:
     """A map whose cells are the neighbourhoods of evenly spread centroids."""
 
     def __init__(self, bounds: Array, cells: int) -> None:
-        """Takes the ends ``(axes, 2)`` of the map, and the number of centroids."""
+        """Takes the bounds ``(axes, 2)``, lower and upper, and the number of centroids."""
         samples = np.random.default_rng(NICHES_SEED).uniform(
             bounds[:, 0], bounds[:, 1], (SAMPLES, len(bounds))
         )

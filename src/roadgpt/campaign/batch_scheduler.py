@@ -12,10 +12,10 @@ from roadgpt.campaign.store import Store
 from roadgpt.errors import RoadGPTError
 from roadgpt.road import Design
 
-REMEMBERED = 2048  # designs that a draft is not to repeat, 50 MB in each worker; older ones are forgotten
-STRIDE = 512  # of them at a time, so that what designers remember of the others stays of use
-LAG = 2  # batches: number k knows results up to k - 2
-GIVE_UP = 3  # roads that cannot be designed, before any that could
+REMEMBERED = 2048  # latest designs that a draft must differ from, 50 MB per worker; older ones are left out
+STRIDE = 512  # designs that are dropped at a time, so that designers' caches of the others stay valid
+LAG = 2  # batches: batch k is requested with the results of batches up to k - 2
+GIVE_UP = 3  # tests without a road, after which a cell is closed if it has no road yet
 
 
 class BatchScheduler:
@@ -116,7 +116,7 @@ class BatchScheduler:
         return [*enumerate(proposals, first)]
 
     def _taught(self, last: int) -> Generator:
-        """Returns the generator after it was told of all batches up to this one."""
+        """Returns the generator after passing it the results of all batches up to number ``last``."""
         if self._generator is None:
             self._generator = plugins.find("generators", self.cell.generator)(self.cell)
         generator: Generator = self._generator

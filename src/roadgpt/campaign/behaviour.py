@@ -27,7 +27,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
 DIRECTIONS = 36  # of 10 degrees each
-WIDEST = 1000.0  # m: gentler turns count as so wide
+WIDEST = 1000.0  # m; larger radii count as this radius
 MOST_TURNS = 6  # that have features of their own
 DECIMALS = 6
 

@@ -65,8 +65,8 @@ def distance(one: Elements, other: Elements) -> float:
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:
-    """Returns the largest difference between corresponding roads as text, such as 'turn 2: radius 15.4 m,
-    then 14.9 m'; returns '' if they do not differ.
+    """Returns the largest difference between corresponding roads, in units of ``Measure.scale``, as text:
+    'turn 2: radius 15.4 m, then 14.9 m'. Returns '' if the roads do not differ.
     """
     most, found = 0.0, ""
     turns = straights = 0

@@ -8,7 +8,7 @@ from roadgpt.campaign.model import Goal
 from roadgpt.campaign.record import Record
 from roadgpt.verdict.severity import MOSTLY
 
-ONE_SIDED = 0.05  # share of driven roads that ended otherwise, below which there is hardly a boundary
+ONE_SIDED = 0.05  # share of driven roads; if fewer passed, or fewer failed, there is hardly a boundary
 NOTHING = (None, 0, 0, None, None)  # of a cell in which no test passed
 
 
@@ -38,7 +38,7 @@ class CellStatus:
     """
     goal: Goal | None
     closed: str | None
-    """Why the cell was closed before all its tests had been requested; None if it was not."""
+    """Why the cell was closed before all its tests had been requested; None if it was not closed."""
     friction: float = 1.0
     """Friction coefficient of the road."""
 
@@ -49,8 +49,8 @@ class CellStatus:
 
     @property
     def remark(self) -> str:
-        """A warning if a search for the boundary of failure found only passing or only failing roads; else
-        empty.
+        """A warning if a search for the boundary of failure drove no road, or if less than 5 % of the driven
+        roads passed or less than 5 % failed; otherwise empty.
         """
         kept, failed = self.outcomes.get("PASS", 0), self.outcomes.get("FAIL", 0)
         driven = kept + failed

@@ -87,7 +87,7 @@ def _split(
     samples: Array, targets: Array, starts: NDArray[np.intp], sizes: NDArray[np.intp], least: int,
     rng: np.random.Generator,
 ) -> Forest:  # fmt: skip
-    """The nodes of one depth with their splits; their samples stand one node after another."""
+    """Returns the nodes of one depth with their splits; the rows of ``samples`` are grouped by node."""
     node = np.repeat(np.arange(len(starts)), sizes)
     sums = np.add.reduceat(targets, starts)
     value = sums / sizes[:, None]

@@ -73,7 +73,7 @@ def work_in(
 def _worked(
     home: Path, left: dict[str, RunFolder], draw: Draw | None, meter: Meter | None, workers: int
 ) -> Iterator[tuple[str, FinishedRun]]:
-    """Runs the tests of folders that are ready for it; removes finished folders from ``left``."""
+    """Runs the tests of folders that ``RunFolder.begin`` has prepared; drops finished ones from ``left``."""
     cells = [each.cell(name) for name, each in left.items()]
     setups = tuple(dict.fromkeys(cell.request.setup for cell in cells))
     refuse_links(home / LOG)
@@ -97,7 +97,7 @@ def _worked(
             folder.drop_held_back()
         raise
     except BaseException:
-        # however it ends, the tables tell of every road that is there
+        # however the session ends, the tables must count every finished road
         for folder in left.values():
             folder.write_tables()
         raise
@@ -126,7 +126,7 @@ class Campaign(RunFolder):
         return tuple(sorted(self.tests))
 
     def __iter__(self) -> Iterator[Run]:
-        """Yields the Runs that are still to be made, one by one; raises what ``all_runs`` raises."""
+        """Makes the missing Runs and yields them one by one; raises the same errors as ``all_runs``."""
         return self._runs(with_earlier=False)
 
     def all_runs(self) -> Iterator[Run]:

@@ -21,7 +21,7 @@ from roadgpt.run.sbft_json import test_name
 
 
 def is_store(folder: Path) -> bool:
-    """Returns whether a folder holds a campaign with a store, unlike a folder of runs."""
+    """Returns whether a folder holds a campaign with a store; False for a folder of runs."""
     return (folder / STORE).is_file()
 
 
@@ -53,8 +53,8 @@ class FolderRecord(FolderStore):
         """Opens a folder of runs, or the folder of one Run.
 
         Raises:
-            UsageError: the folder's ``campaign.json`` is damaged, or it has none and its first Run cannot be
-                read.
+            UsageError: the folder's ``campaign.json`` is damaged, or the folder has no ``campaign.json`` and
+                its first Run cannot be read.
         """
         self._is_entered = False
         self._places = {read_run(folder).index: folder} if is_run(folder) else _places_in(folder)
@@ -79,7 +79,7 @@ class FolderRecord(FolderStore):
             self._is_entered = True
             ended = {number: finished_run(self.run("", number)) for number in self._places}
             self._enter("", ended)
-            self._db.execute("UPDATE tests SET ended = NULL")  # the files do not hold it
+            self._db.execute("UPDATE tests SET ended = NULL")  # the files do not record when a test ended
             now, took = time.time(), sum(one.seconds.total for one in ended.values())
             is_over = not is_locked(self.folder)
             self._db.execute("INSERT INTO sittings VALUES (?, ?, 1, ?, 0, 0)", (now - took, now, is_over))
@@ -121,7 +121,7 @@ class FolderRecord(FolderStore):
         return finished_run(self.run(cell, number)).result
 
     def road(self, cell: Cell, result: Result) -> Road | None:
-        """Returns the road of a test that has ended; None if it has none."""
+        """Returns the road of a test that has ended; None if the test has no road."""
         return self.run(cell.name, result.number).road
 
     def seed(self, result: Result) -> int:

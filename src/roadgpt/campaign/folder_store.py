@@ -25,10 +25,10 @@ class FolderStore(Store):
     has_run = "1"
 
     def __init__(self, home: Path, folders: Mapping[str, RunFolder], cells: Sequence[Cell]) -> None:
-        """Makes the tables of the tests that are in the folders.
+        """Builds the tables from the tests in the folders.
 
         Args:
-            home: the folder that messages name.
+            home: the folder that error messages name.
             folders: the folder of each cell, by the cell's name.
             cells: the cells.
         """
@@ -36,7 +36,7 @@ class FolderStore(Store):
         self._folders = folders
         self._cells = {cell.name: cell for cell in cells}
         self.written: list[tuple[str, FinishedRun]] = []
-        """Tests whose files were written, with the names of their cells; whoever reads them empties it."""
+        """Tests whose files were written, with their cells' names; code that reads this list empties it."""
         self._db.executescript(SCHEMA)
         self._db.execute("INSERT INTO meta VALUES ('finished', '')")
         self._db.executemany(
@@ -89,7 +89,7 @@ class FolderStore(Store):
         """
         super().keep(ended, *rest)
         for name, one in ended:
-            if not isinstance(one, FinishedRun):  # its workers died, perhaps over its pictures
+            if not isinstance(one, FinishedRun):  # its workers died, perhaps while they drew pictures
                 task = Task(one.result.number, one.result.batch, one.result.proposal)
                 run = error_run(task, self._cells[name], one.result.description)
                 one = RunWriter({name: self._folders[name].folder}).written(run, task, name)

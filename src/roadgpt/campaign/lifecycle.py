@@ -1,6 +1,6 @@
 """Begins and runs campaigns: one process schedules tests and writes the store, and workers run the tests.
 
-begin     makes a folder with a store, which holds the plan and its cells with their Briefs
+begin     makes a folder with a store; the store holds the plan, its cells and their Briefs
 work      runs the remaining tests; interruptions do not change the resulting tables
 """
 
@@ -69,7 +69,7 @@ def begin(plan: Plan, folder: Path) -> bool:
         briefs, spent = _briefs(plan)
         cells = plan.cells(briefs)
         _refuse_ignored(plan, *(world_for(brief, plan.world) for brief in briefs.values()))
-        for name in plan.generators:  # one that cannot use its settings says so now
+        for name in plan.generators:  # a wrong setting raises an error now
             plugins.find("generators", name)(next(cell for cell in cells if cell.generator == name))
         versions = versions_of(cells[0].request.setup)
         Store.new(folder, plan.model_dump_json(), cells, versions, spent).close()
@@ -77,7 +77,7 @@ def begin(plan: Plan, folder: Path) -> bool:
 
 
 def _is_free(folder: Path) -> None:
-    """Refuses a folder that holds something else."""
+    """Raises UsageError if the folder holds something other than a campaign."""
     if not folder.is_dir() or (folder / STORE).is_file():
         return
     if any(path.name != LOCK and not path.name.startswith(STORE) for path in folder.iterdir()):
@@ -98,11 +98,12 @@ def _without_trace(folder: Path) -> Iterator[None]:
 
 
 def _admit(plan: Plan) -> None:
-    """Asks about code and servers that came with files, before anything is stored, paid for or begun.
+    """Requires the user's permission for drivers and servers that only a file names, before anything is
+    stored, paid for or begun.
 
     Raises:
-        UsageError: a driver of the plan is code that the user does not name.
-        ChatError: a server of the plan is one that the user does not name, and they have a key.
+        UsageError: the user does not permit a driver's file that only a plan or a store names.
+        ChatError: only a plan or a store names the server, and the user's API key must not be sent to it.
     """
     if plan.drives:
         for driver in plan.drivers:
@@ -112,8 +113,8 @@ def _admit(plan: Plan) -> None:
 
 
 def _drivers_come(plan: Plan) -> None:
-    """Reports a wrong name of a driver, and a setting that a simulator cannot obey, before anything is paid
-    for."""
+    """Raises an error for a driver that cannot be loaded, or a setting that a simulator cannot apply, before
+    anything is paid for."""
     _refuse_ignored(plan, plan.world)
     if plan.drives:
         for driver in dict.fromkeys(plan.drivers):
@@ -121,14 +122,14 @@ def _drivers_come(plan: Plan) -> None:
 
 
 def _refuse_ignored(plan: Plan, *worlds: World) -> None:
-    """Raises UsageError if a simulator of the plan cannot obey a setting of one of the Worlds."""
+    """Raises UsageError if a simulator of the plan cannot apply a setting of one of the Worlds."""
     for simulator in plan.simulators if plan.drives else ():
         for world in worlds:
             refuse_ignored(plugins.find("simulators", simulator), world)
 
 
 def _briefs(plan: Plan) -> tuple[dict[str, Brief], Spent]:
-    """Returns what is read from each description, and what that cost."""
+    """Returns the Brief read from each description, and what the language model was paid for it."""
     request, _ = next(plan.requests())
     meter = Meter.of(plan.chat)
     words = dict.fromkeys(text for text in plan.prompts if text.strip())
@@ -140,7 +141,7 @@ def _same(plan: Plan, folder: Path) -> None:
         there = store.plan()
         kept = there.essence()
         other = [USER_NAMES.get(name, name) for name, value in plan.essence() if getattr(kept, name) != value]
-        if not other:  # the same plan, but a friction may have been set where it was that of the words
+        if not other:  # the plan may now set a friction that came from the descriptions before
             cells = store.cells()
             briefs = {cell.request.words: cell.brief for cell in cells if cell.brief is not None}
             asked = zip(cells, plan.cells(briefs), strict=True)
@@ -174,13 +175,14 @@ def work(
         draw: draws pictures and saves them in a folder of runs; None: no pictures.
 
     Yields:
-        The progress, after every group of results.
+        The progress of the campaign, after every group of results.
 
     Raises:
         UsageError: there are no tests to run, or another process is working on them, or a plug-in is not
             installed.
         ChatError: a language model could not be reached, or a token or cost limit is reached; finished
             tests are stored.
+        GivenUpError: the simulator failed three times in a row; these three tests have to be run again.
         RoadGPTError: a file cannot be written, or there are no workers.
     """
     kind: type[Executor] = plugins.find("executors", executor)

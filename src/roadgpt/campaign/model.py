@@ -18,8 +18,8 @@ Goal = Literal["failures", "coverage", "hardest", "boundary"]
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
-"""The generators that are used where none is named."""
-PATIENCE = 900.0  # s for one test: longer than a drive may take, which ends by itself
+"""The generators that are used if none is named: for plans without a goal, and for plans with a goal."""
+PATIENCE = 900.0  # s for one test; every drive ends by itself before that
 MOST_TESTS = 10_000_000  # of one cell; numbers of tests have seven digits
 
 T = TypeVar("T")
@@ -51,11 +51,12 @@ class Proposal:
 
     design: Design | None
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
-    number of the test. The road differs from the designs in the batches whose results the generator has
-    received.
+    number of the test. The drafted road differs from the designs in the batches whose results the generator
+    has received.
     """
     seed: int
-    """If ``design`` is None, seed of the draft; else seed of the driver."""
+    """Seed of the driver. If ``design`` is None, one seed for both draft and driver is derived from this seed
+    and the number of the test."""
     origin: str
     """Where the road comes from, as in the tables: 'draft', 'cross 3+9', 'vary 17' (test 17 mutated)."""
 

@@ -16,14 +16,14 @@ from roadgpt.road.design import MAX_INCLINE
 STRAIGHTS = (1.0, 150.0)  # m
 TURNS = (12.0, 200.0)  # degrees
 TRANSITIONS = (2.0, 16.0)  # m
-OVER_LEAST_RADIUS = 1.03  # of the world's least: a spline through points 2 m apart loses so much
+OVER_LEAST_RADIUS = 1.03  # times the world's smallest radius: a spline through points 2 m apart is tighter
 WIDEST = 120.0  # m, of a radius
 STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a transition
 SWING = 22.0  # degrees, standard deviation
 SLOPE = 2.5  # percent, standard deviation
 MOST_ELEMENTS = 24  # of a road
-NEW_STRAIGHT = (3.0, 45.0)  # m, of one that is put in
-NEW_TURN = (20.0, 120.0)  # degrees
+NEW_STRAIGHT = (3.0, 45.0)  # m, length of an inserted straight
+NEW_TURN = (20.0, 120.0)  # degrees, of an inserted turn
 NUMBERS = Element._fields.index("vertical_radius") + 1  # fields that are interpolated
 
 Rng = np.random.Generator
@@ -128,7 +128,7 @@ def _swapped(elements: Elements, rng: Rng, world: World) -> Elements:
 
 
 def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
-    """Returns the elements with a new turn, and a straight behind it."""
+    """Returns the elements with a new turn, followed by a new straight, at a random place."""
     if len(elements) >= MOST_ELEMENTS:
         return elements
     at = int(rng.integers(len(elements) + 1))

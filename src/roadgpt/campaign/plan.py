@@ -77,7 +77,7 @@ class Plan(Frozen):
         return any(asks_a_model(plugins.find(shelf, name)) for shelf, name in parts)
 
     def _searches(self, generator: str) -> bool:
-        """Checks whether a generator can search for the goal; others may stand beside it for comparison."""
+        """Returns whether a generator can search for the goal; a plan may list others for comparison."""
         if self.goal is None:
             return False
         return self.goal in getattr(plugins.find("generators", generator), "goals", ())
@@ -94,7 +94,7 @@ class Plan(Frozen):
                 rules=self.rules,
                 driver=driver,
                 simulator=simulator,
-                # some designers mean their segments in one way only, and so must those who change them
+                # some designers need one geometry; generators that change their segments need it, too
                 geometry=getattr(plugins.find("designers", designer), "geometry", None) or self.geometry,
                 keep_driving=self.keep_driving,
                 drives=self.drives,
@@ -106,8 +106,9 @@ class Plan(Frozen):
         """Checks the plan without running a test.
 
         Raises:
-            UsageError: a plug-in is not installed, there are too many cells, two cells are equal, no limit is
-                set, a search has no driver, or no generator supports the goal.
+            UsageError: a plug-in is not installed, there are too many cells, a value is listed twice, no
+                limit is set, the plan has a goal but drives no roads, no generator supports the goal, or the
+                generator ``words`` has no description.
         """
         lists = (self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds)
         cells = math.prod(map(len, lists))
@@ -144,8 +145,8 @@ class Plan(Frozen):
     def cells(self, briefs: Mapping[str, Brief]) -> list[Cell]:
         """Returns all cells; ``briefs`` maps each prompt to the Brief read from it.
 
-        If the plan's World was given no friction, the surface that a Brief names sets the friction of its
-        cells.
+        If the plan's World gives no friction, a surface that a Brief names, such as a wet road, determines
+        the friction in the cells of this Brief.
         """
         made = [(request, generator, briefs.get(request.words)) for request, generator in self.requests()]
         wide = max(2, len(str(len(made))))

@@ -21,7 +21,7 @@ from roadgpt.road import Geometry, World
 from roadgpt.road.world import STEEPEST, Lanes, NotNegative, Positive, bank_in
 
 LARGEST = 4_000_000  # bytes of a file
-FOLDERS = ("record", "replay")  # keys of [chat] that name one
+FOLDERS = ("record", "replay")  # keys of [chat] that name a folder
 
 ADVICE = {
     "greater_than_equal": "give {ge:g} or more",
@@ -42,7 +42,7 @@ ADVICE = {
 
 
 def _listed(value: Any) -> Any:
-    """Takes a single value for a list of one."""
+    """Returns a list as a tuple, and any other value as a tuple of this one value."""
     return tuple(value) if isinstance(value, list) else (value,)
 
 
@@ -78,8 +78,8 @@ class WorldTable(_Strict):
     max_grade: Annotated[float, Field(gt=0, le=1)] = 0.15
 
     def world(self) -> World:
-        """Returns the World with these values, and without a friction or a map size that the file does not
-        give.
+        """Returns the World with these values; friction and map size stay unset if the file does not give
+        them.
         """
         open_ = {"friction", "map_size"} - self.model_fields_set
         values = self.model_dump(exclude={"speed_limit_kmh", *open_})
@@ -121,7 +121,7 @@ def read_plan(path: Path) -> PlanFile:
     """Reads the plan in a file.
 
     Raises:
-        UsageError: the file is not TOML, or a key or a value of it cannot be used.
+        UsageError: the file is not TOML, or one of its keys or values cannot be used.
     """
     try:
         data = tomllib.loads(read_text(path, LARGEST, "a plan of a campaign", "utf-8-sig"))
@@ -141,7 +141,7 @@ def read_plan(path: Path) -> PlanFile:
 
 
 def _plan(table: PlanTable, folder: Path) -> Plan:
-    """Returns the plan of a file; relative paths in it begin at the folder."""
+    """Returns the plan of a file; relative paths in the file start from ``folder``."""
     reader, colon, weights = table.reader.partition(":")
     named_alike = {name: getattr(table, name) for name in PlanTable.model_fields if name in Plan.model_fields}
     read = {

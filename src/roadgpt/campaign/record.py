@@ -20,13 +20,13 @@ if TYPE_CHECKING:
 
 STORE = "campaign.sqlite"
 FORMAT = 1
-PATIENCE = 30.0  # s for another process
+PATIENCE = 30.0  # s to wait for another process that locks the store
 WHICH = {
     None: ("1", ""),
     "failures": ("outcome = 'FAIL'", ""),
     "worst": ("outcome IN ('FAIL', 'PASS')", "outcome != 'FAIL', margin IS NULL, margin, max_oob DESC,"),
 }
-"""Conditions in SQL on the tests that users choose, and their order."""
+"""For each choice of tests that users can make: the SQL condition on the tests, and the SQL order."""
 
 
 def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
@@ -37,7 +37,7 @@ def _connected(path: Path, mode: str) -> tuple[sqlite3.Connection, int]:
         log = path.with_name(f"{path.name}-wal")
         is_whole = not log.exists() or not log.stat().st_size
         if mode == "ro" and is_whole and error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_CANTOPEN:
-            # an interrupted campaign on a disk that takes no log: nobody can be writing it
+            # an interrupted campaign on a read-only disk: no process can be writing the store
             return _opened(path, "ro&immutable=1")
         raise
 
@@ -80,7 +80,7 @@ class Record:
     """A campaign's store, open for reading; ``campaign.store`` describes its tables."""
 
     has_run = "design IS NOT NULL"
-    """The condition in SQL on tests that ``run`` can read."""
+    """The SQL condition that selects the tests whose Runs the method ``run`` can return."""
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
         self.path = path
@@ -241,7 +241,7 @@ class Record:
         return kept_in(self, self.cell(cell), self.result(cell, number), has_drive)
 
     def road(self, cell: Cell, result: Result) -> Road | None:
-        """Returns the road of a test that has ended; None if it has none."""
+        """Returns the road of a test that has ended; None if the test has no road."""
         if result.design is None:
             return None
         return cell.request.world.lay(build(result.design, cell.request.setup.geometry))

@@ -37,7 +37,7 @@ def read_trace(folder: Path, cell: str, number: int) -> Drive:
 
 
 def kept_run(folder: Path, cell: str, number: int, has_drive: bool = True) -> Run:
-    """Returns the stored Run of a test; nothing is driven, and no driver's file is loaded.
+    """Returns the stored Run of a test; no road is driven, and no driver's file is loaded.
 
     The road is built from the stored design. The drive is the stored one, with positions exact to half a
     millimetre; outcome, margin and the place of a failure are those recorded in the campaign.
@@ -82,9 +82,8 @@ def kept_in(record: Record, cell: Cell, result: Result, has_drive: bool = True) 
 
 
 def _verdict_of(road: Road, drive: Drive, cell: Cell, result: Result) -> Verdict | None:
-    """Judges the stored drive, and puts the values that the campaign stored in place of those found now: half
-    a
-    millimetre may decide otherwise."""
+    """Judges the stored drive, and then replaces values of the verdict by those that the campaign stored,
+    because the drive's rounded positions may give others. Returns None if the test was not judged."""
     if result.outcome not in ("PASS", "FAIL") or result.margin is None:
         return None
     step = len(drive) - 1

@@ -15,7 +15,7 @@ from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
 
 MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s")
-"""The columns of the table ``tests`` that hold fields of a Result, of the same names."""
+"""The columns of the table ``tests`` that hold the fields of a Result with the same names."""
 SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
 RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
@@ -57,7 +57,7 @@ def detail_values(ended: FinishedTest) -> tuple[Any, ...]:
 
 
 def _plain(text: str) -> str:
-    """Returns text that UTF-8 can encode; characters from a broken terminal are written as escapes."""
+    """Returns text that UTF-8 can encode; other characters, as from a broken terminal, become escapes."""
     return to_bytes(text).decode()
 
 
@@ -81,7 +81,7 @@ def result_of_row(row: tuple[Any, ...]) -> Result:
 
 
 def _features_of(text: str) -> dict[str, float]:
-    """Reads features as ``detail_values`` wrote them; raises TypeError where they are anything else."""
+    """Reads features as ``detail_values`` wrote them; raises TypeError if the text holds anything else."""
     values = json_of(text)
     if not isinstance(values, dict) or not all(
         isinstance(value, (int, float)) and math.isfinite(value) for value in values.values()

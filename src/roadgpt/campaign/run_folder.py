@@ -56,7 +56,7 @@ class RunWriter:
         """Runs one test and writes the folder of its Run, but not its ``test.NNNN.json``.
 
         Raises:
-            PartError, UsageError, ChatError: an error that every other test would meet as well.
+            PartError, UsageError, ChatError: an error that would occur in every other test as well.
             RoadGPTError: a file cannot be written.
         """
         return self.written(run_test(task, cell, earlier, self.meter or Meter()), task, cell.name)
@@ -177,7 +177,8 @@ class RunFolder:
     def begin(self) -> bool:
         """Prepares the folder for a session. If all tests have ended, changes nothing and returns True.
 
-        Another process may have worked in the folder since it was opened.
+        Reads the folder's tests again first, because another process may have worked in the folder since it
+        was opened.
         """
         if (self.folder / CARD).is_file() and self.take_up().is_finished and self.is_complete:
             return True
@@ -206,7 +207,8 @@ class RunFolder:
         return written
 
     def keep(self, ended: FinishedRun) -> None:
-        """Writes the file of a test whose Run is in its folder, and then the tables; raises OSError."""
+        """Writes the ``test.NNNN.json`` of a test whose Run has already been written, then the tables; raises
+        OSError."""
         write_whole(self.folder / test_name(ended.result.number), ended.test_file)
         self._count(ended)
         self._tally.write(self.folder)
@@ -268,5 +270,5 @@ class RunFolder:
 
 
 def _may_lie_in_a_new_folder(path: Path) -> bool:
-    """Checks for a file of a campaign that was stopped before it had a card."""
+    """Returns whether a campaign that was stopped before it had a ``campaign.json`` may leave such a file."""
     return path.name == LOCK or (path.name.startswith(CARD) and path.name.endswith(PART))

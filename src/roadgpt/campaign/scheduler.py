@@ -30,9 +30,9 @@ from roadgpt.stopping import look
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
 
-WAIT = 0.25  # s for results, before looking round
-GROUP = 128  # results that are kept together, at most: 10 MB of drives
-PER_WORKER = 2  # tests under way or waiting, below which the next cell is begun
+WAIT = 0.25  # s to wait for results at a time
+GROUP = 128  # most results that are stored together: 10 MB of drives
+PER_WORKER = 2  # tests per worker, running or queued; with fewer, the next cell is begun
 
 
 @dataclass
@@ -59,7 +59,7 @@ class _Out:
 
 
 def _lost(out: _Out, why: str) -> FinishedTest:
-    """Returns the end of a test whose workers died."""
+    """Returns the test as a FinishedTest with the outcome ERROR, because its workers died."""
     run = error_run(out.task, out.schedule.cell, why)
     return FinishedTest(result_of(run, out.task, {}))
 
@@ -85,8 +85,8 @@ class Scheduler:
             staff: the workers to request.
             kind: the executor.
             tests: number of tests of each cell; None if only time limits them.
-            chat: this session's settings of the language model, whose limits the tests share; None: those of
-                each cell, without limits here.
+            chat: this session's settings of the language model; all tests together stay within its limits.
+                None: the settings of each cell, without limits for the session.
             run_test: runs a test on a worker, given its Task, its Cell and blocks of earlier designs; None:
                 ``single_test.execute``.
         """
@@ -180,7 +180,7 @@ class Scheduler:
         self._drop_if_done(schedule)
 
     def _open(self) -> bool:
-        """Begins the next cell that is not done; returns False where there is none."""
+        """Begins the next cell that is not done; returns False if there is none."""
         while self._next < len(self._names):
             schedule = BatchScheduler(self._store.cell(self._names[self._next]), self._store)
             self._next += 1
@@ -196,7 +196,7 @@ class Scheduler:
         return False
 
     def _with_chat(self, cell: Cell) -> Cell:
-        """Returns the cell with this session's settings of the language model: its limits may differ."""
+        """Returns the cell with this session's settings of the language model, whose limits may differ."""
         if self._chat is None or cell.request.setup.chat is None:
             return cell
         setup = cell.request.setup.model_copy(update={"chat": self._chat})
@@ -205,7 +205,8 @@ class Scheduler:
     def _hand_out(
         self, schedule: BatchScheduler, tests: Sequence[Task], allowance: Allowance | None = None
     ) -> None:
-        """Queues tests; without an allowance for each, they share a part of what is left."""
+        """Queues tests, each with the given allowance; if it is None, the tests share half of the tokens and
+        money that are left."""
         jobs = []
         each = allowance or self._allocator.share(max(len(tests), 1))
         for test in [replace(test, allowance=each) for test in tests]:
@@ -229,7 +230,7 @@ class Scheduler:
             if batch not in shared:
                 self.executor.share(f"{name}/{batch}", schedule.designs(batch))
                 shared.add(batch)
-        # tests of the batch before may still wait for what this one needs no more
+        # tests of the previous batch may still need blocks that this test does not need
         oldest = schedule.known(max(test.batch - 1, 0)).start
         for batch in [batch for batch in shared if batch < oldest]:
             self.executor.forget(f"{name}/{batch}")
@@ -269,8 +270,8 @@ class Scheduler:
             self._count_losses(out, value)
 
     def _count_losses(self, out: _Out, ended: FinishedTest) -> None:
-        """Stops the work where the simulator is dead; the tests that it lost are reopened for the next
-        session."""
+        """Ends the session if the simulator has failed three times in a row; the tests that were lost are
+        reopened for the next session."""
         if not self._losses.count(out, ended.is_lost) or self._error is not None:
             return
         self._keep()
@@ -285,10 +286,10 @@ class Scheduler:
         return waited >= self._store.group_seconds or len(self._pending) >= GROUP
 
     def _keep(self) -> None:
-        """Stores what has ended: the drives first, so that every stored result has its drive."""
+        """Stores the tests that have ended: first their drives, so that every stored result has its drive."""
         now = time.monotonic()
         drives = [(cell, one.result.number, one.trace) for cell, one in self._pending if one.trace]
-        self._may_write = False  # until it went well
+        self._may_write = False  # until all is written
         trace = self._kept_drives(drives) if drives else None
         taken = {schedule.cell.name: now - self._looked for schedule in self._schedules}
         self._store.keep(self._pending, trace, self._leases(), taken)

@@ -22,7 +22,8 @@ from roadgpt.run import Run
 
 Choice = Literal["failures", "faults", "worst"]
 """Which of the selected tests: "failures", all failures; "faults", a typical failure of each distinct
-fault; "worst", the failure with the smallest margin, or if no test failed, the test nearest to a failure.
+fault; "worst", the failure with the smallest margin or, if no test failed, the passed test with the smallest
+margin.
 """
 LONGEST = 255  # bytes of one name, in every file system of today
 DIGITS = 18  # of a number that a store can look for
@@ -53,7 +54,7 @@ class Selection:
         return "-".join(part for part in parts if part)
 
     def run(self) -> Run:
-        """Returns the stored Run of the selected test; nothing is driven.
+        """Returns the stored Run of the selected test; no road is driven.
 
         Raises:
             UsageError: the Run cannot be read, or it has no road.

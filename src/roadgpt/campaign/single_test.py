@@ -15,7 +15,7 @@ from roadgpt.run import Run, Seconds, Setup, check_parts, perform, prove, seed_o
 if TYPE_CHECKING:
     from roadgpt.campaign.traces import Trace
 
-CONCERNS_ALL = (PartError, UsageError, ChatError)  # what one test cannot be blamed for
+CONCERNS_ALL = (PartError, UsageError, ChatError)  # errors that are not due to one test
 
 
 class Allowance(NamedTuple):
@@ -73,10 +73,10 @@ class WorkerSetup:
         self.known = known()
 
     def __call__(self) -> None:
-        """Finds all plug-ins, and hands on what the user does not trust.
+        """Loads all plug-ins, after telling this process which drivers and servers the user has named.
 
         Raises:
-            UsageError: a plug-in is not installed, or a driver's file makes no driver.
+            UsageError: a plug-in is not installed, or a driver's file does not define a driver.
         """
         join(self.known)
         for setup in self.setups:
@@ -91,6 +91,9 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
         cell: the test's cell.
         earlier: the designs of earlier tests, one tuple per batch; a drafted road must differ from all of
             them.
+
+    Returns:
+        The finished test; an OutOfAllowance if the test would have spent more than its allowance.
 
     Raises:
         PartError, UsageError, ChatError: an error that would occur in every other test as well.

@@ -11,8 +11,8 @@ from roadgpt.campaign.cell_status import CellStatus, cell_statuses
 from roadgpt.campaign.folder_record import open_record
 from roadgpt.campaign.record import Record
 
-FRESH = 15.0  # s since somebody was last seen at work; a store is written every second
-LATELY = 60.0  # s over which the speed of the moment is taken
+FRESH = 15.0  # s since the store was last written; a working process writes it every second
+LATELY = 60.0  # s over which the current rate is averaged
 
 
 @dataclass(frozen=True)
@@ -111,9 +111,9 @@ def _rate(record: Record, done: int, seconds: float, is_running: bool) -> float:
 def _ended_since(record: Record, since: float) -> int:
     """Counts the tests that ended since a time.
 
-    The columns of the clock have no index, since every result would pay for it. Cells are begun in order and
-    the
-    latest tests of each are at its end, so this looks back until nothing new is found.
+    The column ``ended`` has no index, because an index would slow down the writing of every result. Cells are
+    begun in order, and the latest tests of a cell have the highest numbers; so this function looks at the
+    cells backwards until it comes to a finished cell without such a test.
     """
     last = "SELECT ended FROM tests WHERE cell = ? AND ended IS NOT NULL ORDER BY number DESC LIMIT 20000"
     count = 0

@@ -73,8 +73,8 @@ class Store(Record):
     """A campaign's store, open for writing; the docstring of this module describes its tables."""
 
     group_seconds = 1.0
-    """Longest time that a result waits to be stored, seconds: the work that is lost when the process is
-    killed.
+    """Longest time in seconds that a result waits to be stored. If the process is killed, the results of this
+    time are lost.
     """
 
     def __init__(self, path: Path, db: sqlite3.Connection) -> None:
@@ -123,7 +123,7 @@ class Store(Record):
             db.execute(f"PRAGMA user_version = {FORMAT}")
             db.execute("COMMIT")
             db.close()
-            draft.replace(path)  # there whole or not at all
+            draft.replace(path)  # so that the store is complete or absent
         return cls.opened(folder)
 
     @classmethod
@@ -136,7 +136,7 @@ class Store(Record):
         refuse_links(folder / STORE)
         store = cls._opened(folder, "rw")
         try:
-            for name in store.missing:  # of a store that an older version made
+            for name in store.missing:  # an older version made this store
                 store._db.execute(f"ALTER TABLE tests ADD COLUMN {name} REAL")
             store._db.execute("PRAGMA journal_mode = WAL")
             store._db.execute("PRAGMA synchronous = NORMAL")
@@ -153,7 +153,7 @@ class Store(Record):
 
     @contextmanager
     def _whole(self) -> Iterator[sqlite3.Connection]:
-        """One transaction."""
+        """Makes a ``with`` block one transaction."""
         with _refusals(self.folder):
             self._db.execute("BEGIN IMMEDIATE")
             try:
@@ -234,8 +234,8 @@ class Store(Record):
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))
 
     def spend(self, spent: Spent) -> None:
-        """Adds tokens and money that a language model used outside of tests, such as for reading
-        descriptions.
+        """Adds tokens and money that a language model used outside of finished tests, such as for a test that
+        ran out of its allowance.
         """
         with self._whole() as db:
             db.execute(
@@ -297,7 +297,7 @@ class Store(Record):
 
 @contextmanager
 def _refusals(folder: Path) -> Iterator[None]:
-    """Turns the errors of the system while writing into one clear sentence."""
+    """Turns errors of SQLite or the operating system in a ``with`` block into one clear error message."""
     try:
         yield
     except (sqlite3.Error, OSError) as error:
@@ -305,7 +305,7 @@ def _refusals(folder: Path) -> Iterator[None]:
 
 
 def refused(folder: Path, error: sqlite3.Error | OSError) -> RoadGPTError:
-    """Returns the error to raise if the operating system refuses to write a file."""
+    """Returns the error to raise if SQLite or the operating system cannot write a file."""
     reason = (error.strerror if isinstance(error, OSError) else None) or error
     return RoadGPTError(
         f"cannot write into {folder}: {reason}; make room there, then say: roadgpt resume {folder}"

@@ -54,7 +54,7 @@ BUSY = {
     sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED, sqlite3.SQLITE_FULL, sqlite3.SQLITE_NOMEM,
     sqlite3.SQLITE_READONLY, sqlite3.SQLITE_IOERR, sqlite3.SQLITE_PERM, sqlite3.SQLITE_INTERRUPT,
 }  # fmt: skip
-"""SQLite's temporary errors, which do not mean that the store is damaged."""
+"""SQLite's errors that do not mean that the store is damaged, such as a lock or a full disk."""
 
 _checked: set[tuple[str, int]] = set()
 

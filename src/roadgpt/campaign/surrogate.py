@@ -15,11 +15,11 @@ from roadgpt.geometry.curve import Array
 
 TREES = 60
 LEAF = 2  # roads in one leaf, at least
-FEWEST = 10  # roads from which anything is learnt
+FEWEST = 10  # roads; with fewer, there is nothing to learn from
 FAILED = (
     -0.3
 )  # m, learnt for every failure: a drive ends where it fails, so its margin says nothing of how badly
-MOST = 1500  # roads that are learnt from: the last ones
+MOST = 1500  # roads to learn from, the latest ones
 
 
 class Surrogate:
@@ -29,9 +29,9 @@ class Surrogate:
         """Learns from the last ``MOST`` roads.
 
         Args:
-            features: of every road, ``(n, features)``, as ``surrogate_features_of`` gives them.
-            outcomes: what is to be predicted, ``(n, k)``: the margin in metres, as ``target_of`` gives it,
-                and features of the drive.
+            features: the features of each road, ``(n, features)``, as returned by ``surrogate_features_of``.
+            outcomes: the values to predict for each road, ``(n, k)``: the margin in metres, as returned by
+                ``target_of``, and features of the drive.
         """
         known = np.asarray(outcomes[-MOST:], float)
         self._mean, scale = known.mean(axis=0), known.std(axis=0)

@@ -18,11 +18,11 @@ from roadgpt.road import Road, World
 
 STARTING = 25.0  # m, in which the car is still slow
 ENDING = 8.0  # m, that are not driven
-WINDOWS = (3, 7, 13, 21, 35)  # samples, about 1 m apart, that a curvature lasts for
+WINDOWS = (3, 7, 13, 21, 35)  # samples, about 1 m apart, over which curvature is averaged
 TIGHTEST = 0.2  # 1 + 2k is kept above this
 STRAIGHT = 0.01  # 1/m: less is straight enough to gain speed
-SHORTEST = 5  # m of straight that count as one
-LONGEST = 120.0  # m of straight: speed is gained no further
+SHORTEST = 5  # m; a shorter stretch does not count as a straight
+LONGEST = 120.0  # m; on a longer straight the car gains no more speed
 AROUND = 10  # samples to either side of the tightest place, whose slopes and crests count
 
 NAMES = (
@@ -75,7 +75,7 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
 
 def hazard_of(signs: Sequence[Array]) -> Array:
     """Estimates how hard each road is, without a drive: returns the largest curvature of its lane,
-    averaged over 13 m.
+    averaged over about 13 m, as a multiple of 0.06 1/m. ``signs`` holds the features of each road.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]
@@ -91,7 +91,8 @@ def _mean(values: Array, window: int) -> Array:
 
 
 def _run_up(size: Array, tight: int) -> float:
-    """Returns the metres of the last straight before the tightest place."""
+    """Returns the length of the last straight before the tightest place, in samples of about 1 m: at most
+    120, and 0 if there is no straight."""
     bends = np.flatnonzero(size[: tight + 1] >= STRAIGHT)
     gaps = np.diff(bends, prepend=-1) - 1
     straights = gaps[gaps >= SHORTEST]

@@ -29,7 +29,7 @@ COLUMNS = (
     "beyond_m", "at_s_m", "description",
 )  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
-"""The map of a cell whose search names no other: its features, and the cells along each."""
+"""The map for a cell whose settings name no other: its features, and the number of cells along each."""
 EVERY = (
     f"SELECT tests.cell, tests.number, batch, origin, seed, given, {', '.join(MEASURED)}, description, "  # noqa: S608
     "features FROM tests JOIN details USING (cell, number) "

@@ -32,7 +32,7 @@ LARGEST, UNPACKED = 500_000_000, 200_000_000  # bytes of a file, and of one driv
 LEVEL = 4  # of zlib: 1 ms and 12 kB for a drive of 28 s; level 9 takes 40 ms for 10 kB
 FINE, COARSE = 1e-4, 1e-2
 STEPS = {
-    **dict.fromkeys(COLUMNS, 1e-3),  # s, m, m/s, shares: a millimetre is less than anything here decides on
+    **dict.fromkeys(COLUMNS, 1e-3),  # s, m, m/s, shares: no decision depends on a millimetre
     **dict.fromkeys(("heading", "pitch", "roll", "yaw_rate", "steer", "outside"), FINE),
     **dict.fromkeys(("ax", "ay"), COARSE),  # m/s^2
 }
@@ -103,7 +103,7 @@ def write_traces(folder: Path, number: int, drives: Sequence[tuple[str, int, Tra
         _add(archive, "header", np.array(json.dumps(header)))
         for cell, test, trace in drives:
             rows = np.stack([trace.columns[name] for name in COLUMNS])
-            # in whole numbers that wrap round, so that sums give every value back, the largest ones too
+            # these int32 may overflow; the sums then overflow back, so that even the largest values are exact
             _add(archive, f"{cell}/{test}", np.diff(rows, 2, prepend=np.zeros((len(rows), 2), np.int32)))
     name = f"{number:07d}{SUFFIX}"
     path = folder / TRACES / name
@@ -123,7 +123,7 @@ def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
 
 
 def _to_disk(path: Path) -> None:
-    """Waits until a file, or the names in a folder, are where a power cut does not reach them."""
+    """Waits until a file, or a folder's list of names, is on the disk, so that a power cut cannot undo it."""
     if path.is_dir() and os.name == "nt":  # Windows opens no folders
         return
     number = os.open(path, os.O_RDONLY if os.name != "nt" else os.O_RDWR)

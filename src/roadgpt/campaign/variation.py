@@ -28,11 +28,11 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Road, World, build
 from roadgpt.run.features import features_of
 
-TRIES = 8  # changes that are drawn for one candidate
-BOLD = 3  # of these; then mostly numbers change, which breaks less of what was asked for
-ROUNDS = 3  # of changes that make a draft a wild one
-NUMERIC = (0.4, 0.9)  # chance that only numbers change: in bold tries, and in the others
-CHANGED_TOO = 0.5  # chance that a road that takes after two is changed besides
+TRIES = 8  # mutations that are tried for one candidate, at most
+BOLD = 3  # of these; later tries mostly change only numbers, which violates fewer requirements
+ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
+NUMERIC = (0.4, 0.9)  # probability that only numbers change: in the bold tries, and in the others
+CHANGED_TOO = 0.5  # probability that a crossover of two roads is mutated, too
 NOBODY = Brief()
 
 Kind = Literal["draft", "wild", "vary", "cross", "between"]
@@ -100,7 +100,7 @@ def make_candidate(task: VariationTask) -> Candidate | None:
 def _changed(
     parents: Sequence[Elements], setting: VariationContext, rng: np.random.Generator
 ) -> tuple[Design, Road] | None:
-    """Returns a mutation of one parent, or a crossover of two."""
+    """Returns a mutation of one parent, or a crossover of two; None if no valid road was found."""
     for attempt in range(TRIES):
         elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
         if len(parents) == 1 or rng.random() < CHANGED_TOO:
@@ -112,7 +112,7 @@ def _changed(
 
 
 def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
-    """Returns a draft of the planner."""
+    """Returns a draft of the planner; None if no valid road could be designed."""
     try:
         design = draft(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
     except DesignError:
@@ -121,7 +121,8 @@ def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Desig
 
 
 def _between(task: VariationTask) -> tuple[Design, Road] | None:
-    """Returns a road between two, at a place between theirs."""
+    """Returns a road between the two parents, which starts at a place between their starts; None if the
+    roads do not correspond or the new road is not valid."""
     one, other = task.parents
     elements = interpolated(elements_of(one.segments), elements_of(other.segments), task.share)
     if elements is None:

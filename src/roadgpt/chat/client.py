@@ -86,10 +86,10 @@ class ApiClient:
         return [one for one in found if isinstance(one, dict)] if isinstance(found, list) else []
 
     def _sent(self, call: Callable[..., Any], body: dict[str, Any]) -> dict[str, Any]:
-        """Sends a request, again if it fails and that may help, and returns the response.
+        """Sends a request and returns the response; the request is repeated if it fails and a retry may help.
 
         Raises:
-            RequestError: it failed for good.
+            RequestError: the request failed, and so did its repetitions, if there were any.
         """
         try:
             content: bytes = call(**body).content
@@ -115,7 +115,7 @@ class ApiClient:
         return redacted(value, self._key)
 
     def _fault_of(self, error: Exception) -> Exception:
-        """Returns an error of the library as a sentence without the key."""
+        """Converts an error of the library to one of RoadGPT's errors, without the key in its message."""
         import openai
 
         from roadgpt.chat.response_limits import BrokenOffError
@@ -137,7 +137,7 @@ class ApiClient:
         return RequestError(f"{self.place} {said}{_tries(error)}")
 
     def _refusal(self, error: Any) -> RequestError:
-        """Returns a server's error message as an error with a sentence."""
+        """Converts an error response of the server to a RequestError with a plain sentence."""
         status, body = error.status_code, redacted(error.body, self._key)
         told = body if isinstance(body, dict) else {"message": body}
         message = str(told.get("message") or "")

@@ -114,7 +114,7 @@ def settings_from(found: Mapping[str, Setting]) -> ChatSettings:
 
 
 def _fault_in(problem: Mapping[str, Any]) -> str:
-    """Returns what is wrong with a value, as advice."""
+    """Returns what is wrong with a value, or what to give instead."""
     bounds = problem.get("ctx", {})
     match problem["type"]:
         case "float_parsing" | "float_type" | "finite_number":
@@ -138,14 +138,14 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    If a server is named only in a file of the working folder, it is sent only a key from such a file; a
-    server on this computer may be sent any key. If a server is named only in a plan, a campaign or a run, it
-    gets no key. Somebody else may have written these files.
+    If a server is named only in a file of the working folder, it gets only a key from such a file, unless it
+    runs on this computer: then it may get any key. If a server is named only in a plan, a campaign or a run,
+    it gets no key. The reason for both rules is that somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
-        ChatError: the key contains invalid characters, or it must not be sent to a server that only a file
-            names.
+        ChatError: the key contains invalid characters, or must not be sent to this server, because only a
+            file names the server.
     """
     host = origin_of(base_url)[1]
     names = ["ROADGPT_API_KEY", "OPENAI_API_KEY"]
@@ -254,7 +254,7 @@ def _read(path: Path) -> str:
 
 
 def _dotenv(path: Path) -> dict[str, Any]:
-    """Returns the lines NAME=VALUE that are meant for RoadGPT; others are for other programs."""
+    """Returns the variables in lines NAME=VALUE that are meant for RoadGPT; all other lines are ignored."""
     found: dict[str, Any] = {}
     for line in _read(path).splitlines():
         match = LINE.fullmatch(line)
@@ -285,7 +285,7 @@ def _toml(path: Path) -> dict[str, Any]:
 
 
 def _chat_table(whole: Mapping[str, Any], path: str) -> dict[str, Any]:
-    """Returns the table ``[chat]``, whose keys are checked."""
+    """Returns the table ``[chat]``; raises UsageError if it has an unknown key or is not a table."""
     outside = next((name for name in (*FIELDS, KEY) if name in whole), None)
     if outside:
         raise UsageError(

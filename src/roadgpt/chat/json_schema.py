@@ -62,7 +62,7 @@ def _flat(schema: dict[str, Any], named: dict[str, Any], depth: int) -> dict[str
 
 
 def _either(branches: list[dict[str, Any]], schema: dict[str, Any]) -> dict[str, Any]:
-    """Returns a union; one of plain types becomes a list of types, which more servers accept."""
+    """Returns a union; a union of plain types becomes a list of types, which more servers accept."""
     told = {"description": schema["description"]} if "description" in schema else {}
     if all(set(branch) == {"type"} for branch in branches):
         kinds = [branch["type"] for branch in branches]

@@ -70,7 +70,7 @@ class Meter:
         return self.max_tokens - self.spent.usage.total - prompt
 
     def _affordable(self, prompt: int, price: tuple[float, float] | None, model: str) -> int:
-        """Returns for how many tokens of an answer the money is enough."""
+        """Returns the largest number of tokens in an answer that the remaining money can pay for."""
         if self.max_cost is None:
             return ENDLESS
         if price is None or self.spent.cost is None:

@@ -38,7 +38,9 @@ class LimitedClient(DefaultHttpxClient):
     """An HTTP client that returns only complete responses, within limits of size and time."""
 
     def __init__(self, most: int, seconds: float) -> None:
-        """Takes the most bytes of a response, decompressed, and the time limit of one attempt in seconds."""
+        """Takes the size limit of a decompressed response in bytes, and the time limit of one attempt in
+        seconds.
+        """
         self.most, self.seconds = most, seconds
         super().__init__(event_hooks={"response": [self._limited]})
 
@@ -97,7 +99,7 @@ class _Within(httpx2.SyncByteStream):
         self.deadline = time.monotonic() + seconds
 
     def __iter__(self) -> Iterator[bytes]:
-        """Yields pieces; of an error response only its beginning."""
+        """Yields the pieces of a response; for an error response, only those at the beginning."""
         left = self.most
         try:
             for part in self.stream:
@@ -131,7 +133,9 @@ class _Within(httpx2.SyncByteStream):
 
 
 def _graded(response: httpx2.Response) -> httpx2.Response:
-    """Sets the status of an error that a server reports under status 200, and says whether to try again."""
+    """Corrects the status of an error that was sent with a status of success, and sets the header that tells
+    the library whether to try again.
+    """
     if response.status_code < FIRST_ERROR:
         try:
             body = json.loads(response.content)

@@ -28,7 +28,7 @@ NO_KEY = Key("none", "nowhere")
 
 
 def masked(value: str) -> str:
-    """Returns a form of a key that may be shown: its beginning and its length."""
+    """Returns a form of a key that may be shown: its length and, if it is long, its first 3 characters."""
     head = value[:3] if len(value) >= 20 else ""
     return f"{head}... ({len(value)} letters)"
 

@@ -82,7 +82,9 @@ def read_object(text: str) -> dict[str, Any]:
 
 
 def _candidates(text: str) -> Iterator[str]:
-    """Yields the whole text, the contents of code fences, and what stands in balanced braces."""
+    """Yields the whole text if it begins with a bracket, the contents of code fences, and the parts in
+    balanced braces.
+    """
     said = text
     for end_mark in THOUGHTS_END:
         said = said.rpartition(end_mark)[2]
@@ -99,7 +101,7 @@ def _candidates(text: str) -> Iterator[str]:
 
 
 def _end_of_object(text: str, start: int) -> int | None:
-    """Returns the place after the brace that closes the one at ``start``; None if none does."""
+    """Returns the index after the brace that closes the brace at ``start``; None if it is not closed."""
     depth, in_string = 0, False
     for match in re.compile(r'\\.|["{}]', re.DOTALL).finditer(text, start):
         sign = match.group()
@@ -169,7 +171,10 @@ def _whole_number(text: str) -> int:
 
 
 def _finite(found: Schema) -> Schema:
-    """Returns the object; rejects "NaN" as text and numbers too large, which pydantic accepts as numbers."""
+    """Returns the object; raises NotReadableError if a number in it is not finite.
+
+    Pydantic accepts the text "NaN" and numbers that are too large for a float.
+    """
     if not all(math.isfinite(number) for number in _numbers(found.model_dump())):
         raise NotReadableError("it holds a number that is not finite")
     return found
@@ -184,7 +189,7 @@ def _numbers(value: Any) -> Iterator[float]:
 
 
 def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
-    """Converts texts like "15 %" to numbers where the schema wants them; returns True if there were any."""
+    """Converts texts like "15 %" to numbers where the schema wants them; returns True if it changed any."""
     turned = False
     for problem in error.errors(include_url=False, include_context=False):
         if problem["type"] not in NUMERIC or not isinstance(problem["input"], str):
@@ -196,7 +201,10 @@ def _with_numbers(data: dict[str, Any], error: ValidationError) -> bool:
 
 
 def _put(data: Any, place: tuple[int | str, ...], number: float) -> bool:
-    """Replaces a text by a number; names of union branches in the place are skipped."""
+    """Replaces the text at ``place`` by a number; names of union branches in ``place`` are skipped.
+
+    Returns False if there is no text at ``place``.
+    """
     holder: Any = None
     last: int | str = ""
     for part in place:

@@ -34,14 +34,16 @@ RULE_SETS = {
     ),
     "sbft": ("sbft",),
 }
-"""The rules of each set in the order in which they are applied. The first Finding decides the verdict."""
+"""The rules of each set in the order in which they are applied. The first Finding is given as the reason why
+a road is invalid.
+"""
 
 
 class Rule(Protocol):
     """A function that checks one property of a road."""
 
     def __call__(self, road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
-        """Returns all objections in driving order; an empty tuple where there are none."""
+        """Returns one Finding for each violation, in driving order; an empty tuple if there is none."""
         ...
 
 

@@ -9,8 +9,8 @@ def describe(road: Road) -> Brief:
     """Returns a Brief that lists the turns and straights of a road, in whole degrees, metres and percent.
 
     Each turn is a clause with side, angle and radius, and each straight a clause with its length. A clause
-    also states the mean grade, unless the turn or straight is level. The Brief includes the length and the
-    climb of the whole road.
+    also states the mean grade, unless the turn or straight is level. The Brief includes the length of the
+    whole road, and its climb unless it rounds to 0 m.
 
     Raises:
         UsageError: The road has no two different points.

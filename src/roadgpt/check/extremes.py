@@ -42,8 +42,8 @@ def steepest(road: Road) -> tuple[float, float]:
 def vertical_bends(road: Road) -> tuple[Array, Array, Array]:
     """Returns the start and end stations (m) of each part where the grade changes, and the change per metre.
 
-    The change of grade is negative on a crest. Each parabola is one part. Other profiles are divided into
-    parts of about ``KINK`` metres, and the change of grade at a kink is distributed over its part.
+    The change of grade is negative on a crest. In a GradeProfile, each parabola is one part. Other profiles
+    are divided into parts of about 2 m, and the change of grade at a kink is distributed over its part.
     """
     if isinstance(road.elevation, GradeProfile):
         s = _stations(road.elevation, road.length)

@@ -40,7 +40,7 @@ class Match(NamedTuple, Generic[T]):
     """The results for single features, of the type that the caller needs, such as complaints."""
 
     def plus(self, other: "Match[T]") -> "Match[T]":
-        """Returns the match of two parts of a road, one after the other."""
+        """Returns this match combined with the match of the following part of the road."""
         return Match(self.wrong + other.wrong, self.items + other.items)
 
 
@@ -96,15 +96,15 @@ def best_match(
     of_turns: Callable[[Group, int, int], Match[T]],
     of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
 ) -> Match[T]:
-    """Returns the match of a road with an Outline that has the fewest wrong features.
+    """Returns, of all ways to match a road with an Outline, the one with the fewest wrong features.
 
     Args:
         asked: the requirements.
         count: number of turns of the road.
-        of_turns: matches a group with turns of the road, given the group, the index of the first turn and the
-            number of turns.
-        of_gap: matches requested straights with the gap before a turn, given the index of the turn (``count``
-            for the last gap) and the straights.
+        of_turns: function that matches a group with turns of the road, given the group, the index of the
+            first turn and the number of turns.
+        of_gap: function that matches requested straights with the gap before a turn, given the index of the
+            turn (``count`` for the last gap) and the straights.
     """
     groups, turns_are_free = asked.groups, not asked.names_all_turns
 
@@ -131,7 +131,9 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Returns the complaints about the turns and straights of a road, compared in driving order."""
+    """Compares the turns and straights of a road with those of an Outline in driving order, and returns the
+    complaints.
+    """
     turns, gaps = found.turns, found.gaps
 
     def of_turns(group: Group, first: int, number: int) -> Match[Complaint]:

@@ -213,7 +213,7 @@ def _slope(values: Array) -> Array:
 
 
 def _heading(dx: Array, dy: Array) -> Array:
-    """Returns headings without jumps in radians."""
+    """Returns headings in radians, without jumps."""
     heading = np.arctan2(dy, dx)
     jumps = np.diff(heading)
     heading[1:] -= np.cumsum(np.round(jumps / (2 * np.pi))) * (2 * np.pi)
@@ -247,7 +247,7 @@ def _turns(line: _Line, widest: float) -> list[_Bend]:
     from_, to = _stretches(faint)
 
     def measured(bends: Sequence[_Bend]) -> list[_Bend]:
-        """With the angle, out to where the curvature fades."""
+        """Returns the bends with their angles, measured out to where the curvature fades."""
         out = []
         for bend in bends:
             a = from_[np.searchsorted(from_, bend.first, "right") - 1]
@@ -319,7 +319,7 @@ def _inner_grade(line: _Line, first: int, last: int) -> float:
 def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
     """Returns a straight with its pieces.
 
-    Where all pieces are too short to count, it is its own only piece.
+    If all pieces are too short to count, the whole straight is its only piece.
     """
     here = np.arange(first, last + 1)
     before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)

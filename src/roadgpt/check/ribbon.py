@@ -103,7 +103,7 @@ def _boxes(low: Array, high: Array, size: int) -> Boxes:
 
 
 def _meeting(boxes: Boxes, some: Indices, others: Indices) -> tuple[Indices, Indices]:
-    """Returns which of some boxes touch which of the others, as indices of both."""
+    """Returns the pairs of boxes that touch: their indices from ``some``, and those from ``others``."""
     low, high = boxes
     touch = _touch(low[some][:, None], high[some][:, None], low[others], high[others])
     one, other = np.nonzero(touch)

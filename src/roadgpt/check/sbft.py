@@ -1,9 +1,9 @@
-"""Reproduces the SBFT tool competition's road validator with its rules, order and messages, but faster.
+"""Reproduces the SBFT tool competition's road validator: the same rules, order and messages, but faster.
 
 Source: the Cyber-Physical Systems tool competition's validator (2024). These quirks of the validator are
 reproduced on purpose:
 
-* the test for "inside the map" binds ``and`` before ``or``, so a road completely outside can be valid;
+* the test for "inside the map" binds ``and`` before ``or``, so a road completely outside the map can pass;
 * interpolation may add a node beyond the last point;
 * quads of the road that touch count as crossing, unless they are neighbours;
 * the length is measured on nodes that have been interpolated a second time;
@@ -170,7 +170,7 @@ def _are_disjoint(quads: Array, i: Indices, j: Indices) -> bool:
 
 
 def _share_a_side(quads: Array, joints: Indices) -> bool:
-    """Returns whether quads i and i + 1 have exactly a line in common, for every joint i."""
+    """Returns whether quads i and i + 1 share exactly one line for every joint i; ignores equal quads."""
     import shapely
 
     one, other = shapely.polygons(quads[joints]), shapely.polygons(quads[joints + 1])
@@ -193,9 +193,10 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of the middle one of
-    the three nodes on that circle. The radius is infinite where no three nodes form a circle: on a straight
-    road, or with fewer than six nodes.
+    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of the middle node
+    of that circle.
+
+    The radius is infinite if no three nodes form a circle: on a straight road, or with fewer than six nodes.
     """
     found = radii(nodes)
     if not found.size:

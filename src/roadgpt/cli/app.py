@@ -20,9 +20,9 @@ from roadgpt.cli.streams import OutputError, drop_output, is_coloured, warn
 from roadgpt.errors import RoadGPTError
 from roadgpt.provenance import USER
 
-INTERRUPTED = 130  # exit status where input was broken off; after a signal, ``stopping.status`` has it
-NO_READER = 141  # whoever read the output went away; as shells have it: 128 + SIGPIPE
-REFUSED = 1  # the machine does not take what was to be written
+INTERRUPTED = 130  # exit status if the user broke off the input; after a signal, that of ``stopping.status``
+NO_READER = 141  # exit status if the reader of the output has gone; as in shells: 128 + SIGPIPE
+REFUSED = 1  # exit status if the output or a file cannot be written
 OF_FILES = {
     errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM, errno.ENOTDIR, errno.EISDIR, errno.ENOSPC,
     errno.EROFS, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC,
@@ -129,9 +129,9 @@ class Commands(click.Group):
             status = stopping.status() or _refused(error)
         except (KeyboardInterrupt, click.Abort):
             status = stopping.status() or INTERRUPTED
-        except Exception as error:  # the last door: nothing may leave as a traceback
+        except Exception as error:  # last resort: users must not see a traceback
             status = stopping.status()
-            if not status:  # what breaks while it is being stopped is no news
+            if not status:  # an error in a program that is being stopped is not reported
                 warn(report_crash(error))
                 status = INTERNAL
         stopping.finish()
@@ -157,7 +157,7 @@ def _confirm(question: str) -> bool:
 
 
 def _with_advice(error: click.ClickException) -> click.ClickException:
-    """Adds what to type to the message about a missing argument."""
+    """Extends the message about a missing argument by advice on what to type."""
     if not isinstance(error, click.MissingParameter):
         return error
     advice = getattr(error.param, "advice", "")

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import Status
 
-COMPARED = 500  # failures of a campaign, evenly spread, whose faults are counted: under a second
-MOST_CELLS = 40  # that are shown one by one
+COMPARED = 500  # largest number of failures, evenly spread, that are grouped into faults: under a second
+MOST_CELLS = 40  # largest number of cells that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 GAP = "  "  # between columns
 LEAST = 12  # letters of the last column, below which it is left out

@@ -1,10 +1,10 @@
-"""Lists the commands under the headings of the help, and earlier names of commands and options that still
-work.
+"""Lists the commands under the headings of the help, and the earlier names of renamed commands and options,
+which still work.
 """
 
 from collections.abc import Sequence
 
-# A line of help stands here so that `roadgpt --help` imports no command.
+# The help line of each command is here, so that `roadgpt --help` need not import the commands.
 HEADINGS = {
     "Make": {
         "run": "Make roads from a description: design, check, drive and judge them.",
@@ -55,8 +55,8 @@ EARLIER = {
     ("sdc", "serve"): (("compete", "sdc"), "compete sdc"),
     ("sdc",): (("compete", "sdc", "--help"), "compete sdc"),
 }
-"""For each command that was renamed, by the words of its earlier name: the words that replace them, and the
-present command as it is shown to the user.
+"""Maps the earlier name of a command, as words, to the words that replace it, and to the present command as
+it is shown to the user.
 """
 
 EARLIER_OPTIONS = {"--verge": "--shoulder"}

@@ -27,15 +27,15 @@ if TYPE_CHECKING:
 TABLES = ("run", "world", "beamng")
 CHAT_TABLE = "chat"
 EARLIER_KEYS = {"verge": "shoulder"}
-"""Keys of campaign plans whose name in configuration files differs, with that name."""
+"""Maps the keys of campaign plans that have another name in configuration files to that name."""
 LAYERS = "roadgpt.layers"  # key of click's Context.meta
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
 WHOLE_PATH = "give the whole path, from the root of the disk"
 Guard = Callable[[str, str], str]
-"""A function of a value and its kind of source, such as ``OF_FOLDER``, that returns why the value is
-refused; empty if it is accepted.
+"""A function that takes a value and the kind of its source, such as ``OF_FOLDER``. It returns the reason why
+the value is refused, or an empty text if the value is accepted.
 """
 
 
@@ -74,7 +74,11 @@ def keys_set() -> set[str]:
 
 
 def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
-    """Returns the layers again, if all their tables and keys are known."""
+    """Returns the layers unchanged.
+
+    Raises:
+        UsageError: A table or a key in a layer is unknown.
+    """
     if not any(layer.tables for layer in layers):
         return layers
     keys: dict[str, list[str]] = {table: [] for table in TABLES}
@@ -103,8 +107,8 @@ def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
 
 
 def driver_guard(value: str, place: str) -> str:
-    """Refuses a driver's file that a configuration file in the working folder specifies, or that has a
-    relative path.
+    """A Guard that refuses a driver's file if a configuration file in the working folder names it, or if its
+    path is relative.
     """
     if ".py" not in value:
         return ""
@@ -115,20 +119,23 @@ def driver_guard(value: str, place: str) -> str:
 
 
 def place_guard(value: str, place: str) -> str:
-    """Refuses a value that only the user may set, such as a host, if a file in the working folder sets it."""
+    """A Guard for values that only the user may set, such as a host: refuses a value from a configuration
+    file in the working folder."""
     del value
     return YOURSELF if place == OF_FOLDER else ""
 
 
 def path_guard(value: str, place: str) -> str:
-    """Refuses any path in a configuration file of the working folder, and relative ones in the user's own."""
+    """A Guard for paths: refuses every path from a configuration file in the working folder, and relative
+    paths from the user's ``config.toml``."""
     if place == OF_USER and not Path(value).expanduser().is_absolute():
         return WHOLE_PATH
     return place_guard(value, place)
 
 
 def _plugin_guard(kind: str, value: str, place: str) -> str:
-    """Refuses a plug-in that has a path or asks a language model if a file of the working folder names it."""
+    """Refuses a plug-in that a configuration file in the working folder names, if the plug-in is given with a
+    path or uses a language model."""
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from roadgpt import __version__
 
-# Where a command works, once it has made a folder; else a traceback goes to the system's temporary folder.
+# The folder that the command has made; if there is none, tracebacks go to the system's temporary folder.
 _folder: list[Path] = []
 
 

@@ -60,7 +60,7 @@ def converse() -> None:
         if _wants_help(words):
             continue
         try:
-            meant = _understood(words)  # what cannot be read is told before a number is asked for
+            meant = _understood(words)  # reports what cannot be read, before it asks for a number
             if meant is None:
                 continue
             roads = _how_many()
@@ -103,7 +103,7 @@ def _meant(brief: "Brief") -> str | None:
 
 
 def _changed(screen: Screen) -> bool:
-    """Changes the roads that were made as the user asks; returns False if the user wants to leave."""
+    """Asks for changes to the new roads and makes them; returns False if the user wants to leave."""
     from roadgpt.road import World
 
     roads = [row.file for row in screen.rows]

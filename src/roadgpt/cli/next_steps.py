@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from roadgpt.campaign.status import Status
     from roadgpt.run.model import Request
 
-FEWEST = 5  # drives, below which nobody wonders that none failed
+FEWEST = 5  # passed drives; if there are fewer, it is no surprise that none failed
 FRICTIONS = {"wet": "a wet road", "snow": "snow"}
 SPEEDS = (100.0, 130.0)  # km/h
 TOLERANCE = 0.5  # of the competition on test selection

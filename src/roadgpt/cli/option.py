@@ -93,7 +93,7 @@ class Option(click.Option):
         return given if given is None or isinstance(given, str) or self.unit == 1.0 else given / self.unit
 
     def written(self, value: Any, usual: Any = None, is_set: bool = False) -> list[str]:
-        """Returns the command-line arguments that give the field a value; empty if it is the default.
+        """Returns the command-line arguments that give the field a value; empty if the value is the default.
 
         Args:
             value: The field's value.
@@ -184,7 +184,7 @@ class Option(click.Option):
         return None
 
     def _text(self, value: Any) -> Any:
-        """Returns a value of TOML as the command line would have it."""
+        """Converts a value from a TOML file to the text, or texts, that the user would give as an option."""
         if self.is_flag:
             if isinstance(value, bool | str):
                 return value
@@ -199,7 +199,7 @@ class Option(click.Option):
 
     @contextmanager
     def _naming(self, origin: str) -> Iterator[None]:
-        """Says in the error of a value where that value is set."""
+        """Context manager: adds to the error message about an invalid value where that value is set."""
         try:
             yield
         except click.BadParameter as error:
@@ -258,6 +258,6 @@ def words_of(
 
 
 def _digits(value: float, unit: float) -> str:
-    """Returns the shortest number, in the option's unit, that is read as exactly this value."""
+    """Returns the shortest text of a number in the option's unit that is read as exactly this value."""
     texts = [f"{value * unit:.{digits}g}" for digits in range(6, 18)]
     return next((text for text in texts if float(text) / unit == value), texts[-1])

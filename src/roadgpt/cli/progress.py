@@ -59,7 +59,7 @@ class _Lines:
     def __call__(self, done: int, **_: object) -> None:
         now = time.monotonic()
         if self._first is None:
-            self._first = now, done  # the first waits for all to start, and tells nothing of the others
+            self._first = now, done  # the first step includes the start of the workers: others are faster
         elif now - self._told >= EVERY and self._first[1] < done < self._total:
             left = (now - self._first[0]) / (done - self._first[1]) * (self._total - done)
             steps = f"{done:,} of {self._total:,} {self._what}"

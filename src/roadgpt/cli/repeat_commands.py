@@ -13,7 +13,7 @@ from roadgpt.cli.option import Option, named, words_of
 from roadgpt.road import World
 from roadgpt.run.model import Request, Run, Setup
 
-# What the command that drives a road which exists takes; the road's file says what its geometry is.
+# The options of ``roadgpt drive`` that set fields of the Setup; the road's file determines the geometry.
 OF_DRIVES = named(options.SETUP, "driver", "simulator", "keep_driving", "rules")
 
 

@@ -122,7 +122,7 @@ class Row:
 
     @property
     def _despite(self) -> str:
-        """The first broken rule of a road that was driven all the same."""
+        """The first broken rule of a road that was driven in spite of it, and the number of further ones."""
         rest = len(self.findings) - 1
         more = f" and {rest} more finding{'s' * (rest > 1)}" if rest else ""
         return f"  finding: {self.findings[0]}{more}"
@@ -148,7 +148,7 @@ def metres(margin: float) -> str:
 
 
 def spending(spent: "Spent") -> str:
-    """Returns a text with the number of answers of language models, their tokens, seconds and cost."""
+    """Returns a text with the number of answers from language models, and their tokens, seconds and cost."""
     money = "price unknown" if spent.cost is None else f"{spent.cost:.4f} USD"
     answers = f"{spent.calls:,} answer{'s' * (spent.calls != 1)}"
     return f"{answers}, {spent.usage.total:,} tokens, {spent.seconds:.1f} s, {money}"
@@ -211,8 +211,8 @@ def row_of(run: "Run", file: str, name: str = "") -> Row:
 
 
 def row_of_result(result: "Result", words: str, seed: int, name: str) -> Row:
-    """Returns the row of a test from its stored result, its description, the driver's seed and the test's
-    name."""
+    """Returns the row of a test from its stored result, the description of the road (``words``), the driver's
+    seed and the test's name."""
     return Row(
         "",
         result.outcome,

@@ -142,7 +142,7 @@ def _single(file: str) -> NamedRoad:
 
 
 LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
-"""Fields of the World that a road with a cross-section of its own does not take."""
+"""Fields of the World that have no effect on a road with a cross-section of its own."""
 
 
 def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str, ...]]:
@@ -155,7 +155,7 @@ def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str,
         world: The World that the options describe.
 
     Raises:
-        UsageError: The file holds no road, or it is a folder that is no run.
+        UsageError: The file holds no road, or the folder is not that of a run.
     """
     from roadgpt.road import Design, World, read_blueprint
     from roadgpt.run.card import CARD
@@ -204,7 +204,7 @@ def shown_runs(
             f"{what} shows one road or two side by side; these are {len(named):,}: name one or two, as "
             f"{named[0].said}, or say --worst"
         )
-    if len(named) < len(files):  # a road beside itself
+    if len(named) < len(files):  # the same road twice, side by side
         named = [each for file in files for each in roads_named([file], choice)]
     return [run_of(each, world, geometry) for each in named]
 

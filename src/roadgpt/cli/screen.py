@@ -1,5 +1,5 @@
-"""Prints the output of a command while it works: a bar on a terminal, plain lines in a pipe, JSON, or
-nothing.
+"""Prints the output of a command while it works: lines with a progress bar on a terminal, plain lines in a
+pipe, JSON, or nothing.
 """
 
 import logging
@@ -25,8 +25,8 @@ class Screen:
     """Prints each road when it is finished, and at the end a table of outcomes.
 
     Rows of roads and other text go to standard output; if the rows are JSON, other text goes to standard
-    error. The bar goes to standard error if that is a terminal. A total of 0 means that the number of roads
-    is unknown.
+    error. The progress bar goes to standard error if that is a terminal. A total of 0 means that the number
+    of roads is unknown.
     """
 
     def __init__(
@@ -121,7 +121,7 @@ class Screen:
 
 
 def _show(line: str, on_stderr: bool = False) -> None:
-    """Prints a line, in colour on a terminal only; click.echo would write into the bar."""
+    """Prints a line, in colour only on a terminal; click.echo would write into the progress bar."""
     stream = sys.stderr if on_stderr else sys.stdout
     print(line if stream.isatty() and is_coloured() else click.unstyle(line), file=stream, flush=True)
 

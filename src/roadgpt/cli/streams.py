@@ -1,4 +1,4 @@
-"""Handles errors of standard output, and keeps the output of users' drivers out of it."""
+"""Handles errors of standard output, and keeps the output of users' drivers out of standard output."""
 
 import io
 import os
@@ -10,11 +10,12 @@ from typing import TypeVar
 import click
 
 Step = TypeVar("Step")
-LETTERS = "backslashreplace"  # letters that the other end has not are written as escapes
+LETTERS = "backslashreplace"  # characters that the stream's encoding lacks are written as escapes
 
 
 class OutputError(Exception):
-    """Raised if standard output cannot be written to. It is no OSError, which click would handle itself."""
+    """Raised if standard output cannot be written to. It is not an OSError, because click handles some
+    OSErrors itself."""
 
     def __init__(self, cause: OSError) -> None:
         self.is_reader_gone = isinstance(cause, BrokenPipeError)

@@ -5,14 +5,15 @@ instances have one method:
 
     def draft(self, brief, world, notes, earlier, seed) -> Design
 
-``notes`` are the objections of the rules to the previous draft, one sentence each. ``earlier`` are the
+``notes`` are sentences that say which rules the previous draft violated, and where. ``earlier`` are the
 designs of the campaign so far; the new one should differ from all of them. The same arguments give the same
 Design. If no road can meet all requirements on this map, the method raises DesignError with one sentence of
 advice.
 
-A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts = False``
-if it must not be called again when rules object; ``geometry``, the kind of geometry that its designs
-require, such as "spline" for RoadGPT's original splines; it overrides the user's choice.
+A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts``, False
+if the designer must not be called again when its draft violates a rule; ``geometry``, the kind of geometry
+that its designs require, such as "spline" for RoadGPT's original splines. This geometry overrides the user's
+choice.
 """
 
 from collections.abc import Sequence
@@ -36,7 +37,7 @@ class Designer(Protocol):
         Args:
             brief: the requirements for the road.
             world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: objections of the rules to the previous draft, one sentence each.
+            notes: sentences that say which rules the previous draft violated.
             earlier: designs of the campaign so far; the new one should differ from them.
             seed: seed of the random number generator.
 
@@ -60,7 +61,7 @@ def draft(
     Args:
         brief: the requirements for the road.
         world: size of the map, and limits that the rules check, such as the steepest grade.
-        notes: objections of the rules to the previous draft, one sentence each.
+        notes: sentences that say which rules the previous draft violated.
         earlier: designs of the campaign so far; the new one should differ from them.
         seed: seed of the random number generator.
         designer: name of an installed designer.
@@ -89,7 +90,7 @@ def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
 
 @cache
 def _made(name: str, chat: ChatSettings | None) -> Designer:
-    """Returns the one object of that designer, which keeps the shapes of earlier designs."""
+    """Returns the designer of that name; it is created only once, as it caches shapes of earlier designs."""
     return cast(Designer, instantiate(plugins.find("designers", name), chat))
 
 

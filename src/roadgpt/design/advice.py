@@ -19,10 +19,10 @@ from roadgpt.road import World
 
 OF_THE_PLAN = ("too large", "over itself", "longer than was asked for", "like an earlier road")
 FOR_ROOM = ("too large", "over itself")
-"""Reasons that a larger map may mend."""
+"""Reasons why drafts fail that may disappear on a larger map."""
 TOO_ABRUPT = "slopes that change too fast for the speed"
-MANY = 60  # drafts that fitted on the map and failed: then the map was large enough
-SIDES = 7.0  # of the map: longer roads were never drafted, so the search for the longest starts here
+MANY = 60  # if this many drafts fitted on the map but failed, the map was large enough
+SIDES = 7.0  # ratio of road length to map side; no longer road was ever drafted, so the search starts here
 SHORTER = 0.8  # ratio of each length tried to the one before
 HALVINGS = 2  # of the range between the last length that failed and the first that did not
 SURE = 0.92  # share of the longest length drafted that is offered
@@ -31,7 +31,7 @@ LARGER = 1.3  # ratio of each map size tried to the one before
 FEWEST_METRES = 30.0
 
 Fits = Callable[[Brief, World], bool]
-"""Returns whether roads can be drafted for a Brief with each of some seeds."""
+"""A function that returns whether a road for a Brief can be drafted with each of several seeds."""
 
 
 def advice(
@@ -65,7 +65,7 @@ def advice(
 
 
 def too_fast(world: World, slower: float | None) -> str:
-    """Returns one sentence, which says that crests and dips would be too abrupt for the speed limit.
+    """Returns one sentence that says that crests and dips would be too abrupt for the speed limit.
 
     Args:
         world: the World, for its speed limit.
@@ -105,7 +105,11 @@ def _wishes_of(outline: Outline) -> str:
 
 
 def roomier(world: World, boxes: Sequence[float]) -> float:
-    """Returns the side in metres of a map that a quarter of the drafts that were too large would fit on."""
+    """Returns the side in metres of a map that may be large enough.
+
+    A quarter of the drafts that were too large for the present map would fit on it, and it is at least 1.2
+    times as wide.
+    """
     needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
     return max(needed, 1.2 * world.site.map_size)
 
@@ -145,7 +149,10 @@ def metres_of(brief: Brief, world: World) -> float:
 
 
 def _less(brief: Brief, world: World, fits: Fits) -> str | None:
-    """Returns the length of the longest road, or of the longest straight on it, that could be drafted."""
+    """Returns, as text, the greatest length of the road that could be drafted; None if none could.
+
+    If the Brief requires no length of the road, the text gives the length of its longest straight instead.
+    """
     asked = _asked(brief)
     if asked is None:
         return None
@@ -188,7 +195,10 @@ def _round(metres: float) -> float:
 
 
 def _asked(brief: Brief) -> float | None:
-    """Returns the required metres of the road, else of its longest straight; None if none are required."""
+    """Returns the required length of the road in metres; if it is open, that of the longest straight.
+
+    Returns None if neither is required.
+    """
     if brief.length:
         return brief.length.lo or brief.length.hi
     lengths = [c.length.lo for c in brief.clauses if c.kind == "straight" and c.length and c.length.lo]

@@ -19,7 +19,7 @@ LETTERS = re.compile(r"[^a-z]")
 
 
 def _plain_direction(value: Any) -> Any:
-    """'Left' is left; what is more than a word of the three is for the schema to refuse."""
+    """Reduces a short text to its letters in lower case ('Left.' to 'left'); the schema checks the word."""
     return LETTERS.sub("", value.lower()) if isinstance(value, str) and len(value) < 20 else value
 
 
@@ -57,7 +57,7 @@ class AnswerRoad(AnswerStart):
     @model_validator(mode="before")
     @classmethod
     def _from_numbered_fields(cls, data: Any) -> Any:
-        """RoadGPT's own format: road_segment1, road_segment2, ..."""
+        """Converts RoadGPT's numbered fields road_segment1, road_segment2, ... to the list ``segments``."""
         if not isinstance(data, dict) or "segments" in data:
             return data
         numbered = [(int(match[1]), key) for key in data if (match := KEY.fullmatch(str(key)))]

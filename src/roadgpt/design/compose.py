@@ -26,13 +26,13 @@ from roadgpt.design.heights import Windows
 from roadgpt.design.sequence import TurnSequence, is_hairpin
 from roadgpt.road import World
 
-LEAD_MEAN = 26.0  # m more than the least, of lead-in and lead-out
-JOIN_MEAN = 16.0  # m more than the least, between turns
-LEG = 33.0  # m between hairpins; 30 m of them are measured as straight
-LEG_MEAN = 25.0  # m more than that
+LEAD_MEAN = 26.0  # m by which a lead-in or lead-out exceeds its least length on average
+JOIN_MEAN = 16.0  # m by which a straight between turns exceeds its least length on average
+LEG = 33.0  # m, least length of a straight between hairpins; 30 m of it are measured as straight
+LEG_MEAN = 25.0  # m by which such a straight exceeds LEG on average
 CRAMPED = 0.5  # haste from which hairpins are joined like other turns
-LONELY_MEAN = 60.0  # m more than the least, around the only turn of a road
-APPROACH = 35.0  # m more in front of a turn of a hard road: room to gain speed
+LONELY_MEAN = 60.0  # m by which a straight beside the only turn exceeds its least length on average
+APPROACH = 35.0  # m of additional straight in front of a turn of a hard road, about: room to gain speed
 DIRECT = 0.35  # probability that turns to opposite sides follow each other almost without a straight
 HARDLY = 7.0  # m
 CHANGE = 24.0  # m of straight for the change from one required grade to another
@@ -90,7 +90,7 @@ def composed(
 
 
 def _from_corner_to_corner(elements: list[Element], world: World) -> list[Element]:
-    """Returns consecutive straights, shortened to what the map holds."""
+    """Returns the straights of a road without turns, shortened if they do not fit on the map's diagonal."""
     longest = longest_straight(world.site.map_size, world.section.road_width) - ROUNDING
     keep = longest / sum(element.length for element in elements)
     return (
@@ -167,7 +167,7 @@ def _asked_gap(
     haste: float,
     mean: float,
 ) -> list[Element]:
-    """Returns required straights; where the grade must change at a turn, it changes a little away from it."""
+    """Returns the required straights. A grade that must change at a turn changes a little away from it."""
     out: list[Element] = []
     grades = windows.row(wishes)
     if before and windows.part(before.required_grade, grades[0]):
@@ -192,7 +192,7 @@ def _asked_gap(
 
 
 def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Element:
-    """Returns a short straight of another slope, so that those before and behind it are measured as two."""
+    """Returns a short straight of another slope, so that its two neighbours are measured as two straights."""
     grade = windows.other(after)
     changes = windows.between(before, grade) + windows.between(grade, after)
     length = max(STEP_ASIDE, windows.least * changes / 100)
@@ -200,9 +200,9 @@ def _ledge(before: Range | None, after: Range | None, windows: Windows) -> Eleme
 
 
 def _change(grade: Range | None, other: Range | None, windows: Windows, haste: float) -> float:
-    """Returns the metres of straight that a change of grade takes at its end.
+    """Returns the length in metres of straight to reserve for a change of grade at its end.
 
-    Without haste, there is room for a comfortable parabola between the two grades.
+    With ``haste`` 0, a comfortable parabola between the two grades has room, unless it needs more than 100 m.
     """
     comfortable = windows.comfort * windows.between(grade, other) / 100
     return max(CHANGE * (1 - 0.3 * haste), min(comfortable, LONGEST_CHANGE) * (1 - haste))
@@ -223,7 +223,10 @@ def _with_hills(elements: list[Element], hills: Range, rng: np.random.Generator)
 def _with_length(
     elements: list[Element], asked: Range, rng: np.random.Generator, haste: float
 ) -> list[Element] | None:
-    """Returns elements whose free straights are changed until the road has the required length."""
+    """Returns the elements with free straights changed so that the road has the required length.
+
+    Returns None if they cannot be shortened enough.
+    """
     now = sum(element.length for element in elements)
     core = _core(asked)
     if core.lo + 1 < now < core.hi - 1:
@@ -252,7 +255,7 @@ def _with_length(
 
 
 def _core(asked: Range) -> Range:
-    """Returns the middle of a range that was given as one number; else the range."""
+    """Returns the middle part of a range that was given as one number; any other range is unchanged."""
     if asked.lo <= 0 or asked.hi > NARROW * asked.lo:
         return asked
     edge = OFF_CORE * (asked.hi - asked.lo)

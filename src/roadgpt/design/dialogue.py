@@ -36,7 +36,7 @@ class DesignTask(NamedTuple):
     question: str
     """The first message of the user, with the requirements."""
     is_new: Callable[[Design], bool]
-    """Returns whether a design differs from all earlier ones of the campaign."""
+    """A function that returns whether a design differs from all earlier ones of the campaign."""
     seed: int
     """Seed of the random start that is used if the model gives no start."""
 
@@ -59,7 +59,7 @@ class Outcome(NamedTuple):
 
 
 def whole(chat: Chat, task: DesignTask) -> Outcome:
-    """Asks for whole roads until one has no objections or all rounds are used up; returns the best one.
+    """Asks for whole roads until one is free of errors or all rounds are used up; returns the best one.
 
     Args:
         chat: the language model.
@@ -102,7 +102,7 @@ def whole(chat: Chat, task: DesignTask) -> Outcome:
 
 def _outcome(answer: AnswerRoad, task: DesignTask, number: int, model: str) -> Outcome:
     proposed, remarks = design_of(answer, answer.segments)
-    build(proposed)  # of lengths beyond all measure there is no road
+    build(proposed)  # raises UsageError if the road is too long
     design = repair(proposed, task.brief, task.world, task.settings.repair).design
     wrong = objections(design, task.brief, task.world)
     if not wrong and not task.is_new(design):
@@ -122,8 +122,8 @@ def _compact(answer: BaseModel) -> str:
 def stepwise(chat: Chat, task: DesignTask) -> Outcome:
     """Asks for one segment at a time and checks each before it asks for the next.
 
-    The model may try each segment as often as the setting ``rounds`` allows. If the last try has objections,
-    too, the segment is omitted. So the dialogue always ends.
+    The model may try each segment as often as the setting ``rounds`` allows. If the last try is rejected as
+    well, the segment is omitted, so the dialogue always ends.
 
     Args:
         chat: the language model.
@@ -155,7 +155,9 @@ class _Steps:
         self.start = AnswerStart(starting_point=[x, y, USUAL_HEIGHT], theta=theta)
 
     def walked(self) -> Outcome:
-        """Returns the road when the model has said that it is finished, or when nothing more can be added."""
+        """Asks for segments until the model says that the road is finished, or until no more can be added;
+        returns the road.
+        """
         self._begin()
         tries, left_out, endings = 0, 0, 0
         wrong: tuple[str, ...] = ()
@@ -163,7 +165,7 @@ class _Steps:
             step = self._asked(wrong)
             if isinstance(step, AnswerStep):
                 wrong = self._added(step, self.how)
-                if wrong and tries + 1 == self.task.settings.rounds:  # rather than to leave it out
+                if wrong and tries + 1 == self.task.settings.rounds:  # rather than leave the segment out
                     wrong = self._added(step, self.task.settings.repair)
                 if not wrong:
                     tries = left_out = 0
@@ -174,7 +176,7 @@ class _Steps:
                     if not wrong or endings == self.task.settings.rounds:
                         break
                     continue
-            elif step is None:  # it declines: what there is will have to do
+            elif step is None:  # the model declines: the road ends here
                 break
             else:
                 wrong = (step,)
@@ -185,7 +187,7 @@ class _Steps:
         return self._outcome()
 
     def _begin(self) -> None:
-        """Sets the start to the model's answer; keeps the random start if the answer is none."""
+        """Sets the start to the model's answer; keeps the random start if the answer is not on the map."""
         try:
             reply = self.chat.ask(self._messages("Give the start of the road."), AnswerStart)
             point = reply.data.starting_point
@@ -204,7 +206,7 @@ class _Steps:
         return [Message(role="system", text=self.task.rules), Message(role="user", text=task)]
 
     def _asked(self, wrong: Sequence[str]) -> AnswerStep | str | None:
-        """The next segment; a sentence where there is none in the answer; None where the model declines."""
+        """Returns the next segment; a sentence if the answer contains none; None if the model declines."""
         asked = [self._state(), "Give the next segment."]
         if wrong:
             asked.insert(
@@ -224,7 +226,7 @@ class _Steps:
         return step if isinstance(step, AnswerStep) else "it is no segment"
 
     def _state(self) -> str:
-        """What there is of the road, and where it ends."""
+        """Returns a text that lists the segments so far, and says where the road ends."""
         if self.road is None:
             x, y = self.start.starting_point[:2]
             return (
@@ -242,18 +244,18 @@ class _Steps:
         return "The road so far:\n" + "\n".join(lines) + f"\n{end}"
 
     def _design(self, steps: Sequence[AnswerStep], brief: Brief | None = None) -> tuple[Design, Design]:
-        """As proposed, and repaired."""
+        """Returns the design that the steps form as proposed, and after its repair."""
         proposed, _ = design_of(self.start, list(steps))
         return proposed, repair(proposed, brief, self.task.world, self.task.settings.repair).design
 
     def _added(self, step: AnswerStep, how: How) -> tuple[str, ...]:
-        """Adds a segment to the road, or says why not."""
+        """Adds a segment to the road and returns (), or returns sentences that say why it was not added."""
         self.mended += how == "full"
         if self.mended > MOST_MENDED:
             return ("there is no room for it",)
         try:
             proposed, _ = design_of(self.start, [*self.steps, step])
-            build(proposed)  # of lengths beyond all measure there is no road
+            build(proposed)  # raises UsageError if the road is too long
             design = repair(proposed, None, self.task.world, how).design
         except UsageError as error:
             self.problem = error
@@ -265,7 +267,7 @@ class _Steps:
         return wrong
 
     def _ended(self) -> tuple[str, ...]:
-        """What is wrong with the road as it stands; a segment too many is taken back."""
+        """Returns what is wrong with the finished road; removes the last segment if less is then wrong."""
         _, design = self._design(self.steps, self.task.brief)
         wrong = objections(design, self.task.brief, self.task.world)
         if wrong and len(self.steps) > 1:

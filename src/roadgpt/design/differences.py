@@ -68,7 +68,7 @@ def _things(before: RoadElements, new: RoadElements, found: Measures) -> Iterato
 
 
 def _names(elements: Sequence[RoadElement]) -> dict[str, str]:
-    """What a person calls every element."""
+    """Returns what a person would call each element, by the name of the element."""
     out, turns, straights = dict[str, str](), 0, 0
     for element in elements:
         if element.kind == "turn":
@@ -94,7 +94,7 @@ def _gone(element: RoadElement, name: str, now: RoadElement | None) -> str:
 
 
 def _other(element: RoadElement, now: RoadElement, name: str, seen: MeasuredFeature | None) -> Iterator[str]:
-    """What is different about an element that stayed."""
+    """Yields a sentence about the changes to an element that is on both roads; none if it is unchanged."""
     was = element.seen
     if not now.segments or (was is not None and seen is None and now.length < was.length):
         short = f"{name}: {now.length:g} m as written, too short to be seen"

@@ -27,11 +27,11 @@ SHORTEST_TURN = 11.0  # m along the arc, where no radius was asked for: less loo
 TRANSITIONS = (0.12, 0.34)  # of the arc, for each clothoid
 TRANSITION_LIMITS = (3.0, 16.0)  # m, of tight turns
 RADII_OF_TRANSITION = 9.0  # of wide turns: RAS-L 1995 asks for a parameter A >= R / 3, so A^2 / R >= R / 9
-WIDE_ANGLE = 80.0  # degrees of a turn whose radius is wider than others
+WIDE_ANGLE = 80.0  # degrees: a turn of a large required radius may be long enough for this angle
 LEAD = 16.5  # m: a straight of this length before the first or after the last turn is measured as 10 m
 SEPARATE = 17.5  # m between two turns to the same side, so that they are measured as two
 KEPT = 0.5  # degrees by which a turn may differ from its share of a required sum
-OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow for a steep slope: first, last
+OFF_TOP, UP_TO = 0.6, 0.97  # share of its range to which a straight may grow: without haste, and at most
 TIGHTER = 1.35  # ratio of the widest radius of a hard road to its least
 
 
@@ -73,7 +73,7 @@ def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
 
 
 def _angles(turn: Feature, promised: Range) -> Range:
-    """Returns the range of degrees: near a given number, the aim of a word, or nearly the whole range."""
+    """Returns the degrees to choose from: near a given number, usual for a word, or nearly all allowed."""
     width = promised.hi - promised.lo
     if width <= 24:
         return _inside(promised, 0.25)
@@ -84,12 +84,15 @@ def _angles(turn: Feature, promised: Range) -> Range:
 
 
 def _inside(span: Range, share: float) -> Range:
-    """Returns a range of radii or angles without a margin: a share of its width, or of its only bound."""
+    """Returns a range narrowed at both ends by a share of its width.
+
+    If it has no upper bound, the share is that of its lower bound.
+    """
     return span.drawn_in(share * (span.lo if span.hi == inf else span.hi - max(span.lo, 0.0)), 0.5)
 
 
 def hand_of(turn: Feature) -> int:
-    """Returns 1 for a turn to the left, -1 for one to the right."""
+    """Returns -1 for a turn to the right, and 1 for a turn to the left or to either side."""
     return -1 if turn.side == "right" else 1
 
 
@@ -135,7 +138,7 @@ def _share(rng: np.random.Generator, haste: float) -> float:
 
 
 def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int], most: float) -> list[float]:
-    """Returns angles, reduced until all headings of the road lie within ``most`` degrees."""
+    """Returns angles, reduced if possible so that the headings of the road span at most ``most`` degrees."""
     low = _swing([degrees.lo * hand for degrees, hand in zip(ranges, hands, strict=True)])
     now = _swing([angle * hand for angle, hand in zip(angles, hands, strict=True)])
     if now <= most or now <= low:
@@ -248,7 +251,7 @@ def inside(least: float) -> float:
 def free_straight(rng: np.random.Generator, haste: float, least: float, mean: float) -> float:
     """Returns a random length, in metres, of a straight without requirements.
 
-    The length is ``least`` plus a random part of about ``mean`` metres on average, which is shorter the
-    larger ``haste`` is.
+    The length is ``least`` plus a random part. This part is about ``mean`` metres on average if ``haste`` is
+    0, and becomes shorter as ``haste`` grows towards 1.
     """
     return least + min(float(rng.exponential(mean)), 3 * mean) * (1 - 0.95 * haste)

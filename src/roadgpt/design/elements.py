@@ -21,7 +21,7 @@ HUNDREDTH = 100.0  # per metre: radii are written to the centimetre
 MOST_TRANSITION = 0.55  # of a segment's arc: with more it could not keep its radius (see road.alignment)
 OVER_LEAST_RADIUS = 1.055  # of the world's least: a spline through control points 2 m apart loses 3 %
 SHORTEST = 0.5  # m, of a straight that is written
-SPARE = 1.0  # m: a turn that is longer than its radius needs by more is a turn between two straights
+SPARE = 1.0  # m: a turn longer than its radius needs by more than this is a turn between two straights
 
 
 def turn_element(
@@ -73,7 +73,7 @@ def segments_of_turn(angle: float) -> int:
 
 
 def cut(element: Element) -> list[Segment]:
-    """Cuts an element into segments; its numbers must be rounded to the precision of design files."""
+    """Cuts an element into segments; the element must be rounded to the precision of design files."""
     if not element.turn:
         return [
             Segment(
@@ -121,7 +121,7 @@ def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
 
 
 def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
-    """Yields the segments that are one turn, or one straight each."""
+    """Yields groups of segments: all segments of one turn, or a single straight segment."""
     group = [segments[0]]
     for before, segment in pairwise(segments):
         if _goes_on(before, segment, group[0].radius):
@@ -133,7 +133,7 @@ def _groups(segments: Sequence[Segment]) -> Iterator[list[Segment]]:
 
 
 def _goes_on(before: Segment, segment: Segment, radius: float | None) -> bool:
-    """Tells whether a segment was cut off the same turn as the one before."""
+    """Returns whether a segment is part of the same turn as the segment before it."""
     same = (before.turn_degrees, before.incline) == (segment.turn_degrees, segment.incline)
     return bool(segment.turn_degrees) and same and (segment.radius is None or segment.radius == radius)
 

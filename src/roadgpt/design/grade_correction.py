@@ -117,7 +117,7 @@ def _rows(elements: Sequence[Element]) -> list[range]:
 
 
 def _with_grade(element: Element, seen: MeasuredFeature, limit: Range) -> Element:
-    """Returns a straight of fixed length with the grade at which its mean grade is the required one."""
+    """Returns a straight of fixed length, its incline corrected so that the measured grade is as required."""
     asked = element.required_grade
     if not asked or not element.has_fixed_length or 0 in asked or seen.inner_grade in asked:
         return element

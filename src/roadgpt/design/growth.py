@@ -27,7 +27,7 @@ from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
 
 TRIED = 14  # candidates for each turn
-AHEAD = 45.0  # m straight on behind a turn that must be free
+AHEAD = 45.0  # m straight on from the end of a turn that must be free
 COARSE = 3.0  # m between the points that are compared with the border and the road
 MOST_TURNS = 400
 EXTRA = {"winding": (10.0, 70.0)}  # m by which straights between turns are longer than needed, on average
@@ -119,7 +119,10 @@ class _Growth:
         return PlacedPlan(way.elements, walk(way.elements), place)
 
     def _grown(self, start: _Way) -> _Way | None:
-        """Returns the whole road; where it cannot go on, the last turns are removed and others tried."""
+        """Returns the whole road; None after too many dead ends.
+
+        If the road cannot be continued, the last turns are removed and others are tried.
+        """
         steps: list[tuple[_Way, Element | None]] = [(start, None)]
         for back in range(1, DEAD_ENDS + 1):
             while (following := self._turn(len(steps) - 1, steps[-1][0].length)) is not None:
@@ -159,13 +162,13 @@ class _Growth:
         wishes: Sequence[Feature],
         at: int,
     ) -> tuple[_Way, Element] | None:
-        """Returns the road with one more turn, and that turn; None if no candidate is free.
+        """Returns the road with one more turn, and that turn; None if no candidate has room.
 
         Args:
             way: the road so far.
-            before: its last turn.
+            before: the last turn of the road so far; None if there is none.
             asked: the ranges of the next turn.
-            wishes: the straights that are required before it.
+            wishes: the straights that are required before the next turn.
             at: the number of the next turn, from 0.
         """
         hand, degrees = hand_of(asked), asked.degrees or ANY_TURN
@@ -209,7 +212,9 @@ class _Growth:
         return None
 
     def _is_free(self, way: _Way, line: PlanLine, ahead: float) -> bool:
-        """Returns whether a piece and ``ahead`` metres behind it stay on the map and off the road so far."""
+        """Returns whether a new part, and ``ahead`` metres straight on from its end, stay on the map and keep
+        clear of the road so far.
+        """
         every = max(1, round(COARSE / float(line.s[1])))
         s, z = line.s[::every], line.z[::every]
         last = line.z[-1] - line.z[-2]
@@ -225,7 +230,7 @@ class _Growth:
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:
-    """Returns elements whose first elastic straight is longer; a new straight if there is none at all."""
+    """Returns elements whose first elastic straight is longer; a new straight if there are no elements."""
     out = list(elements)
     for i, element in enumerate(out):
         if element.is_elastic:

@@ -27,7 +27,7 @@ LEVEL_SHARE, SLOPE_SHARE = 0.22, 0.3  # of roads without required heights: level
 GENTLE, STEEP = 1.5, 9.0  # percent, of such roads
 STEADY = 0.5  # probability that an element keeps the grade of the one before, if it may
 UNCLEAR = 0.2  # percentage points around the edge of flat, where rounding would decide
-ROLL = 60.0  # m for which a road that rolls keeps its grade at least
+ROLL = 60.0  # m, least distance for which a rolling road keeps its grade
 HILL = 34.0  # m: the shortest climb or fall of a hilly road
 HILL_GRADES = (4.0, 8.5)  # percent
 CREST = Range(2.5, 4.5)  # percent: climb of a straight before a bend of a hard road, and fall in the bend
@@ -256,7 +256,7 @@ def _steady_grades(plan: Sequence[Element], windows: Windows, rng: np.random.Gen
 
 
 def _hilly(plan: Sequence[Element], hills: Range, rng: np.random.Generator) -> list[list[Element]]:
-    """Returns elements that climb and fall in turn; required grades stay.
+    """Returns elements that alternately climb and fall; required grades stay.
 
     Long straights are cut into several. An element too short for a hill continues the one before.
     """
@@ -311,7 +311,7 @@ def _with_steepest(
 def _with_climb(
     values: Array, lengths: Array, limits: Sequence[Range], climb: Range, rng: np.random.Generator
 ) -> Array:
-    """Returns grades shifted alike, each within its limits, until the road climbs as much as required."""
+    """Returns grades, shifted by one amount within their limits so that the road climbs as required."""
     known = np.where(np.isnan(values), np.nanmean(values) if np.isfinite(values).any() else 0.0, values)
     low = climb.lo if climb.lo > -inf else climb.hi - max(0.3 * abs(climb.hi), 2.0)
     high = climb.hi if climb.hi < inf else climb.lo + max(0.3 * abs(climb.lo), 2.0)
@@ -338,7 +338,7 @@ def _joining(drawn: Sequence[list[Element]]) -> list[list[Element]]:
 
 
 def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: float) -> list[Range]:
-    """Returns limits by which the longest element that is as steep as required stays so."""
+    """Returns limits that keep the longest of the sufficiently steep elements as steep as required."""
     out = [*limits]
     steep = [i for i in sorted(range(len(out)), key=lambda i: -lengths[i]) if abs(values[i]) >= least]
     if steep:
@@ -349,7 +349,7 @@ def _steep_kept(values: Array, lengths: Array, limits: Sequence[Range], least: f
 
 
 def _held(element: Element, value: float, room: Range) -> Range:
-    """Returns the limit of a straight of required length and grade: hardly less than what was chosen."""
+    """Returns the limit of a straight of required length and grade: close to the grade that was chosen."""
     if element.required_grade is None or not element.has_fixed_length or 0 in element.required_grade:
         return room
     return overlap(room, Range(value - HELD, value + HELD)) or room
@@ -365,7 +365,7 @@ def _one_way(value: float, room: Range) -> Range:
 def _softened(
     values: Array, lengths: Array, limits: Sequence[Range], pace: Pace, ease: float, bumps: bool
 ) -> Array:
-    """Returns grades between which parabolas find room; half of a joining straight goes to either side."""
+    """Returns grades, changed so that parabolas fit; half of a joining straight counts to either side."""
     known = np.flatnonzero(~np.isnan(values))
     if len(known) < 2 or np.ptp(values[known]) == 0:
         return values

@@ -211,7 +211,7 @@ def moved_onto_map(design: Design, world: World) -> Design | None:
 
 
 def _corners(road: Road, world: World) -> Complex:
-    """Returns the convex hull of the ribbon, and of what SBFT's spline may run on behind its ends."""
+    """Returns the convex hull of the road surface, extended at both ends as far as SBFT's spline may run."""
     half = world.section.road_width / 2
     left, right = sides(road.sample(), world.profile_of(road).edges(road.sample().s))
     behind = [_beyond(road, s, t) for s in (-BEYOND, road.length + BEYOND) for t in (-half, half)]
@@ -221,7 +221,7 @@ def _corners(road: Road, world: World) -> Complex:
 
 
 def _beyond(road: Road, s: float, t: float) -> Array:
-    """Returns the point of an edge at a station before the start or behind the end, straight on from it."""
+    """Returns the point of an edge at a station beyond an end of the road, which is continued straight."""
     end = min(max(s, 0.0), road.length)
     heading = float(road.heading(end))
     return np.asarray(road.at(end, t)[:2] + (s - end) * np.array([cos(heading), sin(heading)]))

@@ -2,8 +2,8 @@
 
     none   nothing is changed
     place  the road is moved, rotated only if that is not enough, and raised above the ground
-    full   then lengths, angles, radii and grades are changed as little as necessary; the number of turns,
-           and whether each goes left or right, and up, down or level, stay as proposed
+    full   then lengths, angles, radii and grades are changed as little as necessary; the number of turns and
+           the direction of each turn (left or right; up, down or level) stay as proposed
 
 A road that cannot be repaired is at least placed on the map if possible; ``check.inspect`` says what is still
 wrong with it. Main function: ``repair``.
@@ -30,7 +30,7 @@ from roadgpt.errors import UsageError
 from roadgpt.road import Design, World
 
 How = Literal["none", "place", "full"]
-MOST_WAYS = 2000  # of choosing straights for requirements that are compared
+MOST_WAYS = 2000  # of assigning straights to requirements; further ways are not compared
 
 
 class Repaired(NamedTuple):
@@ -125,7 +125,7 @@ def _matched(elements: RoadElements, items: Sequence[Item]) -> Match[Item]:
 
 
 def _answering(elements: RoadElements, straights: Sequence[int], wanted: Sequence[Feature]) -> Sequence[int]:
-    """Returns the straights that have to meet these requirements: those whose slopes are nearest to them."""
+    """Returns the straights that have to meet these requirements, chosen by the nearest slopes."""
     if len(wanted) >= len(straights):
         return [straights[min(i, len(straights) - 1)] for i in range(len(wanted))]
     ways = combinations(straights, len(wanted))
@@ -142,7 +142,10 @@ def _beyond(incline: float, asked: Range | None) -> float:
 
 
 def _ends(elements: RoadElements, turns: Sequence[int], required: Outline) -> list[Item] | None:
-    """Returns what the road must start and end with; None if the proposal does otherwise."""
+    """Returns the requirements for the start and the end of the road, each with the index of its element.
+
+    Returns None if the proposal starts or ends otherwise.
+    """
     out: list[Item] = []
     for feature, end in ((required.starts, 0), (required.ends, -1)):
         if feature is None:

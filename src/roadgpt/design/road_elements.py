@@ -84,7 +84,7 @@ def measured(design: Design, geometry: Geometry) -> Measures:
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the elements into which the measured turns divide a design, and its measurements."""
+    """Returns the elements into which the measured turns divide a design, and the road's measurements."""
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (
@@ -111,7 +111,7 @@ def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadE
 def _members(
     segments: Sequence[Segment], joints: Array, turn: MeasuredFeature, scale: float
 ) -> tuple[int, int]:
-    """First segment of a turn, and the one behind its last."""
+    """Returns the index of a turn's first segment, and the index after its last segment."""
     low, high = turn.start * scale, turn.end * scale
     hand = 1 if turn.side == "left" else -1
     shared = np.minimum(joints[1:], high) - np.maximum(joints[:-1], low)
@@ -160,7 +160,7 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
     """Returns whether each measured turn climbs, falls or is level like its segments, or has the required
     grade.
 
-    The road must have the turns of the elements.
+    The measured turns must correspond to those of the elements.
     """
     turns = (one for one in elements if one.is_turn)
     return all(
@@ -173,8 +173,8 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
 def features_of(elements: Sequence[RoadElement], found: Measures) -> tuple[MeasuredFeature | None, ...]:
     """Returns the measured feature of each element; None if it is not measured as a feature of its own.
 
-    The road must have the turns of the elements. If there are several elements between two turns, the
-    straight measured there is assigned to the longest one.
+    The measured turns must correspond to those of the elements. If there are several elements between two
+    turns, the straight measured there is assigned to the longest of them.
     """
     out: list[MeasuredFeature | None] = [None] * len(elements)
     turns = [i for i, element in enumerate(elements) if element.is_turn]

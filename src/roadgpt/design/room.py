@@ -1,5 +1,5 @@
-"""Finds the World for the roads of a description: with a surface that the words name, and with a map that can
-hold such roads.
+"""Finds the World for the roads of a description: the friction of a surface that the words name, and a map
+that is large enough for such roads.
 """
 
 from roadgpt.brief.model import Brief

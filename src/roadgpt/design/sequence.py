@@ -102,7 +102,7 @@ def _group_counts(outline: Outline, rng: np.random.Generator, plain: bool) -> li
 def _free(
     outline: Outline, rng: np.random.Generator, plain: bool
 ) -> tuple[list[OpenTurn], list[list[Feature]]]:
-    """Returns any turns, and the required straights at random places between them, in their order."""
+    """Returns turns without requirements, and the required straights in order at random places among them."""
     count = _turn_count(outline, rng, plain)
     turns = [(Feature("turn", "turn"), False)] * count
     gaps: list[list[Feature]] = [[] for _ in range(count + 1)]
@@ -135,7 +135,7 @@ def _turn_count(outline: Outline, rng: np.random.Generator, plain: bool) -> int:
 
 
 def _turned(outline: Outline) -> Range:
-    """Returns how many usual turns have the required sum of angles."""
+    """Returns the range of the number of turns whose usual angles can have the required sum."""
     if outline.turning is None:
         return Range(0)
     most = outline.turning.hi // SMALL if outline.turning.hi < inf else inf

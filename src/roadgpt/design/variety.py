@@ -1,10 +1,10 @@
 """Measures how much two roads differ, so that no two roads of a campaign are alike.
 
-The distance of two roads is the root mean square distance of their points after one road is shifted, rotated
-and, if that helps, mirrored to bring them as close as possible. Points are compared in two ways: at equal
-fractions of both lengths, and at equal distances from the start as far as the shorter road goes. With points
-as complex numbers, the best rotation is the phase of an inner product, so one matrix product compares a road
-with a thousand others.
+The distance between two roads is the root mean square distance between their points after one road is
+shifted, rotated and, if that helps, mirrored to bring them as close as possible. Points are compared in two
+ways: at equal fractions of both lengths, and at equal distances from the start as far as the shorter road
+goes. With points as complex numbers, the best rotation is the phase of an inner product, so one matrix
+product compares a road with a thousand others.
 """
 
 from collections.abc import Sequence
@@ -155,6 +155,6 @@ def _room_for(designs: int) -> PlanShape:
 
 
 def _alike(one: Sequence[Design], other: Sequence[Design]) -> int:
-    """Returns how many of the first designs are the same objects."""
+    """Returns the number of designs at the start of both sequences that are the same objects."""
     pairs = enumerate(zip(one, other, strict=False))
     return next((at for at, (a, b) in pairs if a is not b), min(len(one), len(other)))

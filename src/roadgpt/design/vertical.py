@@ -1,6 +1,6 @@
 """Chooses vertical radii that suit the expected speed, and adjusts grades where the parabolas would not fit.
 
-A parabola of radius R takes R * (change of grade) metres, half of it on either side of its joint. On a slope
+A parabola of radius R takes R * (change of grade) metres, half on either side of the joint. On a slope
 of length L, the two parabolas at its ends need
 
     L   >=   (R1 * |change at its start| + R2 * |change at its end|) / 2
@@ -48,7 +48,7 @@ class Pace:
             knots: stations in metres, ``(n,)``.
             bends: curvatures at these stations in 1/m, linear in between and 0 after the last, ``(n,)``.
             length: length of the plan in metres.
-            world: the speed limit and the friction.
+            world: the speed limit, and the lanes and superelevation of roads.
         """
         self._plan = knots, bends, length
         self._world = world
@@ -67,7 +67,7 @@ class Pace:
 
     @cached_property
     def _squares(self) -> tuple[float, Array]:
-        """Returns the metres between stations, and the square of the speed at each."""
+        """Returns the metres between stations, and the square of the expected speed at each, in (m/s)^2."""
         knots, bends, length = self._plan
         s = np.linspace(0.0, length, max(1, round(length / STEP)) + 1)
         bend = np.interp(s, knots, bends, right=0.0)
@@ -180,7 +180,7 @@ def _made_room(
     lows: Sequence[float],
     highs: Sequence[float],
 ) -> bool:
-    """Returns whether a slope has room for its parabolas; if not, moves its grade and its neighbours'."""
+    """Returns whether a slope has room for its parabolas; if not, changes the slope and its neighbours."""
     before = grades[i] - grades[i - 1] if i else 0.0
     after = grades[i + 1] - grades[i] if i + 1 < len(grades) else 0.0
     over = halves[i] * abs(before) + halves[i + 1] * abs(after) - MOST_OF_SLOPE * length

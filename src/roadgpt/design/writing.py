@@ -49,8 +49,8 @@ def _cut(written: Sequence[Element], grades: Sequence[float]) -> list[Segment]:
 
 
 def design_of(elements: Sequence[Element], place: MapPose, world: World) -> Design:
-    """Returns a design of these elements that starts at ``place``, with its lowest point 1 m above the
-    ground.
+    """Returns a design of these elements that starts at ``place``, with its lowest point 1 m above the ground
+    or above height 0, whichever is higher.
     """
     return design_at(place, segments_of(elements, world), max(0.0, world.site.z_floor) + ABOVE_GROUND)
 

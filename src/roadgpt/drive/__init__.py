@@ -63,7 +63,7 @@ class Simulator(Protocol):
     """Simulates a car and its physics.
 
     A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
-    attribute ``ignores``. Users who set such a field get an error.
+    attribute ``ignores``. If a user sets one of these fields, an error is raised.
     """
 
     def simulate(
@@ -73,9 +73,9 @@ class Simulator(Protocol):
 
         At every control step the simulator checks these conditions in this order: the car has reached the
         goal; the car is stuck; the car is out of its lane; the car has fallen; the time is up. The first
-        condition that holds ends the drive. The car is out of its lane if a larger share of it than
-        ``world.oob_tolerance`` is outside. With ``world.lane_departure``, one front tyre beyond a marking is
-        enough. With ``keep_driving``, the drive goes on when the car leaves its lane.
+        condition that holds ends the drive. The car is out of its lane if the share of it that is outside
+        exceeds ``world.limits.oob_tolerance``. If ``world.limits.lane_departure`` is set, one front tyre
+        beyond a marking is enough. With ``keep_driving``, the drive goes on when the car leaves its lane.
 
         Raises:
             DriverError: the driver raised an exception, returned something that is not a command, or hung.
@@ -98,7 +98,8 @@ def simulate(
 
     Args:
         road: the road to drive on.
-        world: the World, with friction, speed limit and tolerances, and with lanes for a road that has none.
+        world: the World, with friction, speed limit and tolerances, and with the lanes of a road that does
+            not define its own.
         driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
             file.
         seed: passed to the driver and recorded; the car's physics uses no random numbers.

@@ -36,7 +36,7 @@ class CameraSensor:
         """Mounts a camera on a car on this road.
 
         Raises:
-            UsageError: a camera cannot have such a size or field of view.
+            UsageError: the camera's image size or field of view is out of range.
         """
         from roadgpt.scene import Camera as Pinhole
         from roadgpt.scene import CameraPlacement, Scene

@@ -1,8 +1,8 @@
 """Compiles inner loops to machine code where possible; otherwise the same functions run as plain Python.
 
-This is decided once, for all functions together. If numba or llvmlite is missing or does not load, or if
+The choice is made once, for all functions together. If numba or llvmlite is missing or does not load, or if
 MuJoCo's functions cannot be called by their addresses, everything runs as plain Python, which is far slower.
-``ROADGPT_NO_NUMBA=1`` forces this. ``roadgpt doctor`` shows whether machine code or plain Python is used.
+``ROADGPT_NO_NUMBA=1`` forces plain Python. ``roadgpt doctor`` shows which of the two is used.
 """
 
 import logging
@@ -19,8 +19,8 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def _numba() -> tuple[Any, Any, str]:
-    """Returns numba, a function that calls another one by its address, and, where there are none, the reason
-    in words."""
+    """Returns the module numba, a function that calls a C function by its address, and an empty text. If
+    nothing can be compiled, returns None, None, and the reason in words."""
     if os.environ.get("ROADGPT_NO_NUMBA", "") not in ("", "0"):
         return None, None, "ROADGPT_NO_NUMBA is set"
     try:
@@ -65,7 +65,7 @@ if COMPILES:
 
 
 def _digest() -> str:
-    """Returns a digest of the files of this room; their functions and numbers become part of machine code."""
+    """Returns a digest of this package's files, whose functions and numbers become part of machine code."""
     files = sorted(Path(__file__).parent.rglob("*.py"))
     return sha256(b"".join(file.read_bytes() for file in files)).hexdigest()[:12]
 

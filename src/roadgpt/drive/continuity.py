@@ -13,10 +13,10 @@ from roadgpt.drive.drive import Drive
 from roadgpt.errors import SimulationError
 
 HARDEST = 300.0  # m/s^2: 30 g, more than a car survives in one piece
-SLACK = 0.5  # m, tolerance for samples that were taken at slightly other times than they state
+SLACK = 0.5  # m, tolerance for samples that were taken slightly before or after their time stamps
 FASTEST = 200.0  # m/s; the fastest production cars reach 135, a car that falls 100 m reaches 44
-STANDING = 20.0  # m of distance according to the speed, from which the check applies ...
-SHARE = 1 / 3  # ... and the share of it that the car must have moved
+STANDING = 20.0  # m; if the speeds amount to a longer distance than this ...
+SHARE = 1 / 3  # ... the car must have moved at least this share of that distance
 
 FAILED = ", so the simulation failed, which says nothing about the driver; drive the road again"
 

@@ -41,9 +41,9 @@ COLUMNS = {
 }
 """Names of the columns in their order, each with its unit and meaning."""
 
-LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of what is in it: seven hours of driving
+LARGEST, UNPACKED = 50_000_000, 200_000_000  # bytes of the file, and of its content: seven hours of driving
 
-# The format of the file; raised when a reader of the old one would misread the new one.
+# Version of the file format; increased when code for the old version would misread the new one.
 FORMAT = 2
 
 
@@ -200,7 +200,7 @@ class Drive:
 
 
 def _checked(header: Any, arrays: Mapping[str, NDArray[Any]]) -> Drive:
-    """The Drive of a file's content; raises where it is none."""
+    """Returns the Drive in a file's content; raises an exception if the content is not a Drive."""
     if header["format"] != FORMAT:
         raise ValueError(f"its format is {header['format']}, not {FORMAT}")
     if header["ended"] not in get_args(Ended):

@@ -18,7 +18,7 @@ STUCK_TIME = 10.0  # s within which a car must move ... (SBFT)
 STUCK_WAY = 1.0  # m ... this far
 SLOWEST = 2.0  # m/s, mean speed below which the time runs out
 SPARE = 30.0  # s, added to that time
-ROUNDING = 1e-9  # s, of times that are multiples of a step
+ROUNDING = 1e-9  # s, rounding error of times that are multiples of a step
 
 _NAMES = tuple(COLUMNS)
 _SEEN = tuple(map(_NAMES.index, ("x", "y", "z", "speed", "s", "outside")))
@@ -33,7 +33,8 @@ class DriveMonitor:
 
         Args:
             road: the road.
-            world: tolerances; with ``lane_departure`` the front tyres are watched, too.
+            world: the World with its tolerances; if it sets ``lane_departure``, the front tyres are checked,
+                too.
             box: outline of the car.
             keep_driving: whether the car may leave its lane.
         """

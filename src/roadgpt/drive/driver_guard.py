@@ -5,7 +5,7 @@ All errors of a driver are raised as DriverError. A driver that hangs is stopped
 - In the main thread of a system with interval timers (Linux, macOS) it is stopped by a signal, which ends
   endless loops, sleeps and most waits.
 - Elsewhere (other threads, Windows) it is stopped by an exception that Python raises in the driver's thread
-  between two instructions. That ends endless loops, but a ``time.sleep(60)`` only after its 60 seconds.
+  between two instructions. That ends endless loops, but ``time.sleep(60)`` is only ended after 60 seconds.
 
 A driver that hangs inside compiled code which never returns to Python cannot be stopped from within its own
 process. Users' drivers that are given by a plug-in's name or as PATH.py:CLASS therefore run in a separate
@@ -40,7 +40,8 @@ class RemoteDriverError(DriverError):
 
 
 class _HungError(BaseException):
-    """Not an Exception, so that a driver that swallows those does not swallow this."""
+    """Raised in a driver that hangs. It is not an Exception, so that ``except Exception`` in the driver does
+    not catch it."""
 
 
 class DriverGuard:
@@ -92,7 +93,8 @@ class DriverGuard:
         radians, throttle and brake limited to 0..1.
 
         Raises:
-            DriverError: the driver raised an exception or hung, or its answer is not a command.
+            DriverError: the driver raised an exception or hung, its answer is not a command, or all its
+                answers together have taken longer than the limit for one drive.
         """
         begun = time.perf_counter()
         answer = self._timed(self._steer, (view,), self._one_answer, view.time)
@@ -105,7 +107,8 @@ class DriverGuard:
         return self._checked(answer, view.time)
 
     def _timed(self, method: Any, given: tuple[Any, ...], limit: float, at: float, late: str = "") -> Any:
-        """Calls a method of the driver, at time ``at`` of its drive, and stops it after ``limit`` seconds."""
+        """Calls a method of the driver, and stops it after ``limit`` seconds; ``at`` is the time in seconds
+        since the start of the drive."""
         self._due = time.perf_counter() + limit
         try:
             answer = method(*given)
@@ -147,8 +150,8 @@ class DriverGuard:
         )
 
     def _line(self, error: BaseException) -> str:
-        """Returns the innermost line of the driver's own file, or of any file if its own is not in the
-        traceback."""
+        """Returns as text the innermost line of the traceback that is in the driver's own file, or in any
+        file if the traceback does not contain the driver's own."""
         passed = traceback.extract_tb(error.__traceback__)
         frames = [frame for frame in passed if frame.filename != __file__]
         module = sys.modules.get(type(self._driver).__module__)
@@ -221,7 +224,7 @@ def _by_thread(guard: DriverGuard) -> Iterator[None]:
     finally:
         done.set()
         watcher.join()
-        # One that was sent but not yet raised must not surface in the caller's code.
+        # An exception that was sent but not yet raised must not surface in the caller's code.
         ctypes.pythonapi.PyThreadState_SetAsyncExc(asked, None)
 
 

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road
 
 STEP = 0.5  # m between stations
-BEYOND = 60.0  # m that the line runs straight on behind the road's end, for drivers that look ahead
-LEAST_STRETCH = 0.2  # of a metre that a metre of road leaves to the line on the inside of a bend
+BEYOND = 60.0  # m by which the line continues straight beyond the road's end, for drivers that look ahead
+LEAST_STRETCH = 0.2  # lower bound of the metres of line per metre of road, on the inside of a bend
 
 NEAREST = 1.0  # m, lower bound of the distance to the point that pure pursuit steers for
 LAG = 0.12  # s, response time of engine and brakes; the plan is looked up that far ahead
@@ -61,8 +61,8 @@ class DrivingLine:
     """Superelevation of the road in radians, positive where the surface falls to the right."""
 
     def place(self, s: float) -> tuple[int, float]:
-        """Returns the index of the last entry at or before ``s``, and the position of ``s`` between it and
-        the next, 0 to 1."""
+        """Returns the index of the last entry at or before ``s``, and the position of ``s`` between that
+        entry (0) and the next (1)."""
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:

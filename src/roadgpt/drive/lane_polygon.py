@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 STEP = 0.5  # m, longest quad; a chord of that length is 2 mm off a 14 m arc
-REACH = 8.0  # m along the road on both sides of the car in which its box can lie
+REACH = 8.0  # m along the road, ahead of and behind the car's station, within which its box must lie
 
 
 class LanePolygon(NamedTuple):
@@ -114,5 +114,5 @@ def share_outside(edges: FloatArray, step: float, box: FloatArray, s: float, scr
         if math.hypot(0.5 * (a[0] + b[2]) - mid_x, 0.5 * (a[1] + b[3]) - mid_y) <= far:
             inside = _with_overlap(inside, box, a, b, scratch)
     share = 1.0 - inside / whole
-    # A box wholly inside leaves rounding only.
+    # If the box is wholly inside, only a rounding error is left.
     return min(share, 1.0) if share > 1e-9 else 0.0

@@ -30,7 +30,7 @@ def driver_of(spec: str) -> Any:
     Raises:
         PartError: there is no driver plug-in of that name.
         UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit it.
+            the user did not permit RoadGPT to run the file.
         DriverError: the driver hung while it was created.
     """
     require_permission(spec)
@@ -55,7 +55,7 @@ def load_driver(spec: str) -> Any:
     Raises:
         PartError: there is no driver plug-in of that name.
         UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit it.
+            the user did not permit RoadGPT to run the file.
     """
     require_permission(spec)
     path, wanted = split_spec(spec)
@@ -80,7 +80,7 @@ def absolute_spec(spec: str, folder: Path) -> str:
 
 
 def _run(path: Path) -> ModuleType:
-    """Imports the user's file as a module; the file can import its neighbours."""
+    """Imports the user's file as a module; the file can import other files in its folder."""
     if not path.is_file():
         raise UsageError(f"there is no file {path}: check the path of your driver")
     whole = path.resolve()

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 POSE = ("x", "y", "heading", "pitch", "roll", "s")
 """Columns of a Drive that give the pose of the car."""
-ALONG = 9  # points along one side of the body, which follow bends to within 5 mm
+ALONG = 9  # points along one side of the body; the error in bends is then at most 5 mm
 SLACK = 0.1  # m, added to the extent across the lane that a bend and the car's roll cause
 LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 

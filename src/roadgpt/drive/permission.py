@@ -31,8 +31,8 @@ def permit(spec: str) -> None:
 
 
 def driver_from_file(spec: str, file: object) -> str:
-    """Returns the driver to use where a stored file names ``spec``. If the user has named a driver with the
-    same file name and class, it is that driver, otherwise ``spec``."""
+    """Returns the driver to use where a stored file names ``spec``: the driver that the user has named, if
+    its file name and class are the same, otherwise ``spec``."""
     if not split_spec(spec)[0] or CODE.given_as(_whole(spec)):
         return spec
     theirs = CODE.given_as(_short(spec))

@@ -3,7 +3,7 @@ computed at any point.
 
 Between stations, x, y and z of the centre line are cubic polynomials, and its direction has no jumps. The
 table continues straight beyond both ends. On a road with superelevation, the surface is rotated about the
-pitched centre line, as ``Road.at`` does it.
+pitched centre line, as in ``Road.at``.
 """
 
 import math
@@ -17,7 +17,7 @@ from roadgpt.drive.drive import FloatArray
 if TYPE_CHECKING:
     from roadgpt.road import Road
 
-STEP = 0.25  # m, desired distance of stations; the cubic is then within 1 micrometre of a 14 m arc
+STEP = 0.25  # m, desired distance between stations: keeps the cubic within 1 micrometre of a 14 m arc
 BEYOND = 30.0  # m of straight road in the table before the start and after the end
 
 # Columns of the table. The last two exist only on roads with superelevation.
@@ -106,8 +106,8 @@ def _cubic(u: float, step: float, p0: float, p1: float, d0: float, d1: float) ->
 def locate_on(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float, float, float, float]:
-    """Returns station, offset, height, slopes and heading of the road at the point (x, y), searching near
-    station s.
+    """Returns station, offset, height, slopes and heading of the road at the point (x, y). The search starts
+    at station s.
 
     The offset is measured along the surface. The slopes are those of the surface at this point, in the
     direction of the heading and to its left. The search uses Newton's method; if s is the station of the

@@ -14,7 +14,7 @@ CHORD = 0.002  # m, most distance between a polyline and the curve it stands for
 LONGEST = 10.0  # m between stations on a straight
 SHORTEST = 0.05  # m between stations; tighter bends are not followed more closely
 STEP = 0.5  # m between the places where the curvature is sampled
-BESIDE = 1e-3  # m before a step of a width, where a polyline has another point
+BESIDE = 1e-3  # m before a sudden change of a width, where a polyline gets an additional point
 PINCH = 0.95  # share of the radius; an offset line closer to the centre of its bend would fold
 
 
@@ -57,7 +57,8 @@ def normals(road: Road, s: Array) -> Array:
 
 
 def _sway(profile: Profile, s: Array) -> Array:
-    """Returns the greatest bend in 1/m of any edge that comes from widths and superelevation."""
+    """Returns, at each station, the greatest curvature in 1/m that changes of width and superelevation give
+    to any edge of a lane."""
     edges = np.stack([t for side in profile.lane_edges(s) for t in side])
     both = np.concatenate([edges, edges * np.sin(profile.superelevation(s))])
     return np.asarray(np.abs(np.gradient(np.gradient(both, s, axis=1), s, axis=1)).max(axis=0))
@@ -100,6 +101,7 @@ def lines(road: Road, s: Array, offsets: Sequence[ArrayLike]) -> list[Array]:
 
 
 def _widened(bend: Array) -> Array:
-    """Returns the greatest bend of each place and its neighbours: a curvature may jump between two places."""
+    """Returns, for each value, the greatest of it and its two neighbours, because the curvature may jump
+    between two stations."""
     padded = np.r_[bend[0], bend, bend[-1]]
     return np.asarray(np.maximum(np.maximum(padded[:-2], padded[2:]), bend))

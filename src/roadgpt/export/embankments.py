@@ -10,7 +10,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road
 from roadgpt.road.land import Land
 
-RUN = 1.7  # horizontal length of a slope over its height
+RUN = 1.7  # horizontal length of a slope, divided by its height
 FOOT = 0.4  # m by which a slope ends below the land
 OUTSIDE = 2.0  # m beyond the edge, where the height of the land is taken
 ACROSS = 7  # points of the edge at an end of the road

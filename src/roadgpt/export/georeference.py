@@ -55,7 +55,7 @@ def _meridian(latitude: Array) -> Array:
 
 
 def _footpoint(y: Array) -> Array:
-    """Returns the latitude in radians of the point of the meridian ``y`` metres north of the corner."""
+    """Returns the latitude in radians of the point ``y`` metres north of the corner on its meridian."""
     start = np.radians(LATITUDE)
     foot = start + y / SEMI_MAJOR
     for _ in range(ROUNDS):

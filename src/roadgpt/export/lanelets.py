@@ -14,8 +14,8 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import Marking
 
-LENGTH = 50.0  # m, of a section, about
-LEAST = 1.0  # m, of a section
+LENGTH = 50.0  # m, approximate length of a section
+LEAST = 1.0  # m, minimum length of a section
 DECIMALS = 4  # of a metre
 THIN = 0.05  # m; a lane that is nowhere wider in a section is left out of it
 

@@ -21,7 +21,8 @@ class GradeProfile:
         grades: The grade at each station as a ratio.
 
     Raises:
-        ValueError: The stations do not increase, or their number differs from the number of grades.
+        ValueError: There are fewer than two stations, the stations do not increase, or their number differs
+            from the number of grades.
     """
 
     z0: float
@@ -74,11 +75,11 @@ class CubicProfile:
         stations: Increasing stations in metres. Each cubic applies up to the next station, and the last
             cubic has no end.
         coefficients: The coefficients (a, b, c, d) of each cubic a + b u + c u^2 + d u^3, where ``u`` is the
-            distance from its station.
+            distance from the station at which the cubic begins.
 
     Raises:
-        ValueError: There is no station, the stations do not increase, or their number differs from the number
-            of cubics.
+        ValueError: There is no station, the stations do not increase, their number differs from the number
+            of cubics, or a cubic does not have four coefficients.
     """
 
     stations: tuple[float, ...]
@@ -110,8 +111,8 @@ class CubicProfile:
         return np.array(self.stations), np.array(self.coefficients)
 
     def _place(self, s: ArrayLike) -> tuple[Array, Array]:
-        """Returns the distance of each ``s`` from its station, and the coefficients ``(4, ...)`` of its
-        cubic.
+        """Returns, for each ``s``, the distance from the start of the cubic that applies there, and the
+        coefficients ``(4, ...)`` of that cubic.
         """
         s = np.asarray(s, float)
         start, table = self._table
@@ -127,7 +128,7 @@ class CubicProfile:
         return shifted(np.moveaxis(table, 0, -1), u)
 
     def extremes(self) -> tuple[float, float]:
-        """Returns the smallest and the largest height in metres from the first station to the last one."""
+        """Returns the smallest and the largest height in metres between the first and the last station."""
         found = [self.coefficients[-1][0]]
         for start, end, (a, b, c, d) in zip(
             self.stations, self.stations[1:], self.coefficients, strict=False
@@ -154,7 +155,7 @@ class CubicProfile:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Moves the origin of cubics forward by ``u``; returns their new coefficients ``(..., 4)``.
+    """Returns the coefficients ``(..., 4)`` of the same cubics with their origin moved forward by ``u``.
 
     The constant coefficient comes first.
     """

@@ -70,9 +70,10 @@ class PieceCurve:
         return np.array([piece.length for piece in self.pieces])
 
     def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
-        """Returns the distance into its piece and the index of that piece for each station.
+        """Returns, for each station, the distance in metres from the start of its piece, and that piece's
+        index.
 
-        Before the first and after the last station, the first and the last piece are extended.
+        The first piece is extended backwards and the last piece forwards, for stations outside the curve.
         """
         s = np.asarray(s, float)
         start = self._table[0]

@@ -16,11 +16,11 @@ from scipy.interpolate import splev, splprep
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
 
-MIN_NODES = 20  # of the interpolation, for however short a road
+MIN_NODES = 20  # least number of intervals between interpolated points, however short the road
 DECIMALS = 3  # the competition rounds interpolated points to millimetres
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
-_NEWTON = 8  # steps at most; two are enough where nodes are close together
-_CLOSE = 1e-4  # m, before a last Newton step
+_NEWTON = 8  # Newton steps at most; two are enough where nodes are close together
+_CLOSE = 1e-4  # m; a Newton step that starts with a smaller error is the last
 _SPANS = 4  # quadrature spans per spline interval: arc length good to a micrometre
 
 Tck = tuple[Array, list[Array], int]
@@ -52,7 +52,8 @@ def interpolate(points: ArrayLike, fewest: int = MIN_NODES, decimals: int = DECI
 
     Args:
         points: Control points ``(n, 2)`` or ``(n, 3)`` in metres, n >= 2.
-        fewest: The minimum number of interpolated points; it takes effect on short roads.
+        fewest: The minimum number of intervals between interpolated points; it takes effect on roads that
+            are shorter than this number of metres.
         decimals: The number of decimals to round to.
 
     Returns:
@@ -91,7 +92,10 @@ class SplineCurve:
 
     @cached_property
     def _arc(self) -> tuple[Array, Array]:
-        """Returns parameters and the arc length at each, by Gauss-Legendre quadrature over every span."""
+        """Returns values of the spline parameter and the arc length in metres up to each of them.
+
+        The arc length is computed by Gauss-Legendre quadrature over every span.
+        """
         u = np.unique(np.linspace(self.knots[:-1], self.knots[1:], _SPANS + 1).ravel())
         half = np.diff(u)[:, None] / 2
         inner = u[:-1, None] + half * (_NODES + 1)

@@ -44,8 +44,8 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
         return seen, {**info, "level": self.level}
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """Runs a step of the environment; at the end of an episode, counts whether the agent reached the
-        goal."""
+        """Runs a step of the environment. At the end of an episode, records whether the agent reached the
+        goal, and advances to the next description if it did so often enough."""
         seen, reward, terminated, truncated, info = self.env.step(action)
         if terminated or truncated:
             self._count(info.get("ended") == "goal")

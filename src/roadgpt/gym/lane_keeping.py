@@ -23,11 +23,11 @@ from roadgpt.run import Setup, brief_of, perform
 
 OBSERVATIONS = ("state", "camera")
 RENDER_MODES = ("rgb_array",)
-STEPS = 2  # control steps of 20 ms per step of the environment: 25 Hz, as a camera has it
+STEPS = 2  # control steps of 20 ms per step of the environment: 25 Hz, the rate of a camera
 FAILED, ARRIVED = -10.0, 10.0
-ASIDE = 0.1  # penalty per metre beside the middle of the lane, per step
+ASIDE = 0.1  # penalty per step for each metre between the car and the middle of the lane
 ROUGH = 0.02  # penalty per rad/s of the front wheels
-TRIES = 5  # seeds per road, before a description is given up
+TRIES = 5  # seeds that are tried for one road before an error is raised
 SEEDS = 2**31 - 1
 FILM = (640, 360)  # pixels of the image of render()
 
@@ -60,8 +60,8 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         observation: "state" or "camera".
         render_mode: "rgb_array" or None.
         world: values for fields of ``roadgpt.road.World``, such as ``{"friction": 0.6}``; all other fields
-            keep their defaults. If ``world`` has no friction, a surface in the description, such as "icy",
-            sets it.
+            keep their defaults. If ``world`` gives no friction, a road surface that the description names,
+            such as "icy", determines the friction.
         camera: camera of the observation; by default the one of the SBFT competition, with 320 x 160 pixels.
         reader: name of the plug-in that reads the descriptions.
 
@@ -132,7 +132,7 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         return self._seen(), {**self._info(), "understood": sentence(brief)}
 
     def _drawn(self, brief: Any) -> Road:
-        """Returns a valid road of the Brief, trying several seeds of this environment."""
+        """Returns a valid road for the Brief; tries up to ``TRIES`` seeds drawn by this environment."""
         said = ""
         for _ in range(TRIES):
             seed = int(self.np_random.integers(SEEDS))

@@ -8,7 +8,7 @@ from roadgpt.road import Road, World
 
 Floats = NDArray[np.float32]
 
-AHEAD = (2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0)  # m before the car
+AHEAD = (2.0, 5.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0)  # m ahead of the car
 LABELS = (
     "speed", "speed_limit", "offset", "heading_error", "yaw_rate", "steer", "vy", "friction",
     *(f"curvature_{metres:g}" for metres in AHEAD),
@@ -24,7 +24,7 @@ MOST = 20.0  # limit of each number after the division
 
 
 class Preview:
-    """Table of a road's curvature, grade, heading and offset of the lane's middle, for quick lookup."""
+    """Table of a road's curvature, grade and heading, and of the middle of its lane, for quick lookup."""
 
     def __init__(self, road: Road, world: World, step: float = 0.5) -> None:
         """Samples the road every ``step`` metres; beyond its end the road continues straight and level."""

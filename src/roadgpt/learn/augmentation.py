@@ -63,7 +63,9 @@ def _description(pair: Pair, other: Pair | None, rng: np.random.Generator) -> Pa
 
 
 def both_changes(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan of two change requests as one; None if one of them is a refusal."""
+    """Returns the text and plan of two change requests as one; None if a plan is a refusal, or both texts
+    together are too long.
+    """
     if any(pair.plan.startswith("!") for pair in (one, other)) or len(one.text + other.text) > LONGEST:
         return None
     joints = JOINTS[one.lang if one.lang in JOINTS else "en"]

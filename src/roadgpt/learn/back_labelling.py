@@ -70,8 +70,8 @@ STYLES = (
 
 
 def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
-    """Yields descriptions of measured roads with their plans, without end; the same seed gives the same
-    pairs.
+    """Yields an endless series of descriptions of measured roads with their plans; the same seed gives the
+    same pairs.
     """
     rng = np.random.default_rng([seed, 11])
     asked, place = pairs(seed, {"en": 1.0}), world or World()
@@ -106,7 +106,7 @@ def described(brief: Brief, rng: np.random.Generator) -> Pair | None:
 
 
 def _less(clause: Clause, kept: set[str]) -> Clause:
-    """Returns a clause with only those facts; level parts say so if slopes are mentioned."""
+    """Returns a clause with only the facts in ``kept``; with slopes, a level part is said to be level."""
     gone = {fact: None for fact in ("degrees", "radius", "slope", "length") if fact not in kept}
     return clause.model_copy(update={**gone, "incline": clause.incline if "slope" in kept else None})
 

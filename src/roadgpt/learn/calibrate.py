@@ -53,14 +53,14 @@ def normal_change(line: str) -> str:
 
 
 def _threshold(reader: ModelReader, honest: Sequence[Pair]) -> float:
-    """Returns the probability from which a refusal is accepted; hardly any valid description reaches it."""
+    """Returns the lowest probability at which a refusal is accepted; few valid descriptions reach it."""
     chances = [refusal(reader.networks, pair.text) for pair in honest]
     most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
     return round(min(max(most, 0.5), 0.95), 3)
 
 
 def _bare(line: str) -> str:
-    """Returns the normal form of a plan without what is beside the road, which older pairs do not label."""
+    """Returns the normal form of a plan without its ``beside(...)``, which older pairs do not have."""
     return plan(normal(read_plan(line)).model_copy(update={"beside": ()}))
 
 

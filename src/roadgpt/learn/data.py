@@ -30,15 +30,15 @@ SHARES = {
     "generated specs": 0.11,
 }
 KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
-"""Pairs with a share of their own, by how their families begin; the texts of ``free`` were written before
-anybody thought of labels.
+"""Beginnings of the names of families whose pairs have a share of their own in SHARES. The texts of ``free``
+were written without thought of their plans, which were added later.
 """
 MENTIONS = 0.15
 """Share of descriptions to which a mention or denial of something beside the road is added."""
 TALK = 0.07
-"""Share of all pairs to which talk is added that asks for nothing."""
+"""Share of all pairs to which talk that asks for nothing, such as a greeting, is added."""
 CAUSED = ("!contradiction", "!impossible")
-"""Refusals that have a cause; without one, the cause is not labelled."""
+"""Refusals that have a cause; a plan that consists of only this word does not label the cause."""
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 
@@ -76,7 +76,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
 def _reslotted(
     words: list[str], tokens: list[str], slots: Sequence[NumberSlot], rng: np.random.Generator
 ) -> tuple[list[str], list[str]]:
-    """Renumbers the slots at random, still in rising order."""
+    """Gives the slots random new numbers, in the same order as before."""
     chosen = np.sort(rng.permutation(SLOTS)[: len(slots)])
     names = {slot_name(index): slot_name(int(new)) for index, new in enumerate(chosen)}
     written = {SLOT_TOKENS[index]: SLOT_TOKENS[int(new)] for index, new in enumerate(chosen)}
@@ -84,8 +84,8 @@ def _reslotted(
 
 
 def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Example]:
-    """Yields an endless series of examples: a fixed mixture of variations of the hand-written pairs and of
-    generated ones.
+    """Yields an endless series of examples: a fixed mixture of generated pairs and of variations of the
+    hand-written pairs.
     """
     streams = _streams(seed, hand)
     names = [name for name in SHARES if name in streams]
@@ -105,7 +105,7 @@ def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Ex
 
 
 def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
-    """Returns the series of pairs by name; without hand-written pairs of a kind, theirs are missing."""
+    """Returns the series of pairs by name; kinds of which there are no hand-written pairs have no series."""
     found = {
         "generated": pairs(seed),
         "generated contrasts": contrasted(seed),

@@ -68,8 +68,8 @@ def _work(
 
 
 def _not_alone(parent: int) -> None:
-    """Ends a worker whose parent was killed; it would otherwise run on, and write beside the next
-    training.
+    """Ends this worker if its parent was killed; otherwise the worker would run on and write into the folder
+    of the next training.
     """
     if os.getppid() != parent:
         raise SystemExit(1)

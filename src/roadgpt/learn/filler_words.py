@@ -12,13 +12,13 @@ from roadgpt.brief.readers.model.used_words import NEGATORS
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.generator import Pair
 
-OFTEN = 10  # pairs with a word, from which it may be a filler
-LEAST = 4  # pairs with a word and a token, below which they count as unrelated
-SHARE = 0.3  # of the pairs with a word that have the token, below which they count as unrelated
+OFTEN = 10  # a word that occurs in at least this many pairs may be a filler
+LEAST = 4  # a word and a token are unrelated if fewer pairs than this have both
+SHARE = 0.3  # a word and a token are unrelated if at most this share of the word's pairs has the token
 LIFT = 2.5
 """How many times more often than by chance a word must occur with a token of plans to have a meaning."""
 COMMON = frozenset({";", "|", ")", ":", ",", "turn", "x"})
-"""Tokens that say nothing of what the words mean."""
+"""Tokens that say nothing about what the words mean."""
 
 
 def filler_words(pairs: Iterable[Pair]) -> list[str]:

@@ -24,7 +24,8 @@ COMPOSED = 0.6
 """Share of the English pairs that come from ``compositions`` instead of a grammar."""
 SHARES = {"en": 0.62, "de": 0.10, "fr": 0.10, "es": 0.09, "it": 0.09}
 EVEN = {"en": 0.44, "de": 0.14, "fr": 0.14, "es": 0.14, "it": 0.14}
-"""Shares of the languages in pairs that are hard in each of them: contrasts and changes."""
+"""Shares of the languages in pairs that are hard to read in every language: contrasts, detailed descriptions
+and changes."""
 WISH = re.compile(r"\|\s*(?:(?:starts|ends|beside)\([^()]*\)|[^\s;|]+)")
 REFUSAL = re.compile(r"![a-z]+(?: +[a-z_]+)*")
 KIND = re.compile(

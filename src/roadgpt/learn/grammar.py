@@ -205,8 +205,8 @@ def grammar_of(language: str, phrases: str = "") -> Grammar:
 
     Args:
         language: code of the language.
-        phrases: empty for descriptions, "contrasts" for descriptions with further symbols, "changes" for
-            change requests.
+        phrases: empty for descriptions, "contrasts" or "specs" for descriptions with further symbols,
+            "changes" for change requests.
 
     Raises:
         LearnError: there are no phrases in this language.

@@ -1,7 +1,7 @@
 """Makes trained weights fit a larger network, so that training goes on instead of beginning anew.
 
 New tokens get small random embeddings. A new decoder layer is a copy of the layer before it, but its outputs
-are zero. So the larger network first writes what the smaller one wrote.
+are zero. So before it is trained further, the larger network writes what the smaller one wrote.
 """
 
 import re
@@ -14,7 +14,7 @@ from roadgpt.errors import LearnError
 
 LAYER = re.compile(r"decoder\.(\d+)\.(.+)")
 SILENT = ("own.out.", "across.out.", "narrow.")
-"""The outputs of a decoder layer: those that are zero in a new one."""
+"""How the names of the output weights of a decoder layer begin; these weights are zero in a new layer."""
 SPREAD = 0.02
 
 

@@ -14,22 +14,25 @@ from roadgpt.learn.noise import tidy
 Phrases = Mapping[str, Mapping[str, Mapping[str, Sequence[str]]]]
 WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(encoding="utf-8"))
 SAID: Phrases = WORDS["said"]
-"""By language, then by names: phrases that can stand "before" and "after" a description."""
+"""Phrases that can stand "before" or "after" a description, by language and then by the names that plans list
+for them."""
 DENIED: Phrases = WORDS["denied"]
 TALK: Mapping[str, Mapping[str, Sequence[str]]] = json.loads(
     (files("roadgpt.learn") / "words" / "talk.json").read_text(encoding="utf-8")
 )
-"""By language: greetings, reasons and the like that can stand "before" and "after" a text."""
+"""Greetings, reasons and the like that can stand "before" or "after" a text, by language."""
 NAMED = re.compile(r" ?beside\(([^()]*)\)")
 MOST_NAMES = 4
 BEFORE = 0.25
 NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
-"""The range of the number that a phrase for each of these names can have."""
+"""The range of the number in a phrase for each of these names; for all other names it is 2 to 9."""
 
 
 def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with a mention ("in the rain") or a denial ("no traffic") added; None if the
-    plan is a refusal, or names the thing already.
+    """Returns the text and plan with a mention ("in the rain") or a denial ("no traffic") added.
+
+    Returns None if the plan is a refusal, names the thing already or would list too many names, or if there
+    are no phrases in the language.
     """
     is_said = rng.random() < 0.7
     table = (SAID if is_said else DENIED).get(language)

@@ -20,7 +20,7 @@ BEYOND: dict[str, list[str]] = WORDS["beyond"]
 
 
 CAUSES = {"turning": "turns", "many": "turns", "straight": "turns", "left": "sides", "right": "sides"}
-"""The cause of a contradiction with each requirement; of the others it is the slope."""
+"""The cause of a contradiction, by the requirement that is contradicted; for all others it is the slope."""
 BEYOND_BY = {
     "{grade}": "grade", "{far}": "length", "{near}": "radius", "{much}": "turns", "vertical": "grade",
     "loop": "loop", "circle": "degrees",
@@ -74,7 +74,7 @@ def _with(text: str, wish: str, language: str, rng: np.random.Generator) -> str:
 
 
 def _holds(plan: str) -> list[str]:
-    """Returns what a plan requires that can be contradicted."""
+    """Returns those requirements of a plan that can be contradicted, as keys of CONFLICTS."""
     if plan.startswith("!"):
         return []
     clauses, _, wishes = plan.partition("|")

@@ -50,7 +50,9 @@ def noisy(text: str, language: str, rng: np.random.Generator) -> str:
 
 
 def _slip(text: str, rng: np.random.Generator) -> str:
-    """Makes one typing error: two letters swapped, one dropped, doubled, or replaced by its neighbour key."""
+    """Makes one typing error: two letters swapped, one dropped, doubled or hit on a key beside it, or a space
+    dropped.
+    """
     places = [m.start() for m in re.finditer(r"(?<=[a-zà-ÿ])[a-zà-ÿ]", text)]
     if not places:
         return text

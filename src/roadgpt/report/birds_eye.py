@@ -29,7 +29,7 @@ THESIS = Frame(0.0, 220.0, 0.0, 220.0)
 SIDE = 6.6  # inches, the longer side of what shows the road
 LEFT, BOTTOM, BAR, KEY = 0.75, 0.62, 1.15, 0.22  # inches
 MARGIN, LEAST = 16.0, 60.0  # m, around the road and across the picture
-SLOWEST = 10.0  # km/h; the colours span at least so much
+SLOWEST = 10.0  # km/h; the scale of colours reaches at least this speed
 
 RIM = 8.0  # points, width of the rim around the path
 KEY_SIZE, FOOT = 9, 0.14  # points; inches above the foot of the figure
@@ -168,7 +168,7 @@ def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
 
 
 def _draw_key(figure: Figure, left: float, found: list[Severity]) -> None:
-    """Writes what the colours of the rim mean at the foot of a figure, from ``left`` inches on."""
+    """Draws the key to the rim's colours at the foot of a figure, ``left`` inches from its left border."""
     wide, high = figure.get_size_inches()
     for name in OUTSIDE:
         if name not in found:

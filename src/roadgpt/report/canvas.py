@@ -34,11 +34,11 @@ UNDATED: Mapping[str, Mapping[str, None]] = {
 SAVING: dict[Any, Any] = {"svg.hashsalt": "roadgpt", "svg.fonttype": "path", "pdf.fonttype": 42}
 INK, SOFT, FAINT = "#1b1e23", "#5f6670", "#d9dce1"
 
-# Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol always stands beside.
+# Okabe and Ito's colours, which colour-blind people can distinguish; a word or a symbol is always shown, too.
 BLUE, ORANGE, GREEN, VERMILLION, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
 YELLOW = "#d0bf00"
 SEVERE: dict[Severity, str] = {"inside": GREEN, "partly outside": YELLOW, "mostly outside": ORANGE}
-"""Colours of how far outside its lane the car was."""
+"""Colours that show how far outside its lane the car was."""
 OUTCOMES = {
     "PASS": GREEN,
     **{f"PASS ({name})": colour for name, colour in SEVERE.items() if name != "inside"},
@@ -48,7 +48,7 @@ OUTCOMES = {
     "VALID": BLUE,
 }
 LETTERS = {YELLOW: INK, ORANGE: INK}
-"""Colour of text on a light colour; on all others text is white."""
+"""Colour of text on each light colour; text on all other colours is white."""
 DARKER = {YELLOW: "#7d7100", ORANGE: "#9a6400"}
 """Darker variants of light colours, for text on white."""
 

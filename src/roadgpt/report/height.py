@@ -63,7 +63,7 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     axes.set_axisbelow(True)
     low, high = axes.get_ylim()
     axes.fill_between(s, z, low, color=EARTH, lw=0)
-    # on the thesis' axes a level road lies on the frame: over it, it is seen
+    # on the thesis' axes a level road lies on the frame; it is drawn over the frame to be visible
     (surface,) = axes.plot(s, z, color=SURFACE, lw=2.4, solid_capstyle="round", zorder=4)
     surface.set_clip_box(axes.bbox.padded(OVER_THE_FRAME))
     _slopes(axes, run, s, z)
@@ -100,7 +100,7 @@ def _thesis(run: Run, z: Array, top: float) -> tuple[Figure, Axes, Array, str]:
 
 
 def _slopes(axes: Axes, run: Run, s: Array, z: Array) -> None:
-    """Writes grades in percent: of stretches of constant grade, and the steepest of others."""
+    """Labels stretches of constant grade with their grade in percent, other stretches with the steepest."""
     assert run.road is not None
     grade = run.road.grade(s)
     left, right = axes.get_xlim()

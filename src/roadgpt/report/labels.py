@@ -88,7 +88,7 @@ class Labels:
         for reach in REACHES:
             for angle in np.arange(WAYS) * (2 * np.pi / WAYS):
                 way = np.array([np.cos(angle), np.sin(angle)])
-                # the label's near side, not its middle, lies so far away
+                # ``reach`` is the distance to the near side of the label, not to its middle
                 x = place[0] + way[0] * (reach * self.per_inch + wide / 2)
                 y = place[1] + way[1] * (reach * self.per_inch + high / 2)
                 cost = reach + (0.0 if away is None else 0.6 * (1 - float(way @ away)))
@@ -108,7 +108,7 @@ class Labels:
         return cost + 20.0 * (x0 < frame.x0 or x1 > frame.x1 or y0 < frame.y0 or y1 > frame.y1)
 
     def _crossing(self, place: tuple[float, float], x: float, y: float, wide: float, high: float) -> float:
-        """Returns the cost of lines that run from a place to a label through another label."""
+        """Returns the cost if a label's line crosses other labels, or if their lines cross the label."""
         own = _box(x, y, wide, high)
         line = _leader(place, x, y, own)
         through = sum(_holds(box, line) for box in self._boxes)
@@ -134,7 +134,7 @@ def _holds(box: Box, points: Array) -> bool:
 
 
 def _offers(frame: Frame, size: float, wide: float, high: float, gap: float) -> Iterator[tuple[Box, bool]]:
-    """Yields boxes beside borders in view, from their middle outwards, and whether the text is vertical."""
+    """Yields boxes beside each visible border, middle first, and whether their text is vertical."""
     for y in (-gap - high, size + gap):
         if frame.y0 < y and y + high < frame.y1:
             for x in _along(max(frame.x0, 0.0) + wide / 2, min(frame.x1, size) - wide / 2):

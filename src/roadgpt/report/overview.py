@@ -40,7 +40,7 @@ PER_PAGE, MOST_PAGES = 100, 10
 WIDEST = 11.0  # inches
 LARGEST, TITLE, GAP = 2.4, 0.24, 0.12  # inches: of a map, over it, and between maps
 HEADER = 1.12  # inches
-KEY = 0.92  # inches, down to what the signs mean
+KEY = 0.92  # inches, from the top down to the key to the signs
 PLACE, OUTSIDE, SHARE = (FIELDS.index(name) for name in ("pos", "is_oob", "oob_percentage"))
 STYLES = {"INVALID": (0, (3, 1.5)), "ERROR": (0, (1, 1))}
 
@@ -66,13 +66,14 @@ class Entry:
 def overview(folder: Path | str, formats: Sequence[Format] = PNG) -> list[Path]:
     """Draws ``overview.png`` into a folder of runs, and returns the paths of the pictures.
 
-    After 100 roads it continues in ``overview-2.png`` and so on; only the first 1,000 roads are drawn.
+    Each picture shows up to 100 roads; the second picture is ``overview-2.png``, and so on. Only the first
+    1,000 roads are drawn.
 
-    It reads the files ``test.NNNN.json``, so it also works for folders that the SBFT competition's tools
-    wrote.
+    The roads are read from the files ``test.NNNN.json``, so the function also works for folders that the
+    SBFT competition's tools wrote.
 
     Raises:
-        UsageError: there is no test in the folder, or one cannot be read.
+        UsageError: there is no test in the folder, or the file of a test or of the campaign cannot be read.
     """
     drawn: list[Path] = []
     for number, figure in enumerate(pages(folder), 1):
@@ -85,7 +86,7 @@ def pages(folder: Path | str) -> Iterator[Figure]:
     """Yields the pages of ``overview`` as figures.
 
     Raises:
-        UsageError: there is no test in the folder, or one cannot be read.
+        UsageError: there is no test in the folder, or the file of a test or of the campaign cannot be read.
     """
     folder = Path(folder)
     names = sorted(folder.glob("test.*.json"))
@@ -158,7 +159,7 @@ def page_of(entries: list[Entry], about: tuple[str, str], part: str, size: float
         size: side of the map, metres.
     """
     count = len(entries)
-    # so many that the page has about the shape of a sheet of paper
+    # a number of columns that gives the page about the shape of a sheet of paper
     columns = min(10, max(1, count if count <= 4 else int(np.ceil(np.sqrt(count * 1.05)))))
     rows = -(-count // columns)
     cell = min(LARGEST, (WIDEST - 2 * MARGIN) / columns - GAP)
@@ -196,7 +197,7 @@ def _header(axes: Axes, about: tuple[str, str], part: str, counts: Counter[str],
 
 
 def _key(axes: Axes, entries: list[Entry]) -> None:
-    """Writes what the signs on the maps mean: where a road starts, and where the car failed."""
+    """Draws the key to the signs on the maps: where a road starts, and where the car failed."""
     x = MARGIN + 0.06
     if any(len(entry.points) for entry in entries):
         axes.scatter(x, KEY, s=20, c=INK, marker="o", lw=0)

@@ -73,7 +73,7 @@ def _heights(run: Run) -> Array:
 
 
 def _square(run: Run, side: float) -> Frame:
-    """Returns a square frame with a side in metres around the middle of a road."""
+    """Returns a square frame with sides of ``side`` metres, centred on a road."""
     points = _plan(run)
     x, y = (points.min(axis=0) + points.max(axis=0)) / 2
     return Frame(x - side / 2, x + side / 2, y - side / 2, y + side / 2)
@@ -103,7 +103,7 @@ def _above(axes: Axes, run: Run, frame: Frame) -> None:
 
 
 def _beside(axes: Axes, run: Run, shown: tuple[float, float], scale: Scale) -> None:
-    """Draws heights over the distance; ``shown`` is length and span of the axes, the same for both roads."""
+    """Draws heights over the distance; ``shown`` is the length and the height that the axes cover, metres."""
     assert run.road is not None
     s, z = stations_of(run.road), _heights(run)
     long, span = shown

@@ -63,8 +63,8 @@ def places_of(run: Run) -> list[MarkedPlace]:
     """Returns the places to mark.
 
     For a failed drive, this is the place of the failure. For a drive that passed, it is the place where the
-    largest share of the car was outside its lane; there is none if it stayed inside. For an invalid road,
-    these are the places of the findings, at most three.
+    largest share of the car was outside its lane; if the car stayed inside, there is no such place. For an
+    invalid road, these are the places of the findings, at most three.
     """
     verdict = run.verdict
     if verdict is not None and verdict.cause is not None and verdict.at_xy is not None:

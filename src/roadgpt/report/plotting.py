@@ -19,7 +19,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
     """Draws a road from above, to scale, on matplotlib axes, and returns the axes.
 
     For a Run, also draws the drive, coloured by speed, and marks where the car failed, where the largest
-    share of it was outside its lane, or where the road breaks a rule.
+    share of the car was outside its lane, or where the road breaks a rule.
     Several roads may be drawn on the same axes. Style, title and size of the figure are left to the caller.
 
     Args:
@@ -29,7 +29,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
             World.
 
     Raises:
-        UsageError: ``what`` is none of these, or is a Run without a road.
+        UsageError: ``what`` is not a Road, a Design or a Run, or is a Run without a road.
     """
     road, world = _road_of(what, world)
     if ax is None:

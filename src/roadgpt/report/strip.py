@@ -75,7 +75,7 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
 
 
 def _fill(axes: Axes, s: Array, values: Array, limit: float) -> float:
-    """Draws signed values with their limit in view; returns how far the axis reaches."""
+    """Draws signed values so that their limit is visible; returns the largest value on the axis."""
     reach = max(1.35 * limit, 1.1 * float(np.abs(values).max()))
     axes.set_ylim(-reach, reach)
     axes.fill_between(s, values, 0, where=values >= 0, color=BLUE, alpha=0.35, lw=0)

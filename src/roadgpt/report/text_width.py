@@ -4,7 +4,7 @@ from functools import cache
 
 from matplotlib.font_manager import FontProperties, findfont, get_font
 
-UNKNOWN = "□"  # for a letter that the font has not
+UNKNOWN = "□"  # in place of a letter that the font lacks
 POINTS = 72.0  # per inch
 ELLIPSIS = " …"
 

@@ -2,7 +2,7 @@
 
 A Design is a human-readable list of segments, written by a designer plug-in. A Road is 3-D geometry. Its
 method ``road.at(s, t)`` returns a point: the station ``s`` is the distance along the centre line, and the
-offset ``t`` is the distance from it, positive to the left.
+offset ``t`` is the distance from the centre line, positive to the left.
 """
 
 from importlib import import_module
@@ -48,7 +48,7 @@ _LATER = {
     "read_opendrive": "opendrive",
     "read_road": "source",
 }
-"""Names whose modules are loaded when they are first used: most commands read no road files."""
+"""Names whose modules are loaded when they are first used, because most commands read no road files."""
 
 
 def __getattr__(name: str) -> Any:

@@ -29,9 +29,9 @@ EQUAL = 1e-9  # 1/m; curvatures closer than this need no clothoid between them
 
 
 class _TurnSpec(NamedTuple):
-    """What a segment asks of its turn.
+    """The turn that a segment specifies; lengths are in metres.
 
-    Angle and curvatures have no sign; ``hand`` is 1 to the left, -1 to the right.
+    ``turn`` is the absolute angle in radians; ``hand`` is 1 for a left turn, -1 for a right turn.
     """
 
     distance: float
@@ -92,7 +92,7 @@ def _same_hand(one: _TurnSpec | None, other: _TurnSpec | None) -> bool:
 
 
 def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
-    """Returns the layout whose lengths add up to the distance and whose curvature adds up to the turn."""
+    """Returns the layout whose lengths add up to the segment's distance and which turns by its angle."""
     if bend.radius and 0 in (entry, exit_):
         kept = _with_radius(bend, 1 / bend.radius, entry, exit_)
         if kept:
@@ -103,7 +103,10 @@ def _solve(bend: _TurnSpec, entry: float, exit_: float) -> _TurnLayout:
 
 
 def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _TurnLayout | None:
-    """Returns the layout with this curvature; None if the distance is too short for it."""
+    """Returns the layout whose arc has the curvature ``own``.
+
+    Returns None if the segment's distance is too short for it, or if the curvature at a joint is larger.
+    """
     first = bend.ramp if entry < own - EQUAL else 0.0
     last = bend.ramp if exit_ < own - EQUAL else 0.0
     turned = first * (own + entry) / 2 + last * (own + exit_) / 2
@@ -115,7 +118,7 @@ def _with_radius(bend: _TurnSpec, own: float, entry: float, exit_: float) -> _Tu
 
 
 def _pieces(bend: _TurnSpec, entry: float, exit_: float) -> list[Piece]:
-    """Returns clothoid, arc and clothoid; the remaining length lies at the ends where the curvature is 0."""
+    """Returns clothoid, arc and clothoid; the remaining length is straight, at ends with a curvature of 0."""
     shape = _solve(bend, entry, exit_)
     free = (entry == 0) + (exit_ == 0)
     k, k_in, k_out = bend.hand * shape.own, bend.hand * entry, bend.hand * exit_

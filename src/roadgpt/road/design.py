@@ -22,7 +22,7 @@ MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 500
 REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # of a segment in a file
-FITS = 0.99  # share of the written vertical radius that may be built without a remark
+FITS = 0.99  # a remark is made if less than this share of a given vertical radius can be built
 KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
@@ -49,8 +49,8 @@ class Segment(_Frozen):
     transition: Length | None = None
     """Length in metres of the transition curve (clothoid) at either end of a turn."""
     vertical_radius: Length | None = None
-    """Radius in metres of the vertical curve at the start of the segment, which joins its grade to that of
-    the previous segment.
+    """Radius in metres of the vertical curve at the start of the segment. This curve joins the grade of the
+    previous segment to the grade of this one.
     """
 
 
@@ -89,7 +89,7 @@ def _plain(value: Any) -> Any:
 
 
 def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
-    """Reads a dictionary in the format of the RoadGPT thesis; returns the Design and a list of remarks.
+    """Reads a dictionary in the format of the RoadGPT thesis; returns the Design and remarks.
 
     Each remark is a sentence about a contradiction in the data or an unusual value.
 
@@ -193,7 +193,7 @@ def _no_truths(what: str, data: Mapping[str, Any]) -> None:
 
 
 def _first(error: ValidationError) -> str:
-    """Returns the first complaint as 'field: what to do'."""
+    """Returns the first error as 'field: what to do'."""
     problem = error.errors()[0]
     place = ".".join(str(part) for part in problem["loc"])
     said = _advice(problem["type"], problem.get("ctx", {})) or str(problem["msg"])
@@ -201,7 +201,7 @@ def _first(error: ValidationError) -> str:
 
 
 def _advice(kind: str, bounds: Mapping[str, Any]) -> str | None:
-    """Returns what to do about a complaint of pydantic's; None where pydantic's own words are good enough."""
+    """Returns what to do about an error that pydantic found; None if pydantic's own message will do."""
     known = {
         "missing": "is missing; add it",
         "extra_forbidden": "is not a field of a design; remove it",

@@ -76,10 +76,10 @@ def vertical_curves(
 
 
 def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, other: int | None) -> float:
-    """Returns the length in metres that curve ``n`` may take of the grade at one of its ends."""
+    """Returns the length in metres that half of curve ``n`` may take up of the slope at one of its ends."""
     if other is None:
         return room
-    if not own[other]:  # it keeps to its own segment
+    if not own[other]:  # a curve without a given radius keeps its length
         return room - wants[other]
     return room * wants[n] / max(wants[n] + wants[other], 1e-9)
 

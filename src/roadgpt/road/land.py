@@ -16,8 +16,8 @@ from roadgpt.road.world import World
 MARGIN = 130.0  # m around the road
 FINEST, CELLS = 4.0, 160  # m, and the most cells along the longer side
 FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin; these rows and columns reach the horizon
-BELOW = 0.35  # m by which the land stays below the road at least
-LEAST = 40.0  # m across
+BELOW = 0.35  # m; the land near the road is at least this far below it
+LEAST = 40.0  # m, least side of the area without the margin
 LONGEST_STEP = 2.0  # m along the road
 
 
@@ -81,7 +81,10 @@ def _lowest(road: Road, profile: Profile, line: Array) -> Array:
 
 
 def _relief(line: Array, x: Array, y: Array, cell: float, reach: float) -> tuple[Array, Array]:
-    """Returns heights a little below the road near it, and smooth land with hills beyond."""
+    """Returns the heights, and the distances ``away`` as in ``Land``, each of shape (rows, columns).
+
+    Near the road the heights are a little below it; farther away they form smooth land with hills.
+    """
     lowest = np.full((len(y), len(x)), np.inf)
     i = np.rint((line[:, 0] - x[0]) / cell).astype(int)
     j = np.rint((line[:, 1] - y[0]) / cell).astype(int)
@@ -109,7 +112,7 @@ def _hills(x: Array, y: Array) -> Array:
 
 
 def _widened(x: Array, y: Array, heights: Array, away: Array) -> tuple[Array, Array, Array, Array]:
-    """Adds far rows and columns on all sides, which descend to the mean height."""
+    """Adds far rows and columns on all sides, which gradually reach 4 m below the mean height."""
     far = np.array(FAR)
     pad = len(far)
     mean = float(heights.mean())

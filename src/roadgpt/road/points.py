@@ -27,7 +27,7 @@ KEYS = (
     "polyline",
     "coordinates",
 )
-INSIDE = ("m1", "road", "test", "seed")  # keys whose value may hold one of them
+INSIDE = ("m1", "road", "test", "seed")  # keys whose value may be an object with one of KEYS
 SUFFIXES = (".csv", ".tsv")
 DELIMITERS = (";", "\t", ",")
 X = ("x", "x_m", "pos_x", "east", "easting")
@@ -76,7 +76,7 @@ def plain(points: list[Any]) -> list[Any]:
 
 
 def _number(point: dict[str, Any]) -> float:
-    """Returns the position of a point in its road, where the point states it; else 0."""
+    """Returns the sequence number of a point; 0 if the point has none."""
     number = point.get("sequenceNumber", 0)
     return float(number) if isinstance(number, (int, float)) else 0.0
 
@@ -137,9 +137,9 @@ def _cell(row: list[str], column: int, number: int, delimiter: str | None) -> fl
 
 
 def _value(text: str, delimiter: str | None) -> float | None:
-    """Returns a number, or None where the text is none.
+    """Returns the finite number that a text states; None if the text is not a finite number.
 
-    A decimal comma is accepted where the comma does not separate cells.
+    A decimal comma is accepted if cells are separated by semicolons or tabs.
     """
     try:
         value = float(text.replace(",", ".") if delimiter in (";", "\t") else text)

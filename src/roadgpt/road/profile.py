@@ -138,12 +138,18 @@ class Profile:
 
     @cached_property
     def paved_reach(self) -> float:
-        """The largest distance in metres between the centre line and an edge of the carriageway."""
+        """The largest distance in metres between the centre line and an edge of the carriageway.
+
+        If the widths of several lanes vary, it is an upper bound.
+        """
         return max(_reach(_driving(self.left)), _reach(_driving(self.right)))
 
     @cached_property
     def reach(self) -> float:
-        """The largest distance in metres between the centre line and the outer edge of a shoulder."""
+        """The largest distance in metres between the centre line and the outer edge of a shoulder.
+
+        If the widths of several lanes or shoulders vary, it is an upper bound.
+        """
         return max(_reach(self.left), _reach(self.right))
 
     def width(self, s: ArrayLike) -> Array:
@@ -205,7 +211,9 @@ class Profile:
         return [PaintedLine(marking, edges) for marking, edges in painted if marking != "none"]
 
     def _painted_boundaries(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
-        """Returns the edges of the marking of each boundary; both are the boundary if it has none."""
+        """Returns the marking of each boundary and the marking's edges; both lie on the boundary if it has no
+        marking.
+        """
         rows = self.boundaries(s)
         sides = [1, *[0] * (len(rows) - 2), -1]
         return [
@@ -269,5 +277,5 @@ def _extremes(width: Width) -> tuple[float, float]:
 
 
 def _reach(lanes: Sequence[Lane]) -> float:
-    """Returns the largest distance to the outer edge of the last lane; exact if one width varies."""
+    """Returns the largest distance to the last lane's outer edge; an upper bound if several widths vary."""
     return sum(_extremes(lane.width)[1] for lane in lanes)

@@ -23,7 +23,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road.profile import Profile
 from roadgpt.road.profile_json import profile_from_json, profile_to_json
 
-CONTROL_SPACING = 2.0  # m: closer than this, SBFT's spline keeps our radii (14.8 m nominal is accepted)
+CONTROL_SPACING = 2.0  # m, so that SBFT's spline keeps the designed radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
 LONGEST = 50_000.0  # m, of a road
 FARTHEST = 1_000_000.0  # m, of a point from the origin
@@ -129,7 +129,9 @@ class Road:
         return np.stack([x, y, z] if back is None else [x - back * cos, y - back * sin, z], axis=-1)
 
     def _banked(self, s: Array, t: Array) -> tuple[Array, Array, Array]:
-        """Returns how far points on the inclined surface are to the left, up and back of the centre line."""
+        """Returns how far, in metres, points on the inclined surface lie to the left of, above and behind the
+        points of the centre line at ``s``.
+        """
         assert self.profile is not None
         angle, pitch = self.profile.superelevation(s), np.arctan(self.elevation.grade(s))
         up = t * np.sin(angle)

@@ -11,7 +11,7 @@ from roadgpt.road.builder import build
 from roadgpt.road.design import MAX_SEGMENTS, Design, Direction, Segment
 from roadgpt.road.nodes import STUB
 
-GROWS = 2  # segments until the grade is that of the road
+GROWS = 2  # segments with a reduced grade after the stub
 HOP = 2.0  # m; a spline through points this dense keeps a radius of 14.8 m above SBFT's least, 14.33 m
 
 

@@ -1,4 +1,4 @@
-"""Reads roads from files: RoadGPT's road files and designs, tests of other tools, tables, OpenDRIVE."""
+"""Reads roads from files: RoadGPT's road files and designs, tests of other tools, tables and OpenDRIVE."""
 
 import math
 from pathlib import Path
@@ -17,7 +17,7 @@ from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 from roadgpt.road.road import Road
 from roadgpt.road.world import World
 
-ASTRAY = 1.5  # m between a control point and the nearest of the road's points, a metre apart
+ASTRAY = 1.5  # m; a control point that is farther from points of the road, 1 m apart, is not on the road
 OPENDRIVE = ".xodr"
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
@@ -75,7 +75,9 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
 
 
 def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
-    """Returns what an OpenDRIVE file says about lanes and limits that differs from the default World."""
+    """Returns a remark on the lanes, speed limit and friction of an OpenDRIVE file that differ from those of
+    the default World; no remark if none differ.
+    """
     usual, own = World(), found.world(World())
     speed, friction = own.limits.speed_limit, own.site.friction
     told = {
@@ -110,7 +112,7 @@ def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
 
 
 def _has_widths(nodes: Any) -> bool:
-    """Returns whether these are points of another tool."""
+    """Returns whether these are points in a format of another tool, for example with widths."""
     return isinstance(nodes, list) and plain(nodes) != nodes
 
 
@@ -121,7 +123,7 @@ def _is_test(data: dict[str, Any]) -> bool:
 def _test_road(data: dict[str, Any]) -> tuple[Road, tuple[str, ...]]:
     """Returns the road of an SBFT test.
 
-    It has heights where the interpolated points follow the control points.
+    The road has heights only if the test has interpolated points in 3-D that follow the control points.
     """
     dense, control = data.get("interpolated_points"), data.get("road_points")
     if not (isinstance(dense, list) and dense and isinstance(dense[0], list) and len(dense[0]) == 3):

@@ -24,7 +24,7 @@ from roadgpt.road.superelevation import superelevation_for
 from roadgpt.road.world import World
 
 GRAVITY = 9.81  # m/s^2
-SLOWEST = 1.0  # m/s: no bend is planned slower, so that a car never stops before one
+SLOWEST = 1.0  # m/s: no planned speed is lower, so that a car never stops before a bend
 LIGHTEST = 0.4  # share of gravity that must remain as wheel load on a crest
 LATERAL, BRAKING, TRACTION = 0.64, 0.9, 0.7  # g, of the car for which roads are checked
 LEAST_STRETCH = 0.2  # m of lane per m of road, on the inside of a bend
@@ -43,7 +43,7 @@ class PathGeometry(Protocol):
 
     @property
     def curvature(self) -> Sequence[float]:
-        """Curvature of the path in 1/m, which differs from that of the road."""
+        """Curvature of the path in 1/m; it differs from the curvature of the road."""
 
     @property
     def grade(self) -> Sequence[float]:
@@ -152,7 +152,10 @@ def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
 
 
 def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
-    """Returns the speed at which a bend uses all of the lateral limit, or a crest too much of the load."""
+    """Returns the highest speed in m/s at one station.
+
+    It respects the speed limit, the lateral limit in a bend, and the least wheel load on a crest.
+    """
     steep = 1 / math.hypot(1.0, line.grade[i])
     crest = line.crest[i] * steep**3
     cos, sin = _inwards(line, i)
@@ -174,7 +177,9 @@ def _inwards(line: PathGeometry, i: int) -> tuple[float, float]:
 def _sweep(
     line: PathGeometry, top: list[float], lateral: float, along: float, power: float, *, forward: bool
 ) -> None:
-    """Lowers speeds that cannot be reached from the previous station (forward) or left in time (backward)."""
+    """Lowers speeds that the car cannot reach by accelerating (forward), or from which it cannot brake to the
+    speed at the following station (backward).
+    """
     way = 1 if forward else -1
     order = range(len(top)) if forward else range(len(top) - 1, -1, -1)
     before = top[order[0]] if not forward else 0.0

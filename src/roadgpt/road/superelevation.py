@@ -25,7 +25,7 @@ STEP = 4.0  # m between the stations at which the superelevation of a spline is 
 RUN_IN = 24.0  # m over which the superelevation of a spline is averaged
 
 Knots = list[tuple[float, float]]
-"""Stations in metres, each with its angle in radians; between two of them it changes without a kink."""
+"""Stations in metres, each with an angle in radians; between two stations the angle changes smoothly."""
 
 
 def superelevation(plan: PlanCurve, reach: float, speed: float, ratio: float | None = None) -> CubicProfile:
@@ -90,7 +90,7 @@ def superelevation_for(curvature: Array, speed: float, ratio: float | None = Non
 
 
 def _smoothed(plan: PlanCurve, s: Array, speed: float, ratio: float | None) -> Array:
-    """Returns the mean angle over the run-in length about each station."""
+    """Returns the superelevation in radians at each station, averaged over ``RUN_IN`` metres around it."""
     fine = np.linspace(0.0, plan.length, max(2, math.ceil(plan.length)) + 1)
     total = np.r_[
         0.0, np.cumsum(np.diff(fine) * _between(superelevation_for(plan.curvature(fine), speed, ratio)))

@@ -24,7 +24,9 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
-"""Fields that only roads with a cross-section of their own need; files leave out these defaults."""
+"""The fields that change the usual cross-section of two equal lanes, with their defaults. Files leave out a
+field that has its default.
+"""
 
 
 def lanes_in(text: str) -> str:
@@ -79,7 +81,7 @@ class CrossSection(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     lanes: Lanes = "1+1"
-    """Number of lanes along the road, and number of oncoming lanes.
+    """Number of lanes along the road, and number of oncoming lanes, such as "2+1".
 
     The tested car keeps to the rightmost lane.
     """
@@ -161,16 +163,17 @@ FIELDS = {
     "z_floor": "site",
     "min_length": "limits",
 }
-"""The fields of the three parts of a World, in the order of files, with the part that has each field."""
+"""The fields of a World in the order in which files list them, each with the part that it belongs to."""
 KEYS = {"shoulder": "verge"}
-"""The fields that have another name in files."""
+"""The fields that have another name in files, with that name."""
 EARLIER = {key: name for name, key in KEYS.items()}
 
 
 def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Returns the values of one flat table under the parts that have them, and all others as they are.
+    """Groups the values of a flat table by the part of a World that they belong to.
 
-    A value that is given twice, or beside its part, stays where it is, and pydantic refuses it there.
+    Unknown values stay at the top level, as does a value that is given twice, or whose part is given as a
+    whole as well; pydantic refuses them there.
     """
     out = {name: value for name, value in values.items() if name in ("site", "section", "limits")}
     flat: dict[str, Any] = {}
@@ -187,8 +190,8 @@ def _in_parts(values: Mapping[str, Any]) -> dict[str, Any]:
 class World(BaseModel):
     """Everything that the roads of a run or a campaign share: a Site, a CrossSection and Limits.
 
-    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table. The
-    form of earlier versions, ``World(friction=0.6)`` and ``world.friction``, still works, with a
+    Files have the fields of all three in one flat table, and ``World.model_validate`` reads such a table.
+    ``World(friction=0.6)`` and ``world.friction``, as written for earlier versions, still work, but give a
     DeprecationWarning.
     """
 

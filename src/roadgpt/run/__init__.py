@@ -55,7 +55,7 @@ __all__ = [
 
 USUAL = World()
 PLAIN = Setup()
-MOST_ROUNDS = 3  # drafts of one road; a designer that rules still object to then will not learn
+MOST_ROUNDS = 3  # drafts of one road; a designer whose last draft still breaks a rule will not improve
 
 
 def perform(
@@ -73,8 +73,8 @@ def perform(
     Args:
         words: a description, or the Brief that was read from it.
         seed: seed of the campaign; the road's own seed is derived from this seed and the road's index.
-        world: the World, with the size of the map, the limits that the rules check, and the friction. If it
-            was given no friction, a surface that the words name, such as a wet road, sets the friction.
+        world: the World, with the size of the map, the limits that the rules check, and the friction. If the
+            World gives no friction, a surface that the words name, such as a wet road, determines it.
         setup: the Setup, which names the reader, designer, rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         earlier: designs of earlier roads, from which the new design has to differ.
@@ -146,8 +146,8 @@ def prove(
     Args:
         blueprint: the Design, or the Road.
         seed: seed of the drive; it is used unchanged.
-        world: the World, with the size of the map, the limits that the rules check, and the friction. If it
-            was given no friction, a surface that ``brief`` names sets the friction.
+        world: the World, with the size of the map, the limits that the rules check, and the friction. If the
+            World gives no friction, a surface that ``brief`` names determines it.
         setup: the Setup, which names the rules, simulator and driver.
         index: number of the road in its campaign, from 1.
         brief: the requirements that the road has to meet; None if there are no requirements.
@@ -186,7 +186,7 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
 
 
 class _Made(NamedTuple):
-    """A draft, and what the rules say of it."""
+    """A draft, its road, and the findings: the rules that the road breaks."""
 
     design: Design
     road: Road
@@ -196,7 +196,7 @@ class _Made(NamedTuple):
 
 
 def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: int) -> _Made:
-    """Returns the first draft that no rule objects to, or the last one with its findings."""
+    """Returns the first draft that breaks no rule; if every draft breaks one, the last draft."""
     world, setup = request.world, request.setup
     designer = designer_of(setup.designer, setup.chat)
     own_geometry: Geometry | None = getattr(designer, "geometry", None)
@@ -225,7 +225,10 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
 
 
 def _driven(run: Run, despite_findings: bool = False) -> Run:
-    """Returns the Run with its drive and verdict, if the road is valid and is to be driven."""
+    """Drives the road and returns the Run with the drive and the verdict.
+
+    The road is not driven if a finding forbids it, or if the setup says that roads are only designed.
+    """
     setup = run.request.setup
     objections = [finding for finding in run.findings if finding.stops or not despite_findings]
     if objections:
@@ -234,7 +237,7 @@ def _driven(run: Run, despite_findings: bool = False) -> Run:
         return run
     begun = time.perf_counter()
     try:
-        driver = driver_of(setup.driver)  # a new one each time: what it learnt on one road stays there
+        driver = driver_of(setup.driver)  # a new driver for each road, so that nothing carries over
         drive = simulate(run.road, run.world, driver, run.seed, setup.simulator, setup.keep_driving)
         verdict = judge(run.road, drive, run.world)
     except PartError:

@@ -15,12 +15,12 @@ from roadgpt.errors import UsageError
 
 try:
     import fcntl
-except ImportError:  # Windows has no such locks, and does without
+except ImportError:  # Windows has no such locks; folders are then not locked
     fcntl = None  # type: ignore[assignment]
 
 LOCK = "campaign.lock"
-PART = ".part"  # end of the name of what is not yet whole
-LETTERS = "backslashreplace"  # letters that UTF-8 has not are written as escapes
+PART = ".part"  # end of the names of unfinished files and folders
+LETTERS = "backslashreplace"  # characters that UTF-8 cannot encode are written as escapes
 
 
 @contextmanager
@@ -29,7 +29,7 @@ def whole_file(path: Path) -> Iterator[Path]:
     succeeds, and removes it otherwise."""
     draft = path.with_name(f"{path.name}.{os.getpid()}{PART}")
     try:
-        draft.unlink(missing_ok=True)  # were it a link, it would be written through
+        draft.unlink(missing_ok=True)  # if it were a link, writing would change the file it points to
         yield draft
         draft.replace(path)
     except BaseException:

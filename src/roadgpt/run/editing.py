@@ -1,4 +1,4 @@
-"""Finds the Design that is to be changed, and writes the Run of the changed road into a folder.
+"""Finds the Design to change, and writes the Run of the changed road into a folder.
 
 folder/
   test.0001.json, runs/0001/...    the new Run, as in any campaign
@@ -22,7 +22,7 @@ BEFORE = "before"
 
 @dataclass(frozen=True)
 class Original:
-    """The road that is to be changed, with the world, setup and seed of its Run."""
+    """The road to change, with the world, setup and seed of its Run."""
 
     design: Design
     world: World
@@ -34,7 +34,7 @@ class Original:
 
 
 def original_in(path: str, world: World, setup: Setup) -> Original:
-    """Reads the Design in a file, and returns it as the Original that is to be changed.
+    """Reads the Design in a file, and returns it as the Original to change.
 
     Args:
         path: the file.
@@ -53,7 +53,7 @@ def original_in(path: str, world: World, setup: Setup) -> Original:
 
 
 def original_of(run: Run, path: str) -> Original:
-    """Returns the Design of a Run as the Original that is to be changed; ``path`` is the path of the Run.
+    """Returns the Design of a Run as the Original to change; ``path`` is the path of the Run.
 
     Raises:
         UsageError: the Run has no Design.
@@ -70,7 +70,8 @@ def reject_used(out: Path) -> None:
 
 
 def folder_for(words: str, seed: int, out: Path | None) -> Path:
-    """Returns an empty folder for the changed road.
+    """Returns an empty folder for the changed road: ``out``, which is created if it does not exist, or, if
+    ``out`` is None, a new folder named after the change request and the seed.
 
     Raises:
         UsageError: the folder cannot be created, or is not empty.
@@ -85,14 +86,14 @@ def folder_for(words: str, seed: int, out: Path | None) -> Path:
 
 @dataclass(frozen=True)
 class _Beside:
-    """Writes the request, and the pictures of the road as it was, beside those of the new road."""
+    """Writes the change request and, if pictures are drawn, pictures of the new and the original road."""
 
     card: bytes
     before: Run
     draw: Draw | None
 
     def of_run(self, run: Run, folder: Path) -> None:
-        """Writes them into the new run's folder."""
+        """Writes these files into the folder of the new Run."""
         (folder / EDIT_CARD).write_bytes(self.card)
         if self.draw is not None:
             self.draw.of_run(run, folder)
@@ -100,7 +101,7 @@ class _Beside:
             self.draw.of_run(self.before, folder / BEFORE)
 
     def of_campaign(self, folder: Path) -> None:
-        """Writes nothing: one road needs no overview."""
+        """Writes nothing: a single road needs no picture of all roads."""
 
 
 def write_edit(

@@ -10,7 +10,7 @@
     is_oob           more than the tolerated share of the car's box is outside its lane, or, if
                      ``lane_departure`` is set, a front tyre is beyond a marking
     oob_counter      how often the car has left its lane so far
-    max_oob_percentage    0 to 1: largest share of the car's box outside its lane, since it last left the lane
+    max_oob_percentage    0 to 1: largest share of the car's box outside its lane since the car last left it
     oob_distance     m: half the lane's width minus the car's distance from the middle of the lane;
                      negative outside
     oob_percentage   0 to 1: share of the car's box outside its lane
@@ -94,7 +94,7 @@ def _steps(time: NDArray[np.float64], leaves: NDArray[np.bool_]) -> NDArray[np.i
 
 
 def _directions(drive: Drive) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Returns unit vectors ahead and velocities in m/s, in space: both ``(n, 3)``."""
+    """Returns the unit vectors in which the car points and its velocities in m/s: both ``(n, 3)``."""
     heading, pitch, roll = drive["heading"], drive["pitch"], drive["roll"]
     ahead = np.stack([np.cos(heading) * np.cos(pitch), np.sin(heading) * np.cos(pitch), np.sin(pitch)])
     level = np.stack([-np.sin(heading), np.cos(heading), np.zeros_like(heading)])  # left, before it rolls

@@ -1,8 +1,8 @@
-"""Computes the features that span the SBFT competition's feature map of tests: two features of the road, and
-three of the drive.
+"""Computes the features that are the axes of the SBFT competition's feature map of tests: two features of the
+road, and three of the drive.
 
     MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last triple is left out
-    DIR_COV    share of directions that occur: angles to north, in 25 bins from 0 to 360 degrees
+    DIR_COV    share of 25 bins, from 0 to 360 degrees, that contain a direction of the road (angle to north)
     STD_SA     degrees: standard deviation of the steering wheel's angle
     MEAN_LP, MAX_LP    m: mean and largest distance from the edge of the lane (``oob_distance``)
 
@@ -28,8 +28,8 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
 
     Args:
         points: interpolated points of the road ``(n, 2)`` or ``(n, 3)``, about one per metre.
-        records: the execution data of its drive; with fewer than three records, the features of the drive are
-            left out.
+        records: the execution data of the drive on this road; with fewer than three records, the features of
+            the drive are left out.
     """
     plan = np.asarray(points, float)[:, :2]
     found = {"MAX_CURV": max_curvature(plan), "DIR_COV": direction_coverage(plan)}

@@ -209,13 +209,14 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
 
 
 def _change(card: Any) -> str:
-    """Returns the words by which a road was changed; empty for any other road."""
+    """Returns the change request that a road was made from; an empty string for any other road."""
     words = card.get("request") if isinstance(card, dict) else None
     return words if isinstance(words, str) else ""
 
 
 def _completed(run: Run) -> Run:
-    """Returns a Run of an earlier version with the values of its verdict that were not measured then."""
+    """Returns the Run with ``verdict.beyond`` computed if an earlier version of RoadGPT, which did not
+    compute this value, wrote the Run; otherwise returns the Run unchanged."""
     road, drive, verdict = run.road, run.drive, run.verdict
     if road is None or drive is None or verdict is None or verdict.beyond is not None:
         return run
@@ -224,7 +225,7 @@ def _completed(run: Run) -> Run:
 
 @dataclass(frozen=True)
 class _Card:
-    """The content of ``run.json``, without the values that have a form of their own."""
+    """The content of ``run.json`` without the request and the reports, which have models of their own."""
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="ignore", allow_inf_nan=False)
 

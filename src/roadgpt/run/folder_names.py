@@ -11,7 +11,8 @@ LONGEST = 40  # letters of a description
 
 
 def slug(words: str) -> str:
-    """Returns a description as a path component: only a-z, 0-9 and '-', at most 40 characters."""
+    """Returns a description as a path component: only a-z, 0-9 and '-', at most 40 characters; "road" if
+    no character is left."""
     plain = unicodedata.normalize("NFKD", words[:1000].casefold()).encode("ascii", "ignore").decode()
     return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].strip("-") or "road"
 

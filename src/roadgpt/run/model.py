@@ -33,7 +33,7 @@ class Setup(Frozen):
     drives: bool = True
     """Whether roads are driven; if False, they are only designed and checked."""
     chat: ChatSettings | None = None
-    """The language model for readers and designers that use one; None for the model of the user's
+    """The language model for readers and designers that use one; None for the model in the user's
     settings.
     """
 
@@ -118,7 +118,7 @@ class Run:
     source: str = ""
     """Name of the file that the road was read from, or the change request; used in headings."""
     trace: str = ""
-    """The traceback of a simulator or a driver that failed."""
+    """The traceback of a simulator or a driver that failed; empty if none failed."""
     is_lost: bool = False
     """True if the simulator itself failed; this is not written to disk."""
     seconds: Seconds = Seconds()

@@ -10,8 +10,8 @@ BITS = 53  # so that a seed survives every JSON reader
 def seed_of(seed: int, index: int) -> int:
     """Returns the seed of road ``index`` (from 1) of the campaign with seed ``seed``.
 
-    It uses numpy's SeedSequence, so that campaigns with consecutive seeds, such as 1 and 2, have no road in
-    common. numpy guarantees that SeedSequence gives the same numbers in all versions.
+    The seed comes from numpy's SeedSequence, so that campaigns with consecutive seeds, such as 1 and 2, have
+    no road in common. numpy guarantees that SeedSequence gives the same numbers in all versions.
 
     Raises:
         UsageError: the campaign's seed is negative.

@@ -30,9 +30,9 @@ from roadgpt.run.execution import ExecutionRecord
 Array = NDArray[np.float64]
 
 AROUND = 30.0  # m, before and after the place
-LEFT = 2.0  # m from the centre line: nearer than half a lane is on the left
-NODE = 0.55  # m from a node of the road: half of what lies between nodes, and some for rounding
-SAME = 0.01  # m: a node and the start of a segment are one
+LEFT = 2.0  # m, half a lane; a car nearer to the centre line than this left its lane to the left
+NODE = 0.55  # m from a node of the road: half the distance between nodes, and a margin for rounding
+SAME = 0.01  # m; a node this close to the start of a segment is that start
 FEWEST_POINTS = 4  # of a road, for the spline to be a cubic one
 DECIMALS = 4  # of the road that is interpolated once more
 EPS_DEGREES = 0.3
@@ -109,7 +109,11 @@ def _interpolated(points: ArrayLike) -> Array | None:
 
 
 def _cut_out(line: Array, place: Sequence[float], before: float, after: float) -> tuple[Array, Array] | None:
-    """Returns the line up to its point nearest to a place, and from there on, each of the given length."""
+    """Returns the part of a line that ends at its point nearest to a place, and the part that follows.
+
+    The first part is ``before`` metres long and the second ``after`` metres, or less where the line ends.
+    Returns None if the two parts cannot be cut out.
+    """
     near, _ = _foot(line, place)
     nodes = np.flatnonzero(np.hypot(*(line - near).T) < NODE)
     if not nodes.size or not nodes[-1]:
@@ -136,7 +140,7 @@ def _foot(line: Array, place: Sequence[float]) -> tuple[Array, float]:
 
 
 def _first_record(line: Array, start: Array, records: Sequence[ExecutionRecord]) -> int:
-    """Returns the first record beside a segment's start; the first of all where none is."""
+    """Returns the index of the first record next to a segment's start; 0 if there is none."""
     for number, record in enumerate(records):
         foot, _ = _foot(line, record.pos[:2])
         close = np.flatnonzero(np.hypot(*(line - foot).T) < NODE)
@@ -167,7 +171,7 @@ def distances(one: Array, others: list[Array]) -> Array:
         best = np.empty_like(dist)
         best[:, 0] = i
         best[:, 1:] = np.minimum(exchanged, dist[:, 1:] + 1)
-        # adding steps costs 1 each: the least of all cells to the left, plus the way from there
+        # inserting steps costs 1 each: the least value of any cell to the left plus its distance
         dist = np.minimum.accumulate(best - column, axis=1) + column
     return dist[np.arange(len(others)), [len(other) for other in others]]
 

@@ -22,11 +22,11 @@ SETTINGS = (
     *("speed_limit", "module_name", "module_path", "class_name", "visualize_tests", "log_to", "debug"),
 )
 """The competition's columns of experiment_description.csv, in their order."""
-ELSEWHERE = ("simulator", "designer", "chat")  # columns of their own, or none where nobody is asked
+ELSEWHERE = ("simulator", "designer", "chat")  # written in other columns; ``chat`` only if it is set
 
 
 class TallyEntry(NamedTuple):
-    """The values of one Run that enter the tables of its campaign."""
+    """The values of one Run that are counted in the tables of its campaign."""
 
     number: int
     """Number of the road, from 1."""
@@ -118,8 +118,8 @@ def write_settings(
 
     Args:
         request: the Request whose simulator and world are written.
-        theirs: values for the competition's columns that ``request`` does not give, by column name; a column
-            without a value stays empty.
+        theirs: further values for the competition's columns, by column name. Simulator, map size, tolerance
+            and speed limit come from ``request`` unless given here; a column without a value stays empty.
         ours: values for RoadGPT's own columns, by column name; they are written before the fields of the
             world.
         folder: where the file is written.

@@ -23,7 +23,7 @@ def versions_of(setup: Setup) -> dict[str, str]:
 
 
 def _beamng() -> dict[str, str]:
-    """Returns the version of BeamNG's client, which decides on that of the game, and its settings."""
+    """Returns BeamNG's settings, and the version of its Python client, which determines that of BeamNG."""
     from roadgpt.drive.simulators.beamng.settings import BeamngSettings
 
     return {**_libraries(("beamngpy",)), "beamng": BeamngSettings.of().summary()}

@@ -47,7 +47,7 @@ class Competition:
     _deadline: float = field(default=0.0, repr=False)
     _losses: LostDrives[int] = field(default_factory=LostDrives, repr=False)
     _is_begun: bool = field(default=False, repr=False)
-    """Whether a generator was loaded, so that there are results or a log to keep."""
+    """Whether there are results or a log to keep."""
 
     def __iter__(self) -> Iterator[Run]:
         """Yields the Runs as tests end.
@@ -56,7 +56,8 @@ class Competition:
             UsageError: the generator cannot be loaded.
             PartError: a plug-in is not installed.
             GivenUpError: the simulator failed three times in a row.
-            RoadGPTError: a file cannot be written, or the simulator or the driver fails on a first road.
+            RoadGPTError: a file cannot be written, or the simulator or the driver fails on the straight road
+                that is driven before the first test.
         """
         try:
             host = GeneratorProcess(self.folder / LOG, self.experiment.python)
@@ -120,8 +121,8 @@ class Competition:
                 yield from self._test(heard, host.tell)
 
     def _test(self, asked: Message, answer: Callable[[Message], None]) -> Iterator[Run]:
-        """Drives one test, unless the budget is used up; the test during which the time runs out is
-        dropped."""
+        """Drives one test, unless the budget is used up; a test during which the time runs out is
+        discarded."""
         if self._is_over:
             answer(OVER)
             return

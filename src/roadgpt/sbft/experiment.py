@@ -21,7 +21,7 @@ class Experiment(Frozen):
     module_path: str | None = None
     """An additional folder in which Python searches for modules."""
     python: str | None = None
-    """The Python interpreter in which the generator runs; None is the one that runs RoadGPT."""
+    """The Python interpreter in which the generator runs; None: the interpreter that runs RoadGPT."""
     time_budget: Positive | None = None
     """Seconds of wall time for generating and driving."""
     test_budget: Annotated[int, Field(ge=1)] | None = None
@@ -49,5 +49,6 @@ class Ending(Frozen):
 
     @property
     def is_of_a_generator(self) -> bool:
-        """True if the generator could be loaded."""
+        """False if the generator could not be imported, or if its interpreter cannot run generators;
+        otherwise True."""
         return self.how not in UNBEGUN

@@ -2,7 +2,7 @@
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 
-Its roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
+The roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
 ROADGPT_READER) or by a subclass:
 
     class Hairpins(RoadGPTTestGenerator):
@@ -30,7 +30,7 @@ MAP_SIZE = 200  # m, the competition's
 DECIMALS = 5
 DENSE = 2.0  # m, largest distance of road points at which the competition's spline keeps the radii
 MOST_POINTS = 500
-GIVE_UP = 20  # failed roads in a row after which it gives up
+GIVE_UP = 20  # failed roads in a row after which the generator gives up
 REMEMBERED = 50  # previous designs that the next one must not repeat
 
 Points = list[tuple[float, float]]
@@ -45,7 +45,7 @@ class RoadGPTTestGenerator:
     reader = "model"
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
-        """Has the signature that the competition calls; environment variables take precedence over class
+        """Takes the arguments that the competition passes. Environment variables take precedence over class
         attributes."""
         self.executor = executor
         self.map_size = map_size or MAP_SIZE
@@ -126,7 +126,7 @@ def _whole(text: str | None, usual: int) -> int:
 
 
 def _chat(made: RoadGPTTestGenerator) -> Any:
-    """Returns the language model of the user's settings if one is needed, else None."""
+    """Returns the settings of the language model if the designer or the reader needs one, else None."""
     from roadgpt import plugins
     from roadgpt.chat import asks_a_model, configured
 

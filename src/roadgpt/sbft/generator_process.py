@@ -1,4 +1,4 @@
-"""Starts a generator's process, exchanges messages with it under time limits, and makes sure that it ends.
+"""Starts a generator's process, exchanges messages with it under time limits, and ends it.
 
 One thread reads messages and another one writes them, so that RoadGPT is not blocked if the generator stops
 reading or writing.
@@ -17,8 +17,8 @@ from roadgpt import children
 from roadgpt.errors import UsageError
 from roadgpt.sbft.json_lines import Message, received, send
 
-NAMES = Path(__file__).with_name("names")  # RoadGPT's half in the generator's process; Python runs the folder
-OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter to that half, if the generator's is another one
+NAMES = Path(__file__).with_name("names")  # the folder that the generator's interpreter runs
+OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter, if the generator runs in another one
 
 
 class GeneratorExitedError(Exception):
@@ -33,7 +33,8 @@ class GeneratorProcess:
     """The process in which one generator runs."""
 
     def __init__(self, log: Path, python: str | None = None) -> None:
-        """Starts the process in an interpreter (None: this one); its output is written to the log file.
+        """Starts the process in the interpreter ``python`` (None: the one that runs RoadGPT). All that the
+        generator prints is written to the file ``log``.
 
         Raises:
             UsageError: the interpreter cannot be started.

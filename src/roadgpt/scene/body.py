@@ -73,8 +73,8 @@ def body() -> Iterator[CarPart]:
 
 
 def _ring(x: float, *numbers: float) -> Array:
-    """Returns a closed cross-section: from the middle of the underside over the right side and the deck, and
-    back."""
+    """Returns a closed cross-section: from the middle of the underside up the right side to the middle of the
+    deck, and down the left side."""
     half = np.column_stack([np.full(8, x), _half(*numbers)])
     return np.concatenate([half * [1, -1, 1], half[-2::-1]])
 
@@ -111,8 +111,15 @@ def _cabin() -> Iterator[CarPart]:
 def _glazed(
     low: Array, top: Array, along: Sequence[float], up: Sequence[float], glazed: set[int], is_turned: bool
 ) -> Iterator[CarPart]:
-    """Yields a slightly curved wall between two edges, divided at given shares of both; part of its middle
-    row is glass."""
+    """Yields the cells of a slightly curved wall between a lower and an upper edge.
+
+    Args:
+        low, top: the two ends of the lower and of the upper edge, shape (2, 3).
+        along: shares (0 to 1) of the length of the edges at which the wall is divided.
+        up: shares of the way from the lower to the upper edge at which the wall is divided.
+        glazed: indices along the edges of the cells that are glass in the second row from below.
+        is_turned: whether to reverse the direction in which the wall bulges and its front faces point.
+    """
     a, b = np.array(along), np.array(up)
     foot = low[0] + a[:, None] * (low[1] - low[0])
     head = top[0] + a[:, None] * (top[1] - top[0])

@@ -23,8 +23,8 @@ NUMBA = _numba()
 
 
 def _digest() -> str:
-    """Returns a digest of all that becomes part of compiled code: this room, and the numbers that it takes
-    from others."""
+    """Returns a digest of all that becomes part of compiled code: the files of this package, and constants
+    that it imports from other packages."""
     files = sorted(Path(__file__).parent.rglob("*.py"))
     return sha256(b"".join(file.read_bytes() for file in files) + f"{DASH} {GAP}".encode()).hexdigest()[:12]
 

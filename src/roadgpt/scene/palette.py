@@ -1,5 +1,5 @@
-"""Colours of surfaces without a pattern, such as the car and concrete; the numbers of these surface types
-start at PLAIN."""
+"""Defines the colours of surfaces without a pattern, such as the car and concrete. The numbers of these
+surface types start at PLAIN."""
 
 import numpy as np
 
@@ -24,5 +24,5 @@ _COLOURS = {
 PALETTE = np.array([[*linear(*_COLOURS[kind]), 0.0, 0.0, 0.0] for kind in sorted(_COLOURS)])
 """Shape (n, 6): three columns of linear colour, and three of emitted light."""
 GLOSS = {PAINT: 1.0, GLASS: 1.0, TAIL: 0.6, HEAD: 0.9, RIM: 0.5, TRIM: 0.15}
-BRAKE = 0.03  # of the pedal travel, from which the brake lights are on
+BRAKE = 0.03  # share of the pedal travel, above which the brake lights are on
 SHINING = {TAIL - PLAIN: (0.85, 0.035, 0.02), HIGH - PLAIN: (0.95, 0.05, 0.03)}

@@ -1,10 +1,10 @@
 """Rasterises triangles with four samples per pixel; the nearest triangle wins.
 
-For a triangle with corners P0, P1, P2 in camera coordinates (right, down, forward), every quantity a that is
-linear on it satisfies a / w = g . ray, where P_i . g = a_i, w is the depth, and ray = (x, y, 1) belongs to a
-pixel. This also holds for corners behind the camera, so that only the outline of the triangle in the image
-needs clipping. Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates,
-1997.
+Let a triangle have the corners P0, P1, P2 in camera coordinates (right, down, forward). Every quantity a that
+varies linearly over the triangle then satisfies a / w = g . ray, where w is the depth, and ray = (x, y, 1) is
+the direction of a pixel. The vector g follows from the values a_i at the corners: P_i . g = a_i. This also
+holds for corners behind the camera, so that only the outline of the triangle in the image needs clipping.
+Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
 """
 
 import numpy as np
@@ -41,7 +41,7 @@ def _fill(
         for k in range(corners):
             n = k + 1 if k + 1 < corners else 0
             x0, y0, x1, y1 = x[k], y[k], x[n], y[n]
-            if y0 > y1:  # both triangles of an edge walk it downwards, and come to the same place
+            if y0 > y1:  # both triangles that share an edge follow it downwards, and get the same point
                 x0, y0, x1, y1 = x1, y1, x0, y0
             if y0 <= level < y1:
                 place = x0 + (level - y0) * ((x1 - x0) / (y1 - y0))
@@ -76,7 +76,8 @@ def _is_outside(sphere: Array, eye: Array, reach_x: float, reach_y: float) -> bo
 
 @inlined
 def _beyond(x: float, y: float, ahead: float, reach_x: float, reach_y: float) -> int:
-    """Returns a bit for each border of the image that a point lies beyond, and one if it is too near."""
+    """Returns a number with a bit for each border of the image that a point lies beyond, and one more bit if
+    the point is too near."""
     code = 1 if x > reach_x * ahead else (2 if -x > reach_x * ahead else 0)
     code += 4 if y > reach_y * ahead else (8 if -y > reach_y * ahead else 0)
     if x > reach_x * ahead and -x > reach_x * ahead:  # behind the camera it may be both
@@ -109,14 +110,15 @@ def _outline(three: Array, focal: float, middle_x: float, middle_y: float, x: Ar
 
 @inlined
 def _holds_samples(x: Array, y: Array, corners: int, rows: int, columns: int) -> bool:
-    """Returns whether a sample may lie in the outline; most distant triangles lie between samples."""
+    """Returns whether the outline may contain a sample; distant triangles are often so small that they
+    contain none."""
     left, right, top, bottom = x[0], x[0], y[0], y[0]
     for k in range(1, corners):
         left, right = min(left, x[k]), max(right, x[k])
         top, bottom = min(top, y[k]), max(bottom, y[k])
     if right < 0.0 or left > columns or bottom < 0.0 or top > rows / 4.0:
         return False
-    # samples stand an eighth, three, five and seven eighths of a pixel apart, either way
+    # in both directions, samples lie at one, three, five and seven eighths of a pixel
     return bool(
         np.ceil(4.0 * top - 0.5) <= np.floor(4.0 * bottom - 0.5)
         and np.ceil(4.0 * left - 0.5) <= np.floor(4.0 * right - 0.5)
@@ -140,8 +142,8 @@ def _to_camera(
 
 @inlined
 def _cross_products(three: Array, across: Array) -> float:
-    """Computes the cross products of the corners, two and two; returns the determinant of the corners, which
-    is negative where the triangle is seen from its front."""
+    """Computes the cross products of the three pairs of corners; returns the determinant of the corners,
+    which is negative if the triangle is seen from its front."""
     a, b, c = three[0], three[1], three[2]
     for k in range(3):
         j, m = (k + 1) % 3, (k + 2) % 3
@@ -157,8 +159,8 @@ def _plane_equations(
     attributes: Array, triangles: NDArray[np.int64], t: int, across: Array, volume: float, focal: float,
     middle_x: float, middle_y: float, plane: Array,
 ) -> None:  # fmt: skip
-    """Computes the numbers g of the depth and of the three attributes of a triangle, for rays given by pixel
-    coordinates."""
+    """Computes the vectors g (see the top of this file) for the number 1, which gives the inverse depth, and
+    for the three attributes of a triangle. The rays are (x, y, 1) with x and y in pixels."""
     for k in range(4):
         for j in range(3):
             g = 0.0

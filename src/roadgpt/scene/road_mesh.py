@@ -17,10 +17,10 @@ from roadgpt.scene.terrain import LitTerrain
 CHORD = 0.004  # m
 LONGEST = 4.0  # m between stations: light and texture follow crests
 BLOCK = 24  # stations of a patch
-THICK = 0.5  # m of a road that floats
+THICK = 0.5  # m, thickness of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
-"""Distance between posts, their width and their height, metres. The distance is half that of German roads on
-straights, to give a better impression of speed."""
+"""Distance between posts, their width and their height, metres. The distance is half of that on straight
+German roads, to give a better impression of speed."""
 POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
@@ -50,7 +50,7 @@ def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
 
 
 def _surface(road: Road, profile: Profile, s: Array) -> list[Patch]:
-    """Returns the surface from the right rim to the left one; its coordinates are s and t."""
+    """Returns the surface from the right rim to the left one; the surface coordinates are s and t."""
     bounds = [t for _, t in reversed(profile.boundaries(s))]
     offsets = [bounds[0]]
     for one, other in pairwise(bounds):
@@ -75,8 +75,8 @@ def _upwards(road: Road, s: Array) -> Array:
 
 
 def _slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
-    """Returns an embankment; where it is low, it gets the light of the land that it meets, so that no edge
-    shows."""
+    """Returns an embankment. Where the embankment is low, its foot is as bright as the land there, so that no
+    edge is visible."""
     edge, foot, is_left = bank
     rows = np.stack([edge, foot] if is_left else [foot, edge], axis=1)
     along = np.gradient(edge, axis=0)
@@ -108,7 +108,7 @@ def _slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
 
 
 def _posts(road: Road, profile: Profile) -> list[Patch]:
-    """Returns the posts as upright boxes; their second coordinate is the height."""
+    """Returns the posts as upright boxes; the second surface coordinate is the height."""
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
     model, facing = _post()

@@ -41,8 +41,8 @@ def _box(x: float, y: float, long: float, wide: float, soft: float) -> float:
 
 @inlined
 def _shadow(car: Array, x: float, y: float, z: float) -> float:
-    """Returns the share of light that remains at a point on the ground: the car blocks the sun, and the sky
-    under it."""
+    """Returns the share of light that remains at a point on the ground. The car blocks the sun, and, for
+    points under the car, also the sky."""
     dx, dy, dz = x - car[0], y - car[1], z - car[2]
     if dx * dx + dy * dy > REACH or abs(dz) > HIGHEST:
         return 1.0
@@ -97,8 +97,8 @@ def _ground(
     n: int, px: float, py: float, w: float, dx: float, dy: float, dz: float, level: float, planes: Array,
     is_road: bool, tiles: Tiles, eye: Array, lanes: LaneBoundaries, numbers: Array,
 ) -> Colour:  # fmt: skip
-    """Returns the colour of road or terrain at the depth w in the direction (dx, dy, dz), which has depth
-    1."""
+    """Returns the colour of road or terrain at depth w in the direction (dx, dy, dz), a vector whose own
+    depth is 1."""
     light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
     x, y, z = eye[0] + dx * w, eye[1] + dy * w, eye[2] + dz * w
     if is_road:
@@ -118,7 +118,7 @@ def _ground(
 
 @inlined
 def _thing(n: int, px: float, py: float, w: float, planes: Array, kind: int, palette: Array) -> Colour:
-    """Colour of a post, or of what has a plain one."""
+    """Returns the colour of a post or of a surface without a pattern."""
     u = (planes[n, 3] * px + planes[n, 4] * py + planes[n, 5]) * w
     light = (planes[n, 9] * px + planes[n, 10] * py + planes[n, 11]) * w
     if kind == POST:
@@ -141,9 +141,11 @@ def _gather(
     ids: NDArray[np.int32], depth: NDArray[np.float32], kinds: NDArray[np.int64], row: int, i: int,
     shares: NDArray[np.int64],
 ) -> None:  # fmt: skip
-    """How many of a pixel's samples each of them stands for; 0 where an earlier one stands for it.
+    """Writes into ``shares`` how many of a pixel's four samples each sample represents; 0 if an earlier
+    sample represents it.
 
-    One stands for another that sees the same triangle, or the same ground about as far away.
+    A sample represents a later one that shows the same triangle, or the same kind of ground at almost the
+    same depth.
     """
     for k in range(4):
         shares[k] = 1
@@ -161,7 +163,8 @@ def _gather(
 
 @inlined
 def _place(row: int, i: int, k: int, is_whole: bool) -> tuple[float, float]:
-    """Returns the place in the image, in pixels, of the k-th sample of a pixel, or of the pixel's middle."""
+    """Returns the position in the image, in pixels, of the k-th sample of a pixel; if ``is_whole``, that of
+    the pixel's middle."""
     if is_whole:
         return i + 0.5, row + 0.5
     return i + OFFSETS[k], row + (k + 0.5) * 0.25
@@ -169,8 +172,8 @@ def _place(row: int, i: int, k: int, is_whole: bool) -> tuple[float, float]:
 
 @inlined
 def _ray(eye: Array, px: float, py: float, rows: int, columns: int, pixel: float) -> Colour:
-    """Returns the direction in world coordinates, with depth 1, of a point of the image; ``pixel`` is the
-    width of a pixel at depth 1."""
+    """Returns the direction in which a point of the image is seen, as a vector in world coordinates with
+    depth 1; ``pixel`` is the width of a pixel at depth 1."""
     rx, ry = (px - columns * 0.5) * pixel, (py - rows * 0.5) * pixel
     return (
         eye[3] * rx + eye[6] * ry + eye[9],
@@ -181,8 +184,8 @@ def _ray(eye: Array, px: float, py: float, rows: int, columns: int, pixel: float
 
 @inlined
 def _haze_and_level(w: float, dx: float, dy: float, dz: float, pixel: float) -> tuple[float, float, float]:
-    """Returns the arguments ``thin`` and ``warm`` of `hazy`, and the base-2 logarithm of the width in metres
-    of a pixel on level ground, at the depth w in the direction (dx, dy, dz)."""
+    """Returns three numbers for a point at depth w in the direction (dx, dy, dz): the arguments ``thin`` and
+    ``warm`` of `hazy`, and the base-2 logarithm of the width in metres of a pixel on level ground there."""
     far = math.sqrt(dx * dx + dy * dy + dz * dz)
     thin, warm = air(w * far, (dx * SUN_X + dy * SUN_Y) / far)
     return thin, warm, 0.5 * math.log2(w * w * pixel * pixel * far / max(abs(dz), 0.02 * far))
@@ -206,7 +209,7 @@ def shade(
 
     Args:
         ids: triangle of each sample, from `raster.draw`.
-        depth: depth of each sample, from `raster.draw`.
+        depth: inverse depth of each sample, from `raster.draw`.
         planes: plane equations of the triangles, from `raster.draw`.
         kinds: surface type of each triangle.
         palette: (n, 6): for each surface type without a pattern, its colour and the colour of the light that

@@ -46,8 +46,8 @@ def _mip_level(high: float) -> tuple[int, int]:
 
 @inlined
 def _range(a: float, b: float, reach: float, size: int) -> tuple[int, int]:
-    """Returns the first pixel, and the end of the pixels, between two places in the image, ``reach`` pixels
-    beyond them included."""
+    """Returns the first pixel, and the end, of the range between two places in the image, extended by
+    ``reach`` pixels on both sides and limited to 0 and ``size``."""
     return max(0, int(min(a, b) - reach)), min(size, int(max(a, b) + reach) + 1)
 
 
@@ -56,7 +56,7 @@ def _blend(
     picture: NDArray[np.float32], row: int, i: int, pictures: NDArray[np.float32], look: int, start: int,
     side: int, u: float, v: float, cover: float, light: float, haze: Colour, part: float,
 ) -> None:  # fmt: skip
-    """Blends a tree into one pixel, of which ``part`` is not hidden."""
+    """Blends a tree into one pixel; ``part`` is the share of the pixel where nothing hides the tree."""
     cover *= part
     for k in range(3):
         colour = _texel(pictures, look, start, side, u, v, k) * light * part

@@ -119,7 +119,8 @@ def asphalt(tiles: Tiles, s: float, t: float, lanes: LaneBoundaries, level: floa
 
 @inlined
 def _painted(mark: int, covered: float, s: float, wide_s: float, length: float) -> float:
-    """Returns the share of paint in a window, of which a line covers this share across the road."""
+    """Returns the share of a pixel that is paint, for a line that covers the share ``covered`` of the pixel's
+    width across the road; ``wide_s`` is the length of the pixel along the road in metres."""
     if mark == BROKEN and covered > 0.0:
         last, first = min(s + wide_s / 2, length), s - wide_s / 2
         covered *= max(dashed(last, DASH, PERIOD) - dashed(first, DASH, PERIOD), 0.0) / wide_s

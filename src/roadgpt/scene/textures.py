@@ -1,4 +1,4 @@
-"""Seeded noise at several resolutions, and the table that converts linear light to screen bytes."""
+"""Creates seeded noise at several resolutions, and the table that converts linear light to screen bytes."""
 
 from collections.abc import Callable
 from functools import cache

@@ -1,5 +1,5 @@
-"""Trees beside the road: their pictures and their positions. They are too far from the road for cars to reach
-them."""
+"""Creates the pictures and the positions of trees beside the road. The trees are so far from the road that
+cars cannot reach them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -19,7 +19,7 @@ BROAD, CONIFERS = 3, 2  # pictures of each
 CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
 EACH = 210.0  # m^2 of land per tree
 MOST = 900
-BORDER = 4  # far columns of the land, where no trees stand
+BORDER = 4  # outermost rows and columns of the land on each side, where no trees stand
 
 
 @dataclass(frozen=True, eq=False)

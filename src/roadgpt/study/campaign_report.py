@@ -30,7 +30,7 @@ from roadgpt.study.chapters.wording import (
 )
 from roadgpt.study.statistics import chi_squared, wilson
 
-COMPARED = 2000  # failures, evenly spread: their faults are found in seconds
+COMPARED = 2000  # failures, evenly spread, that are compared to find faults; this takes seconds
 MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 
@@ -104,7 +104,7 @@ def _drives_on(record: Record) -> bool:
 
 
 def _least(record: Record, outcome: str) -> tuple[float, str] | None:
-    """Returns the least margin of the tests with an outcome, in metres, and the name of that test."""
+    """Returns the smallest margin, in metres, of all tests with this outcome, and the name of that test."""
     found = record.query(
         "SELECT margin, cell, number FROM tests WHERE outcome = ? AND margin IS NOT NULL "
         "ORDER BY margin, cell, number LIMIT 1",
@@ -114,7 +114,7 @@ def _least(record: Record, outcome: str) -> tuple[float, str] | None:
 
 
 def _driven(of: Status | CellStatus) -> tuple[int, int]:
-    """Returns the number of roads on which the car failed, and that of all roads that were driven."""
+    """Returns the number of roads on which the car failed, and the number of all driven roads."""
     failed = of.outcomes.get("FAIL", 0)
     return failed, failed + of.outcomes.get("PASS", 0)
 
@@ -163,7 +163,7 @@ def _outcomes(record: Record, status: Status, cells: Sequence[CellStatus]) -> li
 
 
 def _about(of: CellStatus) -> dict[str, str]:
-    """Returns the settings of a cell, by the headings of a table."""
+    """Returns the settings of a cell as texts; the keys are the headings of a table."""
     words = of.words or "roads that were given"
     friction = f"{of.friction:g}"
     own = {"description": words, "generator": of.generator, "driver": of.driver, "seed": str(of.seed)}
@@ -171,7 +171,7 @@ def _about(of: CellStatus) -> dict[str, str]:
 
 
 def _what_differs(cells: Sequence[CellStatus]) -> tuple[list[str], str]:
-    """Returns the headings of settings that differ between cells, and a sentence with those that do not."""
+    """Returns the headings of settings that differ between cells, and a sentence with all other settings."""
     every = [_about(each) for each in cells]
     differing = [head for head in every[0] if len({about[head] for about in every}) > 1]
     same = [

@@ -66,7 +66,7 @@ def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
 
 
 def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
-    """Returns the criteria of individual turns and straights. Each is checked with all others left open."""
+    """Returns the criteria of individual turns and straights, each checked without the other criteria."""
     out: dict[Criterion, bool] = {}
     for criterion, fields in FEATURE_FIELDS.items():
         own = (replace(group, feature=_part(group.feature, fields)) for group in asked.groups)
@@ -84,7 +84,7 @@ def _of_features(found: Measures, asked: Outline) -> dict[Criterion, bool]:
 
 
 def _part(feature: Feature, fields: tuple[str, ...]) -> Feature:
-    """Returns a feature with these requirements only, without those that every straight has to meet."""
+    """Returns a feature with only the requirements ``fields``, less those that every straight has to meet."""
     own = {name: getattr(feature, name) for name in fields}
     if feature.kind == "straight":
         usual = KINDS["straight"]
@@ -97,14 +97,14 @@ def _is_specified(feature: Feature) -> bool:
 
 
 def _says(criterion: Criterion, group: Group) -> bool:
-    """Returns whether a group asks for anything in a criterion; any straight asks for an order."""
+    """Returns whether a group sets a requirement of a criterion; any straight sets one of the order."""
     if criterion == "order" and (group.alternating or group.feature.kind == "straight"):
         return True
     return _is_specified(group.feature)
 
 
 def _merged(groups: tuple[Group, ...]) -> tuple[Group, ...]:
-    """Merges neighbouring straights that ask for the same."""
+    """Merges neighbouring straights that have the same requirements."""
     out: list[Group] = []
     for group in groups:
         if group.feature.kind == "straight" and out and out[-1].feature == group.feature:

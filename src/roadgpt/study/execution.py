@@ -25,7 +25,7 @@ AT_ONCE = 100  # parts whose folders are locked together: macOS lets a process o
 Tell = Callable[[int], object]
 """A function that is called with the number of finished roads of the study."""
 Note = Callable[[str], object]
-"""A function that is called with a sentence on the friction of a part."""
+"""A function that is called with a sentence on the friction or the map size of a part."""
 
 
 class Problem(NamedTuple):
@@ -55,7 +55,8 @@ def work(
             reader asks a language model are always made in this process, one after another.
         draw: function that draws pictures of a run into its folder; None: no pictures.
         tell: called with the number of finished roads, after each road.
-        note: called for each part whose description names a surface, such as a wet road.
+        note: called with a sentence for each part whose description names a surface, such as a wet road, or
+            needs a larger map.
 
     Returns:
         One Problem for each study part that lacks roads; empty if all roads were made.
@@ -65,7 +66,7 @@ def work(
             roads.
         UsageError: a plug-in is not installed, the simulator cannot apply the friction of a surface that a
             description names, or another process works in the folder.
-        RoadGPTError: a file cannot be written, or there are no workers.
+        RoadGPTError: a file cannot be written, or no worker process can be started.
     """
     session = _Session(plan, folder, draw, tell, note)
     asking = {name for name in plan.designers if plan.setup_of(name).chat is not None}
@@ -78,7 +79,7 @@ def work(
 
 
 class _Session:
-    """Makes the roads of parts, counts them, and keeps why some are missing."""
+    """Makes the roads of parts, counts them, and records why roads are missing."""
 
     def __init__(self, plan: StudyPlan, folder: Path, draw: Draw | None, tell: Tell, note: Note) -> None:
         self.plan, self.folder, self.draw, self.tell, self.note = plan, folder, draw, tell, note

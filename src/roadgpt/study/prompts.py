@@ -11,7 +11,7 @@ from roadgpt.errors import UsageError
 from roadgpt.reading import json_of, read_text
 from roadgpt.study.truth import Truth
 
-MOST = 10_000  # prompts of a file
+MOST = 10_000  # prompts in a file
 
 
 class Prompt(Frozen):
@@ -28,7 +28,8 @@ def read_prompts(path: Path) -> tuple[Prompt, ...]:
     """Returns the prompts of a file, in the order of the file.
 
     Raises:
-        UsageError: the file cannot be read; the message names the line and the mistake.
+        UsageError: the file cannot be read, has no prompts or more than 10,000, or has an invalid line; the
+            message says what is wrong.
     """
     try:
         lines = read_text(path, 4_000_000, "a file of prompts", "utf-8-sig").splitlines()

@@ -1,5 +1,5 @@
-"""Reads the data for reports from each run: validity by each rule set, results of the drive, measured
-geometry.
+"""Collects the properties of each road for the reports: validity by each rule set, the results of the drive,
+and measured geometry. They are read or computed from the files of the road's run.
 """
 
 from collections.abc import Mapping
@@ -51,13 +51,13 @@ class RoadRecord:
     is_sbft: bool
     """True if the road passes the SBFT competition's validator."""
     sbft_says: str
-    """The first reason for which the SBFT competition's validator rejects the road; empty if it accepts
-    the road."""
+    """The first reason why the SBFT competition's validator rejects the road, or "no road"; empty if it
+    accepts the road."""
     has_left: bool
     """True if the car left its lane or fell."""
     margin: float | None
-    """Smallest margin before the car is out of bounds, metres; negative if it failed, None if it did not
-    drive."""
+    """Smallest distance to failure during the drive, metres (see ``Verdict.margin``); negative if the car
+    left its lane or fell, None if the road was not driven."""
     points: Array
     """Points of the centre line ``(n, 2)``, metres, one every 2 m; empty if there is no road."""
     failed_at: tuple[float, float] | None
@@ -228,7 +228,7 @@ def _likeness(road: Road | None) -> Likeness | None:
         return None
     try:
         return likeness(road)
-    except (RoadGPTError, FloatingPointError, ValueError):  # a broken road is like no other
+    except (RoadGPTError, FloatingPointError, ValueError):  # a broken road cannot be compared
         return None
 
 

@@ -33,9 +33,9 @@ from roadgpt.run.sparseness import distances, steps_of
 
 Array = NDArray[np.float64]
 
-HALF_GRADE = 2.0  # percentage points, mean of the differences: what a driver feels as another hill
-HALF_SHAPE = ENOUGH  # m RMS: what the planner keeps its roads apart by
-STEP = 5.0  # m between the points of a whole road's steps; the competition's are 1 m apart, of 60 m only
+HALF_GRADE = 2.0  # percentage points, mean difference; a driver feels that it is a different hill
+HALF_SHAPE = ENOUGH  # m RMS: the smallest distance that the planner keeps between its roads
+STEP = 5.0  # m, step length for whole roads; the competition compares 60 m of road in steps of 1 m
 
 
 @dataclass(frozen=True)

@@ -23,11 +23,11 @@ from scipy import special, stats
 
 Array = NDArray[np.float64]
 
-LEVEL = 0.05  # of all tests: differences with a smaller p count as shown
+LEVEL = 0.05  # of all tests: differences with a smaller p count as significant
 CONFIDENCE = 0.95  # of all intervals
 FEW = 5.0  # Cochran (1954): an expected count below this is small
 MOST_SMALL = 0.2  # share of small expected counts that the chi-squared test tolerates, if none is below 1
-MOST_TABLES = 2_000_000  # tables with the same sums that are enumerated; of more, some are drawn
+MOST_TABLES = 2_000_000  # tables with the same sums; if there are more, a sample of them is drawn
 DRAWN, FEWEST = 99_999, 999  # number of tables that are drawn: usually, and if they are very large
 MOST_CELLS, AT_ONCE = 20_000_000, 2_000_000  # cells of all tables that are drawn, and of those in memory
 AS_RARE = 1e-7  # two tables whose log-probabilities differ by less are equally probable
@@ -111,7 +111,7 @@ class Paired(NamedTuple):
     """Result of Wilcoxon's test of whether two columns of ratings by the same people differ."""
 
     statistic: float
-    """The smaller of two rank sums: that of the positive and that of the negative differences."""
+    """The rank sum of the positive or of the negative differences, whichever is smaller."""
     p: float
     effect: float
     """Matched-pairs rank-biserial correlation; positive if the first column is larger."""
@@ -373,5 +373,5 @@ def krippendorff(ratings: ArrayLike) -> float:
 
 
 def _complete(x: Array) -> Array:
-    """Returns the rows without a gap."""
+    """Returns the rows in which no value is missing."""
     return np.asarray(x[np.isfinite(x).all(axis=1)], float)

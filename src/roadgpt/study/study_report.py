@@ -117,7 +117,7 @@ def _sentences(
     Args:
         parts: the designer's roads.
         world: the world of the roads.
-        is_thesis: whether the thesis' prompts alone are counted, with the thesis' counts beside them.
+        is_thesis: whether to count only the thesis' prompts, and to add the thesis' counts for comparison.
         near: sentences on the drives that came nearest to failing.
     """
     designer = parts[0].designer
@@ -195,7 +195,7 @@ def write_run_report(folder: Path, command: str = "", next_steps: Steps = ()) ->
 
 
 def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | None:
-    """Returns the least margin of the roads with an outcome, in metres, and the name of that road."""
+    """Returns the smallest margin, in metres, of all roads with this outcome, and the name of that road."""
     found = [
         (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None
     ]

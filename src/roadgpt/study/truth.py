@@ -1,8 +1,8 @@
-"""Reads a truth: the requirements of a description, which people wrote down before they saw a road.
+"""Defines a truth: the requirements of a description, as people wrote them down before they saw a road.
 
 The keys and their meaning are those of the project's referee, an independent judge of roads; tests compare
-``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys. For the
-check, a truth is converted to an Outline, the form of the requirements that a reader finds.
+``holds`` with the referee, key by key. The guide docs/how-to/evaluate-roads.md describes the keys. To
+check a road, a truth is converted to an Outline; requirements that a reader finds have the same form.
 """
 
 from dataclasses import replace
@@ -18,7 +18,7 @@ from roadgpt.check.measures import Measures
 from roadgpt.check.rules.promises import complaints
 
 SLACK = 1e-9  # added to both ends of every range, as in the referee
-SHORTEST = 20.0  # m; a shorter road keeps nothing
+SHORTEST = 20.0  # m; a shorter road meets no requirement
 SLOPES = {
     "up": Range(1.0, inf),
     "down": Range(-inf, -1.0),
@@ -77,7 +77,7 @@ class Truth(Frozen):
     right: Bounds | None = None
     grade: Slope | None = None
     sequence: tuple[ExpectedElement, ...] | None = None
-    """All turns in their order, and the straights that were asked for between them."""
+    """All turns in order, and the straights that the description requires between them."""
     ends: ExpectedElement | None = None
     starts: ExpectedElement | None = None
     alternating: Literal[True] | None = None
@@ -101,8 +101,8 @@ class Truth(Frozen):
         None.
 
         The key ``sequence`` lists all turns of the road, so it also sets their number. An Outline that
-        requires exactly 0 turns accepts only a straight road, but that of a Truth also accepts slight bends,
-        because SLACK widens every range; use the key ``turning`` to limit them.
+        requires exactly 0 turns accepts only a straight road. The Outline of a Truth with 0 turns also
+        accepts slight bends, because SLACK widens every range; use the key ``turning`` to limit the bends.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:
@@ -112,7 +112,7 @@ class Truth(Frozen):
 
 
 def _asked(value: Any) -> Any:
-    """Returns the value of a key as the Outline has it."""
+    """Converts the value of a key of a Truth to the value that an Outline uses for it."""
     if isinstance(value, ExpectedElement):
         return Feature(
             value.kind,

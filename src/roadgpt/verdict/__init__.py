@@ -1,11 +1,11 @@
 """Judges a Drive on a road, and returns a Verdict. Main function: ``judge``.
 
-The test oracle is that of the SBFT tool competition. The car fails if the share of its
-bounding box outside its lane exceeds the tolerance at any control step, if it falls off the road, if it
-moves less than 1 m in 10 s, or if a time limit is exceeded. It passes if it comes within 8 m of the end of
-the road. Any other lane and the shoulder count as outside. If ``World.lane_departure`` is set, the car
-also fails as soon as a front tyre crosses a lane marking. Every verdict states how far outside its lane the
-car was, on the scale of ``roadgpt.verdict.severity``.
+The test oracle is that of the SBFT tool competition. The car fails if the share of its bounding box outside
+its lane exceeds the tolerance at any control step, if it falls off the road, if it moves less than 1 m in
+10 s, or if a time limit is exceeded. It passes if it comes within 8 m of the end of the road. Any other lane
+and the shoulder count as outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a
+front tyre crosses a lane marking. Every verdict states how far outside its lane the car was, on the scale of
+``roadgpt.verdict.severity``.
 """
 
 from importlib import import_module
@@ -34,7 +34,7 @@ __all__ = [
     "severity",
 ]
 
-# Values and the scale load at once, for commands that only show results; judging loads when it is needed.
+# The classes and the scale load at once, for commands that only show results; judging loads when needed.
 _LATER = {"judge": "judging", "most_beyond": "judging", "Oracle": "oracle", "consult": "oracle"}
 
 

@@ -21,9 +21,10 @@ CAUSES: dict[str, Cause] = {
     "timeout": "timeout",
 }
 
-LEAST = 0.005  # m beyond a marking, from which the distance is stated
+LEAST = 0.005  # m; a smaller distance beyond a marking is not stated
 
-# The competition's own words; it adds the name of the simulation. For it, a car that falls has left the lane.
+# The competition's own words, to which it adds the name of the simulation. To the competition, a car that
+# falls has left the lane.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
@@ -51,7 +52,7 @@ def judge(
             not fail). If ``known`` is None, both are computed.
 
     Raises:
-        UsageError: The drive was stopped at a smaller tolerance than ``world.oob_tolerance``.
+        UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
     step, cause = known or _first_failure(road, drive, world)
@@ -112,8 +113,9 @@ def _left(road: "Road", drive: "Drive", step: int, world: "World") -> bool:
 
 
 def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
-    """Describes a PASS; it also states how far outside the car was, because a tolerance lets such a car
-    pass."""
+    """Describes a PASS. The text also states how far outside its lane the car was, because the tolerance
+    allows this up to a limit.
+    """
     reached = f"to the goal after {drive['s'][-1]:.0f} m"
     if not drive.max_outside:
         return f"kept its lane {reached}, never closer than {margin:.2f} m to failing"

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FloatArray = NDArray[np.float64]
 THINNEST = 1e-9  # m, lower bound of a half-width, for a box seen exactly end-on
-EPSILON = 1e-9  # m, smallest amount of a negative margin
+EPSILON = 1e-9  # m; a negative margin is at least this far below 0
 LEAST_STRETCH = 0.2  # lower bound of the metres on the inside of a bend per metre of road
 
 

@@ -1,7 +1,8 @@
 """Computes the SBFT competition's out-of-bounds values at every control step of a drive.
 
 Source: SBFT tool competition, self_driving/oob_monitor.py, applied to the driven lane. If
-``World.lane_departure`` is set, the car is also out of bounds while a front tyre is beyond a lane marking.
+``World.limits.lane_departure`` is set, the car is also out of bounds while a front tyre is beyond a lane
+marking.
 """
 
 from typing import TYPE_CHECKING, NamedTuple
@@ -60,7 +61,8 @@ def is_outside(road: "Road", drive: "Drive", world: "World") -> NDArray[np.bool_
     """Returns for each step whether the car is out of its lane.
 
     The car is out of its lane if the share of its bounding box outside the lane exceeds the tolerance. If
-    ``World.lane_departure`` is set, it is also out of its lane while a front tyre is beyond a lane marking.
+    ``World.limits.lane_departure`` is set, it is also out of its lane while a front tyre is beyond a lane
+    marking.
     """
     out: NDArray[np.bool_] = drive["outside"] > world.limits.oob_tolerance
     out |= has_departed(road, drive, world)
@@ -72,7 +74,7 @@ def has_departed(road: "Road", drive: "Drive", world: "World") -> NDArray[np.boo
     """Returns for each step whether the outer edge of a front tyre is beyond the outer edge of a lane
     marking.
 
-    All values are False if ``world.lane_departure`` is not set.
+    All values are False if ``world.limits.lane_departure`` is not set.
     """
     if not world.limits.lane_departure:
         return np.zeros(len(drive), bool)

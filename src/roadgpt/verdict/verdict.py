@@ -45,8 +45,8 @@ class Verdict:
     """Largest distance in metres by which the car's body extended beyond a marking of its lane.
 
     The distance is measured from the outer edge of the centre line or edge line, over the same steps as
-    ``max_oob``; it is 0 if the car never extended beyond them. It is None where the verdict was read from a
-    file of an older version and the drive is missing.
+    ``max_oob``; it is 0 if the car never extended beyond them. It is None if the verdict was read from a file
+    of an older version and the drive is missing.
     """
     at_s: float | None = None
     """Station in metres where the car failed; None if it kept its lane."""

@@ -28,7 +28,7 @@ class PlanReader:
 
 
 def _reject_unsuited(clause: Clause | None) -> None:
-    """Raises BriefError if a straight is to turn, or a turn is to be long or short."""
+    """Raises BriefError if a straight has a field of turns, such as a side, or a turn is long or short."""
     if clause is None:
         return
     unsuited = clause.model_fields_set & (OF_TURNS if clause.kind in STRAIGHT else {"size"})

@@ -1,8 +1,8 @@
 """Executors: plug-ins that run the jobs of a campaign on workers. Each file defines one kind of worker.
 
 An executor is a class whose constructor takes a WorkerConfig; ``Executor`` describes its methods. An executor
-only runs jobs. The process that created it chooses the tests, receives their results, and alone writes the
-store.
+only runs jobs. The process that created it chooses the tests, receives their results, and is the only one
+that writes the store.
 
 A job runs ``function(item, *values)`` with the shared values that it needs; the function must be defined at
 the top level of a module. A job may run more than once: a worker that dies or hangs (sends no sign of life,
@@ -22,7 +22,7 @@ from typing import Any, Protocol, TypeVar
 T = TypeVar("T")
 U = TypeVar("U")
 
-MOST_DEATHS = 3  # of workers, over one job; then it is the job that kills them
+MOST_DEATHS = 3  # of workers that ran the same job; after that many, the job is to blame
 
 
 @dataclass(frozen=True)

@@ -1,9 +1,9 @@
 """The executor ``ray``: workers that are actors on a Ray cluster, each on one core of any of its machines.
 
-Several short jobs are sent in one message, because each message costs time. If a
-worker dies, the jobs of the message that it had received are run again one by one, so that only the job that
-killed the worker is given up. If a whole machine fails, the jobs that ran on it are run again, and no job is
-blamed for the failure. Results return to this process, the only one that writes the store.
+Several short jobs are sent in one message, because each message costs time. If a worker dies, the jobs of its
+last message are run again one by one, so that only the job that killed the worker is given up. If a whole
+machine fails, the jobs that ran on it are run again, and no job is blamed for the failure. Results return to
+this process, the only one that writes the store.
 
 Ray's own retries are off: Ray cannot distinguish between a job that kills its workers and a machine that was
 switched off.
@@ -27,8 +27,9 @@ from roadgpt.errors import RoadGPTError, UsageError
 
 ROUND = 0.5  # s between two looks at all workers
 TOGETHER = 16  # jobs in one message, at most
-PER_WORKER = 3  # messages that the jobs that wait are shared out in, so that nobody waits long for the last
-ANSWER = 10.0  # s for the head of a cluster to take a call
+# Messages per worker into which the waiting jobs are divided: none is so long that all wait for one worker.
+PER_WORKER = 3
+ANSWER = 10.0  # s for the head of a cluster to accept a connection
 PATIENCE = 600.0  # s for the cluster to find room for one worker
 
 
@@ -53,7 +54,9 @@ class Ray(JobQueue):
     def __init__(self, staff: WorkerConfig) -> None:
         """Asks the cluster for workers.
 
-        ``WorkerConfig.address`` is the address of its head, empty for a cluster on this machine.
+        If this process is connected to Ray already, that cluster is used. Otherwise ``WorkerConfig.address``
+        is the address of the cluster's head; if it is empty, the environment variable RAY_ADDRESS is read. If
+        that is empty too, a cluster is started on this machine.
 
         Raises:
             UsageError: Ray is not installed.
@@ -63,10 +66,10 @@ class Ray(JobQueue):
         self._staff = staff
         self._prepare = pickled(staff.prepare)
         self._ray, self._is_ours = _connected(staff)
-        self._alone: set[QueuedJob] = set()  # done singly, since a worker ended over them and others
-        self._in_vain = 0  # workers that ended before they were ready, since the last that was
+        self._alone: set[QueuedJob] = set()  # sent singly, since a worker died while it had them and others
+        self._in_vain = 0  # workers that ended before they were ready, since one last became ready
         self._started = 0
-        self._since = time.monotonic()  # nobody was ready
+        self._since = time.monotonic()  # since then no worker has been ready
         self._events: queue.SimpleQueue[tuple[_Worker, Any]] = queue.SimpleQueue()
         self._stops = threading.Event()
         self._workers: list[_Worker] = []
@@ -90,7 +93,8 @@ class Ray(JobQueue):
             ]
 
     def stop(self) -> None:
-        """Ends every worker, and the cluster if it was started for them."""
+        """Ends every worker, and the connection to Ray if this executor made it; a cluster that was started
+        for the workers ends, too."""
         if self._stops.is_set():
             return
         self._stops.set()
@@ -161,7 +165,7 @@ class Ray(JobQueue):
         self._expect(worker, worker.actor.work.remote(orders))
 
     def _some(self, waiting: deque[QueuedJob]) -> list[QueuedJob]:
-        """Takes jobs for one message: a share of those that wait, or a single one that may be to blame."""
+        """Takes jobs for one message: some of the waiting jobs, or one job that may have killed a worker."""
         most = min(TOGETHER, -(-len(waiting) // (PER_WORKER * self._size)))
         works: list[QueuedJob] = []
         while waiting and len(works) < most and not (works and waiting[0] in self._alone):
@@ -212,7 +216,7 @@ class Ray(JobQueue):
 
 
 def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
-    """Connects to Ray; returns it, and whether this function made the connection."""
+    """Connects to Ray; returns the module ``ray``, and whether this function made the connection."""
     try:
         import ray
     except ImportError as error:
@@ -237,13 +241,13 @@ def _connected(staff: WorkerConfig) -> tuple[Any, bool]:
 
 
 def _knock(address: str) -> None:
-    """Tries the address of a cluster, since Ray itself tries for minutes where nobody listens."""
+    """Checks that something listens at a cluster's address; Ray itself would keep trying for minutes."""
     host, _, port = address.rpartition(":")
     if host and port.isdecimal() and "/" not in host:
         socket.create_connection((host.strip("[]"), int(port)), ANSWER).close()
 
 
 def _reason(error: BaseException) -> str:
-    """Returns the first line of what Ray says about the end of a worker."""
+    """Returns the first line of Ray's message about the end of a worker."""
     reason = str(error).strip().partition("\n")[0]
     return f"ended: {reason}" if reason else "ended"

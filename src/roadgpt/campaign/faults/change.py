@@ -63,7 +63,7 @@ class SmallestChange:
 def smallest_change(
     kept: Run, failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES
 ) -> SmallestChange:
-    """Finds the smallest change that makes the car fail, among the differences between two Runs.
+    """Finds, among the differences between two Runs, the smallest change that makes the car fail.
 
     Both roads must have the same number of segments.
 
@@ -94,7 +94,7 @@ def smallest_change(
 
 
 def _at_the_start_of(failing: Design, kept: Design) -> Design:
-    """Moves a road to the start of another: where it lies on the map makes no difference to the car."""
+    """Returns ``kept`` moved to the start of ``failing``; the car drives the same anywhere on the map."""
     return failing.model_copy(update={"segments": kept.segments})
 
 
@@ -115,7 +115,7 @@ def _changed(design: Design, differences: Sequence[Difference]) -> Design:
 
 
 def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """Returns a part of the differences that fails, and from which none can be left out."""
+    """Returns some of the differences: with these the car still fails, and none can be left out."""
     left = [*every]
     size = max(1, len(left) // 2)
     while True:
@@ -131,7 +131,7 @@ def _fewest(base: Design, every: Sequence[Difference], trial: Trial) -> list[Dif
 
 
 def _least(base: Design, differences: Sequence[Difference], trial: Trial) -> list[Difference]:
-    """Returns the same differences, each as small as possible."""
+    """Returns the differences, all scaled by the smallest common fraction with which the car still fails."""
     low, high = 0.0, 1.0
     while high - low > FINEST:
         middle = (low + high) / 2

@@ -23,12 +23,12 @@ Array = NDArray[np.float64]
 AROUND = 30.0  # m, the competition's, before and after the departure
 STEP = 1.0  # m
 SHIFT = 8  # steps that two profiles may be moved against each other
-SMOOTHING = 5  # steps, half-width of the Hann window over them: a car is about so long
+SMOOTHING = 5  # steps, half-width of the Hann window that smooths profiles: about the length of a car
 ALIKE = 1.0  # distance up to which two failures are one fault
-BEND = 0.012  # 1/m, root mean square: so different bends count 1 (R 15 m against R 18 m all along)
-GRADE = 0.04  # ratio, likewise
+BEND = 0.012  # 1/m, RMS difference in curvature that counts 1 (R 15 m against R 18 m all along)
+GRADE = 0.04  # RMS difference in grade, as a ratio, that counts 1
 COUNT = round(AROUND / STEP)
-MOST = 1000  # failures that are compared each with each at a time: a second, and memory for a million numbers
+MOST = 1000  # failures clustered at a time; comparing all pairs takes 1 s and memory for a million numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,14 +36,14 @@ class Surroundings:
     """The lane around a departure, sampled every metre."""
 
     bends: Array
-    """Smoothed curvature of the lane, 1/m; NaN beyond the ends of the road. The array reaches ``SHIFT``
-    values beyond the compared part.
+    """Smoothed curvature of the lane, 1/m; NaN beyond the ends of the road. At either end, the array extends
+    ``SHIFT`` values beyond the compared part.
     """
     grades: Array
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
-    """Text that states the side and the cause of the failure. Failures with different texts never belong
-    to the same fault.
+    """Text that states the cause and the side of the failure, and the driver, simulator and world. Failures
+    with different texts never belong to the same fault.
     """
 
 
@@ -54,7 +54,7 @@ def surroundings(road: Road, world: World, station: float, kind: str) -> Surroun
         road: the road.
         world: determines the width of the lane.
         station: station of the departure, metres along the road.
-        kind: text that states side and cause of the failure, see ``Surroundings.kind``.
+        kind: text that states cause and side of the failure and more, see ``Surroundings.kind``.
     """
     reach = COUNT + SHIFT + SMOOTHING
     s = station + STEP * np.arange(-reach, reach + 1)
@@ -91,18 +91,18 @@ def between(some: Sequence[Surroundings], others: Sequence[Surroundings]) -> Arr
         return least
     one, other = _Stacked.of(some), _Stacked.of(others)
     for shift in range(-SHIFT, SHIFT + 1):
-        # each takes half of the shift, so that neither of the two is the one that is moved
+        # each profile is moved by half of the shift, so that distances are symmetric
         a, b = one.moved(shift // 2), other.moved(shift // 2 - shift)
         apart = cdist(a.bends, b.bends, "sqeuclidean") / BEND**2
         apart += cdist(a.grades, b.grades, "sqeuclidean") / GRADE**2
-        # over the stretch that at least one of the two has
+        # averaged over the stations at which at least one of the two roads exists
         np.minimum(least, apart / (a.beyond.shape[1] - a.beyond @ b.beyond.T), out=least)
     alike = np.equal.outer(one.kinds, other.kinds)
     return np.where(alike, np.sqrt(least), np.inf)
 
 
 class _Stacked(NamedTuple):
-    """Surroundings as rows; zeros beyond their roads."""
+    """Several Surroundings as rows of arrays; values beyond the ends of a road are 0."""
 
     bends: Array
     grades: Array
@@ -157,7 +157,7 @@ def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int 
 
 
 def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
-    """Returns clusters by complete linkage, numbered from 0."""
+    """Returns the cluster of each failure, by complete linkage; clusters are numbered from 0."""
     if len(some) < 2:
         return np.zeros(len(some), int)
     far = 1e6  # stands for infinity, which linkage does not take
@@ -170,7 +170,8 @@ def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
 def typical(members: Sequence[Surroundings]) -> list[int]:
     """Returns the indices of the failures of one fault, the most typical one first.
 
-    The most typical failure has the smallest sum of squared distances to the others.
+    The most typical failure has the smallest sum of squared distances to the others. Of more than 1000
+    failures, only the first 1000 are compared and returned.
     """
     some = members[:MOST]
     squares = between(some, some) ** 2

@@ -16,10 +16,10 @@ from roadgpt.drive import Command, View
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-GRIP = 0.05  # share by which friction is off, standard deviation: patches of one dry road differ by so much
-START = 0.10  # m beside the lane's middle, standard deviation: a positioning system with corrections
-DELAY = 0.06  # s at most that what the driver sees is old: a camera and its network take up to 100 ms
-MOST = 3.0  # standard deviations; what is drawn beyond is drawn again
+GRIP = 0.05  # standard deviation of friction, as a share: patches of one dry road differ by this much
+START = 0.10  # m, standard deviation of the lateral start position: a positioning system with corrections
+DELAY = 0.06  # s, longest delay of what the driver sees: a camera and its network take up to 100 ms
+MOST = 3.0  # standard deviations; a number beyond this is drawn again
 
 
 @dataclass(frozen=True)

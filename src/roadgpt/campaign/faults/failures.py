@@ -1,4 +1,4 @@
-"""Finds the failures of a campaign or of runs, and where on its road each occurred; nothing is driven."""
+"""Finds stored failures of a campaign or of runs, and where on its road each occurred; no road is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from roadgpt.errors import RoadGPTError
 from roadgpt.road import World
 from roadgpt.run import Setup
 
-AT_ONCE = 500  # tests that a store is asked for
+AT_ONCE = 500  # tests that are read from a store with one query
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,8 +40,8 @@ class Failures:
 
     known: tuple[LocatedFailure, ...]
     every: int
-    """Number of all failures in the folder. It includes failures that are not in the sample, and failures
-    whose road is not stored.
+    """Number of all failures in the folder, or in the cell that was chosen. It includes failures that are not
+    in the sample, and failures whose road is not stored.
     """
 
 
@@ -95,7 +95,7 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
             for its in record.results(name, where, numbers):
                 try:
                     road = record.road(cell, its)
-                except RoadGPTError:  # of another version, which built it
+                except RoadGPTError:  # the version that made the road could build it; this one cannot
                     continue
                 if road is None:
                     continue

@@ -1,4 +1,4 @@
-"""Finds the distinct faults in a folder: groups of similar failures; nothing is driven."""
+"""Finds the distinct faults in a folder: groups of similar failures; no road is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,8 +13,8 @@ DEFINED = (
     "Two failures are one fault where the same driver, in the same world, left its lane for the same cause, "
     "to the same side, and where the road bends and climbs alike from 30 m before the place to 30 m after it."
 )
-MOST_WAYS = 3  # that a headline tells
-TRIED = 3  # typical failures of a fault that are repeated, until one fails every second time
+MOST_WAYS = 3  # ways of failing that a headline names
+TRIED = 3  # typical failures of a fault that are driven again, until one fails in half of the drives
 WAYS: dict[Way, str] = {
     "wide": "ran wide of",
     "inside": "cut the inside of",
@@ -47,7 +47,7 @@ class Faults:
 
     them: tuple[Fault, ...]
     failures: int
-    """Number of all failures in the folder."""
+    """Number of all failures in the folder, or in the cell that was chosen."""
     compared: int
     """Number of failures that were compared; the others belong to no fault."""
 

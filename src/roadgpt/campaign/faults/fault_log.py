@@ -1,5 +1,5 @@
-"""Analyses the faults of a folder, and stores the results: for each fault a typical failure, driven again and
-simplified.
+"""Analyses the faults of a folder, and stores the results. For each fault, a typical failure is driven again
+and, on request, its road is simplified.
 
 DIR/faults/
   c01/0017.json    why a failure happened, the result of every disturbed drive, and the simplest road;
@@ -9,7 +9,7 @@ DIR/faults/
   faults.csv       one line per fault; the fault with the most failures comes first
   failures.csv     one line per failure, with the fault that it belongs to
 
-In a folder of runs there is no c01/.
+For a folder of runs, the level c01/ is left out.
 """
 
 import math
@@ -104,7 +104,7 @@ def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
 
 
 def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
-    """Returns the analysis of one failure; drives and draws it where that has not been done."""
+    """Returns the analysis of one failure; drives and draws the failure unless that was done before."""
     run, path = kept_run(task.folder, *name), _page(task.folder, name)
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
@@ -118,7 +118,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
 
 
 def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
-    """Returns the analysis with its simplest road, which is looked for where that has not been done."""
+    """Returns the analysis with its simplest road; searches for this road unless it is stored already."""
     place = simplest_of(task.folder, found.name)
     if found.simplest and is_run(place):
         return found
@@ -141,7 +141,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
     pages = [name for name in fault.names if _page(folder, name).is_file()]
     runs = [(name, kept_run(folder, *name, has_drive=False)) for name in pages]
     found = [its for name, run in runs if (its := _read(_page(folder, name), run, name))]
-    # of equals max takes the first, which is the most typical
+    # of equal ones max returns the first, which is the most typical
     return max(found, key=lambda its: its.stability.is_stable or its.stability.share, default=None)
 
 
@@ -221,8 +221,8 @@ def _drive(drive: Repeated) -> dict[str, Any]:
 
 
 def _read(path: Path, run: Run, name: NumberedTest, times: int | None = None) -> FailureAnalysis | None:
-    """Returns a stored analysis if it is of this Run and, where ``times`` is given, of as many drives; else
-    None."""
+    """Returns the stored analysis if it belongs to this Run and, where ``times`` is given, has that many
+    drives; otherwise None."""
     try:
         data = read_json(path)
         if data["seed"] != run.seed or data["description"] != run.description:

@@ -88,7 +88,8 @@ class Trial:
 
 
 def _moved(design: Design, failure: Run) -> list[Design]:
-    """Returns the Design moved to the middle of the map, which a part of a road may otherwise leave."""
+    """Returns the Design moved to the middle of the map, because a simplified road may leave the map; an
+    empty list if the road cannot be built."""
     try:
         points = build(design, failure.request.setup.geometry).centreline()
     except RoadGPTError:
@@ -124,7 +125,8 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
 
 
 def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> Design:
-    """Returns the Design after as many simplifications as it still fails with: all, or halves of them."""
+    """Returns the Design after all of the simplifications, if the car still fails; otherwise tries each half
+    of them, then each quarter, and so on, and keeps those with which the car still fails."""
     kept: list[Simplification] = []
 
     def take(part: Sequence[Simplification]) -> None:

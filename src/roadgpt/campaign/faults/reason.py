@@ -25,10 +25,10 @@ Way = Literal["wide", "inside", "off", "stopped", "late"]
 """The car ran wide of a bend, cut its inside, left a straight, came to a standstill, or ran out of time."""
 
 GRAVITY = 9.81  # m/s^2
-BEFORE, AFTER = 25.0, 5.0  # m, around the departure: where its bend is looked for
+BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is looked for
 STRAIGHT = 1 / 250  # 1/m; a lane that bends less is called straight
 ENTRY = 0.5  # share of a bend's curvature at which it begins
-JUST_BEFORE = 25.0  # m, from a bend of the other side, within which a sentence names both
+JUST_BEFORE = 25.0  # m; if a bend to the other side was this near, a sentence names both
 HILL = 0.02  # of gravity that a crest takes or a dip adds, below which it is not mentioned
 SLOPE = 0.03  # of grade, likewise
 
@@ -94,7 +94,8 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
 
 
 def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
-    """Returns stations around a departure, the largest curvature of the lane among them, and its station."""
+    """Returns stations around a departure, the largest curvature of the lane at these stations, and the
+    station of this curvature."""
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
     bends = lane_curvature(road, world, near)
     tightest = int(np.argmax(np.abs(bends)))
@@ -161,7 +162,7 @@ def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station:
 
 
 def _needed(road: Road, drive: Drive, world: World, begin: float, station: float) -> float:
-    """Returns the largest friction that the lane's middle requires up to the departure."""
+    """Returns the largest friction coefficient that the middle of the lane requires up to the departure."""
     on = (drive["s"] >= min(begin, station)) & (drive["s"] <= station)
     if not on.any():
         on[-1] = True
@@ -175,7 +176,8 @@ def _needed(road: Road, drive: Drive, world: World, begin: float, station: float
 
 
 def _entry(road: Road, world: World, place: float, bend: float) -> float:
-    """Returns the station where the bend around a place begins: where it is half as tight."""
+    """Returns the station where the bend around a place begins: there, its curvature falls below half of
+    ``bend``. The search goes back 60 m at most."""
     back = np.arange(place, max(0.0, place - 60.0) - 0.5, -0.5)
     before = lane_curvature(road, world, np.maximum(back, 0.0)) * math.copysign(1.0, bend)
     softer = np.flatnonzero(before < ENTRY * abs(bend))
@@ -183,7 +185,7 @@ def _entry(road: Road, world: World, place: float, bend: float) -> float:
 
 
 def _after(road: Road, begin: float, bend: float) -> str:
-    """Describes a bend to the other side right before, if there is one."""
+    """Describes a bend to the other side within 25 m before ``begin``; returns '' if there is none."""
     back = np.arange(max(0.0, begin - JUST_BEFORE), begin, 0.5)
     if not len(back):
         return ""

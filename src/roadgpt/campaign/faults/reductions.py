@@ -59,7 +59,7 @@ def simplifications() -> list[Simplifier]:
 
 
 def _dropping(design: Design) -> list[Simplification]:
-    # the end first: what lies behind the departure matters least
+    # the last segment first: what comes after the departure matters least
     count = len(design.segments)
     return [Simplification(index, lambda segment: None, "left out") for index in reversed(range(count))]
 

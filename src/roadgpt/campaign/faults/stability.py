@@ -20,7 +20,7 @@ from roadgpt.run import Run
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.verdict import Verdict, judge
 
-SURE = 0.95  # of the interval
+SURE = 0.95  # confidence level of the interval
 STABLE = 0.5  # share of drives that fail, from which a failure counts as stable
 
 
@@ -32,7 +32,7 @@ class Repeated:
     disturbance: Disturbance
     failed: bool
     margin: float
-    """Margin to out of bounds, metres."""
+    """Margin to out of bounds, metres; NaN if the drive ended with an error."""
     at_s: float | None
 
 
@@ -89,7 +89,7 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
             be loaded.
         GivenUpError: the simulator failed three times in a row.
     """
-    require_permission(run.request.setup.driver)  # other processes know nothing of where it comes from
+    require_permission(run.request.setup.driver)  # other processes do not know who named the driver
     return Stability(tuple(spread(once, [(run, number) for number in range(1, times + 1)])))
 
 
@@ -137,7 +137,7 @@ def drive_disturbed(run: Run, disturbance: Disturbance) -> Verdict:
 
 
 def _engine(name: str, disturbance: Disturbance) -> Simulator | str:
-    """Returns the simulator with the car beside its lane's middle, if it can start there."""
+    """Returns the simulator with the disturbed start position; just its name if it has no such setting."""
     part = plugins.find("simulators", name)
     if not isinstance(part, type) or "start_offset" not in signature(part).parameters:
         return name

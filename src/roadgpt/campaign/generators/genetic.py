@@ -1,7 +1,7 @@
 """The test generator ``genetic``: a plain genetic algorithm whose roads all satisfy the Brief.
 
-The fittest roads so far, on which the car came nearest to failing, are crossed and mutated; the parents are
-the winners of small tournaments. It has no feature map and no surrogate, and serves as a baseline for
+The fittest roads so far, those with the smallest margins, are crossed and mutated; the parents are the
+winners of small tournaments. The generator has no feature map and no surrogate, and serves as a baseline for
 ``quality_diversity``.
 """
 
@@ -23,13 +23,13 @@ from roadgpt.road import Design
 
 POPULATION = 20  # of the fittest
 TOURNAMENT = 3
-CROSSED = 0.6  # of the children; the others take after one parent
+CROSSED = 0.6  # share of children with two parents; the others have one
 
 
 class Genetic:
     """A genetic algorithm with tournaments, crossover and mutation."""
 
-    goals: tuple[Goal, ...] = ("failures", "hardest")  # it knows only how near a road came to failing
+    goals: tuple[Goal, ...] = ("failures", "hardest")  # it compares only margins
 
     def __init__(self, cell: Cell) -> None:
         """Begins with an empty population.

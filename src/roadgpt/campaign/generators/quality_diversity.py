@@ -35,11 +35,11 @@ from roadgpt.design.elements import elements_of
 from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
-OFTEN = (0.6, 0.2, 0.2)  # of candidates
-FAILED_PARENTS = 0.5  # of variations, whose parent failed; of others it is any elite
-BISECTED = 0.6  # of a batch, where the boundary is the goal
-SHARES = (0.5, 0.3, 0.7)  # of the way between a pair, by batch: so the next one asks for another road
-CLOSE = 0.05  # apart, a pair is near enough (see pairs.distance)
+OFTEN = (0.6, 0.2, 0.2)  # share of candidates of each kind
+FAILED_PARENTS = 0.5  # share of parents drawn from failed elites; the others are drawn from all elites
+BISECTED = 0.6  # share of a batch that lies between two tests, if the goal is the boundary
+SHARES = (0.5, 0.3, 0.7)  # position between the roads of a pair; changes by batch, so that roads do too
+CLOSE = 0.05  # distance up to which a pair is near enough (see boundary_pairs.distance)
 
 
 class QualityDiversity:
@@ -85,7 +85,7 @@ class QualityDiversity:
         return proposals_of(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
 
     def _look(self, pool: Pool) -> None:
-        """Computes features and shapes of the roads that were added since."""
+        """Computes features and shapes of roads added since the last call; keeps those of the last 1500."""
         known = list(self._results)[-MOST:]
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         new = [number for number in known if number not in self._looks]
@@ -94,7 +94,8 @@ class QualityDiversity:
         self._looks |= dict(zip(new, looks, strict=True))
 
     def _task(self, rng: np.random.Generator) -> VariationTask:
-        """Draws a candidate: a variation of an elite, more often of one that failed, or something new."""
+        """Draws the task to make one candidate: a variation of one elite, a crossover of two, or a new road.
+        Elites that failed are preferred, unless the goal is coverage."""
         kind = KINDS[int(rng.choice(len(KINDS), p=OFTEN))] if self._results else "wild"
         seed = (int(rng.integers(2**53)),)
         if kind == "wild":
@@ -141,7 +142,7 @@ class QualityDiversity:
         return [target_of(result.margin, result.failed), *driven]
 
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
-        """Returns roads half-way between passed tests and their nearest relatives that failed."""
+        """Returns roads that lie between a passed test and the most similar failed test."""
         for number, result in self._results.items():
             if number not in self._roads and result.design:
                 self._roads[number] = elements_of(result.design.segments)

@@ -1,4 +1,4 @@
-"""An executor without workers: it runs each job in this process when its result is asked for."""
+"""An executor without workers: it runs the next job in this process when the caller asks for results."""
 
 from collections import deque
 from collections.abc import Callable, Sequence

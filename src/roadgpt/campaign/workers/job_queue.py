@@ -20,7 +20,7 @@ from roadgpt.errors import RoadGPTError
 T = TypeVar("T")
 U = TypeVar("U")
 
-CHUNKS = 4  # per worker, that ``map`` makes of its items: few messages, and nobody waits long for the last
+CHUNKS = 4  # parts per worker into which ``map`` divides its items: few messages, no long wait for the last
 
 
 @dataclass(eq=False)
@@ -39,7 +39,7 @@ class JobQueue(ABC):
     """The waiting and finished jobs of an executor."""
 
     def __init__(self, workers: int) -> None:
-        """Makes an empty queue for so many workers."""
+        """Makes an empty queue for this number of workers."""
         self._size = workers
         self._changed = threading.Condition()
         self._shared: dict[str, bytes] = {}
@@ -86,7 +86,7 @@ class JobQueue(ABC):
         raises.
 
         Raises:
-            RoadGPTError: three workers died while computing the same items.
+            RoadGPTError: three workers died while computing the same items, or no workers are left.
         """
         size = max(1, -(-len(items) // (CHUNKS * self._size)))
         parts = [items[first : first + size] for first in range(0, len(items), size)]
@@ -130,7 +130,8 @@ class JobQueue(ABC):
             self._ended.append((work, kind, what))
 
     def _give_again(self, work: QueuedJob, how: str) -> None:
-        """Queues the job of a dead worker first of all, or gives it up if too many workers died over it."""
+        """Puts the job of a dead worker at the head of the queue; gives the job up if too many workers died
+        while running it."""
         work.deaths += 1
         if work.deaths < MOST_DEATHS:
             (self._waiting if work.key is not None else self._urgent).appendleft(work)
@@ -147,7 +148,7 @@ class JobQueue(ABC):
 def _finished_job(work: QueuedJob, kind: int, what: bytes) -> FinishedJob:
     try:
         value = unpickled(what)
-    except Exception as error:  # of a class that cannot be made again
+    except Exception as error:  # an error whose class cannot be unpickled, for example
         return FinishedJob(work.key or 0, error=RuntimeError(f"an answer cannot be read: {error}"))
     return (
         FinishedJob(work.key or 0, value=value) if kind == VALUE else FinishedJob(work.key or 0, error=value)

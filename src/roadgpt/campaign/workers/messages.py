@@ -1,6 +1,7 @@
 """Messages between a campaign and its own worker processes: pickled values, each preceded by its length.
 
-Both ends are our own processes on one machine; no message from elsewhere is ever read here.
+``send`` and ``receive`` connect processes that RoadGPT started on one machine. ``pickled`` and ``unpickled``
+also serve the executor ``ray``, whose workers may run on other machines of its cluster. Nothing else is read.
 """
 
 import pickle

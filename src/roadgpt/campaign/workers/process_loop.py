@@ -19,7 +19,7 @@ from roadgpt.campaign.workers.messages import pickled, receive, send, unpickled
 from roadgpt.children import ends_its_own, private_streams
 
 BEAT = 1.0  # s between signs of life
-ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages that go up
+ALIVE, READY, VALUE, ERROR = range(4)  # kinds of messages from a worker to its parent
 
 
 class JobMessage(NamedTuple):

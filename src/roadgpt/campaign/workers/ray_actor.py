@@ -16,7 +16,8 @@ class RayActor:
     """The worker, in its own process."""
 
     def __init__(self, patience: float) -> None:
-        """Takes the seconds after which one of several jobs is taken to hang, which ends the worker."""
+        """Takes the seconds after which a job is treated as hanging and the worker ends; they apply only to
+        messages with several jobs."""
         self._patience = patience
         self._shared: dict[str, Any] = {}
 

@@ -48,7 +48,7 @@ class OpenAI:
         return self._account.spent
 
     def _only_model(self) -> str:
-        """Returns the server's only model; if it has several, the user has to choose."""
+        """Returns the name of the server's only model; raises ChatError if it has several models or none."""
         advice = "say which with --model or ROADGPT_MODEL"
         try:
             names = [str(one.get("id")) for one in self._client.models() if one.get("id")]
@@ -123,7 +123,7 @@ class OpenAI:
         return answer
 
     def _sent(self, messages: Sequence[Message], body: dict[str, Any]) -> Answer:
-        """Sends one request through the API of the settings."""
+        """Sends one request through the API that the settings select."""
         if self._settings.api == "responses":
             return self._conversation().respond(self._client, self._quirks, messages, body)
         turns = [{"role": message.role, "content": message.text} for message in messages]
@@ -150,7 +150,7 @@ class OpenAI:
         return {**body, "response_format": kind}
 
     def _adapts(self, fault: RequestError) -> bool:
-        """Returns True if a rejected parameter can be left out or renamed, and does so from now on."""
+        """Returns True if a rejected parameter can be left out or renamed; later requests then do this."""
         if fault.status not in (400, 422):
             return False
         quirks = self._quirks
@@ -211,7 +211,7 @@ class FormatFallback:
 
 
 def _is_about_format(fault: RequestError) -> bool:
-    """True if the response format may be the cause; a plain 400 says too little to exclude it."""
+    """True if the response format may be the cause; status 400 or 422 alone says too little to exclude it."""
     if fault.status not in OTHER_WAY or any(word in fault.details for word in FULL):
         return False
     names_it = any(word in f"{fault.parameter} {fault.details}" for word in ABOUT_FORMAT)
@@ -241,7 +241,7 @@ def _data(answer: Answer, schema: type[BaseModel] | None) -> BaseModel | None:
 
 
 def _instruction(form: dict[str, Any]) -> Message:
-    """Returns the schema in words, for servers that do not support it otherwise."""
+    """Returns a message that contains the schema, for servers that do not support schemas otherwise."""
     return Message(
         role="user",
         text="Answer with one JSON object and nothing else. It must fit this JSON schema, with every field:\n"
@@ -256,5 +256,5 @@ def _complaint(why: str) -> Message:
 
 
 def _guessed(messages: Sequence[Message], answer: Answer) -> Usage:
-    """Returns estimated numbers of tokens, for servers that count none."""
+    """Returns estimated numbers of tokens, for servers that do not report them."""
     return Usage(prompt=sum(tokens_in(one.text) for one in messages), completion=tokens_in(answer.text))

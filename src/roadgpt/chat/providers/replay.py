@@ -48,6 +48,7 @@ class Replay:
         """Returns the answer that was recorded for this question.
 
         Raises:
+            BudgetError: the question could exceed the limit of tokens or money.
             ChatError: no answer to this question was recorded.
             ReplyError: the recorded exchange ended with this error.
             UsageError: the recording cannot be read.

@@ -1,12 +1,12 @@
-"""Requires that the surface of the road does not overlap itself in plan view, even at different heights.
+"""Requires that no part of the road's surface lies above another in plan view, whatever their heights.
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
-about 1 m long. A quad that is not convex shows that the surface folds: the bend is tighter than half the road
-width. Without folds, quads that are close together along the road cannot overlap (Schur's comparison
-theorem), so only quads farther apart along the road are compared. The curved edge of the road bulges slightly
-beyond the straight edges of the quads, so the gap between two quads must be more than twice this bulge. Where
-quads nearly touch, the competition's own quads are checked as well, in both driving directions, because its
-spline may run up to a metre beyond the last point.
+about 1 m long. A quad that is not convex shows that the surface folds: the radius of the bend is smaller than
+half the road width. Without folds, quads that are close together along the road cannot overlap (Schur's
+comparison theorem), so only quads farther apart along the road are compared. The curved edge of the road
+bulges slightly beyond the straight edges of the quads, so the gap between two quads must be more than twice
+this bulge. Where quads nearly touch, the competition's own quads are checked as well, in both driving
+directions, because the competition's spline may run up to a metre beyond the last point.
 """
 
 import numpy as np

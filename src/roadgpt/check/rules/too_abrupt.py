@@ -19,7 +19,7 @@ from roadgpt.road import Road, World
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 MOST = 3.0  # m/s^2
-STEP = 1.0  # m between the stations at which a speed is expected
+STEP = 1.0  # m between the stations at which the expected speed is computed
 ROUNDING = 1e-3  # of the limit
 
 

@@ -1,6 +1,6 @@
 """Requires a length of more than 20 m, both along the curve and as the SBFT competition measures it.
 
-If the road is so short that the car already is at the goal when it starts, the road cannot be driven at all.
+If the road is so short that the car is already at the goal when it starts, the road cannot be driven at all.
 """
 
 from roadgpt.brief.model import Brief

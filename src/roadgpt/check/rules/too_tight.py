@@ -1,6 +1,6 @@
 """Requires all turns to have a radius of at least 14.326 m (47 ft), the limit of the SBFT competition.
 
-The radius is measured twice: on the curve of the road, and as in the competition, where circles are laid
+The radius is measured twice: on the curve of the road, and as in the competition, where circles are drawn
 through nodes of the competition's spline. That spline cuts corners between control points.
 """
 

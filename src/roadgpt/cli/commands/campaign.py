@@ -113,7 +113,11 @@ def work_to_the_end(
 
 
 def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
-    """Returns the plan in a file; refuses options that belong into the file."""
+    """Returns the plan in a file.
+
+    Raises:
+        UsageError: An option was given that must be set in the file, or the plan cannot be used.
+    """
     from roadgpt.campaign.plan_file import read_plan
     from roadgpt.chat.config import Layer, configured
     from roadgpt.drive.permission import check_named_driver

@@ -27,7 +27,7 @@ CLIENT = "roadgpt_client.py"
 
 
 def _write_client(ctx: click.Context, param: click.Parameter, path: Path | None) -> None:
-    """Copies the client."""
+    """Implements --client: copies the client to ``path``, and ends the command."""
     del param
     if path is None:
         return
@@ -112,12 +112,12 @@ def sbft_command(
 
 
 def _watched(work: "Competition", screen: Screen, formats: Any) -> int:
-    """Shows every test as it ends, then how the generator ended, and draws the page of all tests."""
+    """Shows each test when it ends, then how the generator ended, and draws an overview of all tests."""
     try:
         screen.runs(work, work.folder)
     finally:
         screen.close()
-        if work.ending is None or work.ending.is_of_a_generator:  # of that the error speaks
+        if work.ending is None or work.ending.is_of_a_generator:  # else the error message tells all
             if work.ending is not None:
                 screen.say(f"the generator: {work.ending.sentence}")
             if screen.rows and formats:

@@ -78,7 +78,7 @@ def _of_options() -> Iterator[ShownSetting]:
     """Yields the settings of options other than those of language models.
 
     Raises:
-        UsageError: One cannot be used, or must not come from its place.
+        UsageError: A setting cannot be used, or must not be set by the source that sets it.
     """
     context, layers = click.Context(click.Command(None), resilient_parsing=True), layers_of()
     for option in settable_options():
@@ -89,7 +89,7 @@ def _of_options() -> Iterator[ShownSetting]:
 
 
 def _plain(value: Any) -> Any:
-    """Returns a value as JSON takes it."""
+    """Converts a value to text, unless it is a number, a truth value or None."""
     if isinstance(value, tuple):
         return ",".join(",".join(each) if isinstance(each, tuple) else str(each) for each in value)
     if isinstance(value, bool | int | float):

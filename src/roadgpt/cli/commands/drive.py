@@ -83,7 +83,7 @@ def command(
     world = options.world_of(rest)
     setup = Setup(**rest)
     with redirect_stdout(sys.stderr):
-        check_parts(setup, world)  # a driver that does not exist is told of before any road is looked at
+        check_parts(setup, world)  # reports a missing driver before any road is read
     asked = Request(seed=seed, world=world, setup=setup)
     screen = Screen(len(files), as_json, quiet, verbose)
     if junit is not None:
@@ -96,10 +96,11 @@ def command(
 
 
 def _refuse_mixture(ctx: click.Context, again: bool) -> None:
-    """Refuses options of files with --again, and options of --again without it.
+    """Checks that the options fit together.
 
     Raises:
-        UsageError: There is such an option.
+        UsageError: An option that --again does not accept is given with --again, or an option that needs
+            --again is given without it.
     """
     for parameter in ctx.command.params:
         name = parameter.name or ""
@@ -191,7 +192,8 @@ def _made(path: Path) -> Path:
 
 
 def _named(names: Sequence[str], choice: "Choice | None") -> "list[Selection]":
-    """Returns the tests that the names mean; numbers belong to the folder that comes first."""
+    """Returns the tests that the names refer to; a number refers to a test in the folder that is named
+    first."""
     from roadgpt.campaign.record import no_tests
     from roadgpt.campaign.selection import chosen, selection_of
 

@@ -77,7 +77,7 @@ def edit_road(
         screen: Prints the result.
         road: The folder of a run, a test of a campaign, or a file with a design.
         words: The change request.
-        world: The World for a road from a design file; such a file states no World.
+        world: The World for a road from a design file, which does not contain a World.
         out: The folder for the changed road; None: a new one.
         designer: The plug-in that changes the road.
         chat: The settings of the designer's language model; None if the designer uses none.

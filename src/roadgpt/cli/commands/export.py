@@ -83,7 +83,7 @@ def command(
 
 @dataclass
 class _Source:
-    """Makes a Run of each road; options set what a road file does not hold."""
+    """Makes a Run of each road; for road files, options supply what the file does not contain."""
 
     world: "World"
     said: dict[str, float]

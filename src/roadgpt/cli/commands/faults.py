@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.faults.fault_log import FailureAnalysis, FailureDrawing
 
-REPEAT = 10  # disturbed drives of each fault, where nobody says how many
+REPEAT = 10  # disturbed drives of each fault, unless the user gives another number
 DRIVES = whole(1, 1000, "drives")
 
 FAULT_OPTIONS = (

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from roadgpt.report.film import Settings
 
 MOST = 2  # roads in one picture
-LONGEST = 1_000_000  # s, of a part of a drive that is asked for
+LONGEST = 1_000_000  # s, largest time that --seconds accepts
 FILM, FILMS = Path("roadgpt-film.mp4"), Path("films")
 ENDINGS = (".mp4", ".m4v")
 VIEWS = ("chase", "hood", "both")
@@ -28,7 +28,8 @@ MOUNTS = {"hood": "bonnet"}  # as roadgpt.report.film calls them
 
 
 def _view(value: str) -> str:
-    """Checks the value of --view; its earlier name ``bonnet`` is kept, since it names files."""
+    """Checks the value of --view. The earlier value ``bonnet`` is accepted and kept, because names of films
+    contain it."""
     if value == "bonnet":
         warn("'--view bonnet' is now '--view hood'")
     elif value not in VIEWS:
@@ -45,7 +46,8 @@ def _size(value: str) -> tuple[int, int]:
 
 
 def _seconds(value: str) -> tuple[float, float | None]:
-    """Converts 9 or 4:13 to the start and the length of a part of a drive, s; None: to its end."""
+    """Converts a text such as 9 or 4:13 to the start and the length in seconds of a part of a drive. The
+    length is None if the part reaches to the end of the drive."""
     first, colon, last = value.partition(":")
     try:
         begin = float(first or 0) if colon else 0.0
@@ -123,7 +125,8 @@ def command(
 def _films(
     files: tuple[str, ...], choice: "Choice | None", view: str, out: Path | None
 ) -> Iterator[tuple[NamedRoad, Path]]:
-    """Yields the roads to film, each with its film; in a folder of runs, those that have no film yet."""
+    """Yields the roads to film, each with the path of its film. In a folder of runs, roads that already have
+    a film are left out."""
     from roadgpt.campaign.folder_record import is_store
     from roadgpt.campaign.selection import selection_of
 

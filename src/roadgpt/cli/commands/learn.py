@@ -25,8 +25,8 @@ SPLITS = ("train", "validation", "test", "exam")
 COUNT = whole(1, 10_000_000, "a number")
 TRAINED_ON = ("train", "contrasts", "free")
 HELD_BACK = ("validation", "contrasts_validation", "free_validation")
-"""Folders of descriptions that readers are trained on, and calibrated on."""
-MEASURED = 600  # descriptions of measured roads among the pairs that are trained on
+"""Folders of the descriptions with which readers are trained (TRAINED_ON) and calibrated (HELD_BACK)."""
+MEASURED = 600  # number of training pairs that are descriptions of measured roads
 EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 # fmt: off
 HAND = Option(
@@ -260,7 +260,7 @@ def _pairs_of(place: Path, is_change: bool = False) -> "list[Pair]":
     """Returns the pairs of all files of a folder.
 
     Raises:
-        LearnError: There are none, or a line cannot be used.
+        LearnError: There are no pairs, or a line cannot be used.
     """
     from roadgpt.learn.labels import read_pairs
 

@@ -62,7 +62,8 @@ def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale
 
 
 def _as_before(folder: Path, axes: "Scale") -> "Draw | None":
-    """Returns what draws the pictures and writes the road files that the finished runs of a folder have."""
+    """Returns a function that gives a run the same kinds of pictures and road files as the finished runs of a
+    folder have."""
     from roadgpt import plugins
     from roadgpt.report import FORMATS
     from roadgpt.run.exporting import NAME

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from roadgpt.run import Setup
     from roadgpt.run.folder import Draw
 
-SEEDS = 1_000_000  # seeds that are drawn when none is given: short enough to be typed again
+SEEDS = 1_000_000  # random seeds are below this number, so that they are short enough to type again
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,8 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
 
 
 def usual_job(words: str, roads: int, is_plan: bool = False) -> RunJob:
-    """Returns the RunJob of ``roadgpt run`` without options: all settings are configured values or defaults.
+    """Returns the RunJob of ``roadgpt run`` without options: all settings have their configured or default
+    values.
 
     Args:
         words: the description, or a plan.
@@ -167,8 +168,8 @@ def _seed(job: RunJob) -> int:
 def understood(brief: "Brief", world: "World | None" = None) -> str:
     """Returns lines of text: how a description was read, a warning if that is uncertain, and remarks.
 
-    The remarks name what is not built. They also check the World's friction against the surface in the
-    description, and whether a motorway fits on its map. Without a World, neither is checked.
+    The remarks name what is not built. They also say if the World's friction does not match the surface in
+    the description, or if a motorway does not fit on the World's map. Without a World, neither is checked.
     """
     from roadgpt.brief import SURE, remarks
 
@@ -203,7 +204,7 @@ def reading(brief: "Brief") -> str:
 
 
 def _watch(work: "Campaign", job: RunJob, screen: Screen) -> None:
-    """Shows the roads of a folder, starting with those that were there before, and then their table."""
+    """Shows the roads of a folder, starting with those that had been finished before, and then a table."""
     try:
         screen.runs(work.all_runs(), work.folder)
     except KeyboardInterrupt:

@@ -87,7 +87,7 @@ def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
 
 
 def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool, rest: dict[str, Any]) -> int:
-    """Works, writes the report, prints its path, and returns the exit status."""
+    """Carries out a study, writes its report, prints the report's path, and returns the exit status."""
     from roadgpt.run import check_parts
     from roadgpt.run.folder import finished
     from roadgpt.study.chapters.wording import plural
@@ -145,7 +145,7 @@ def _plan(
 
 
 def _command(plan: "StudyPlan", place: Path) -> str:
-    """Returns the command that makes the study again."""
+    """Returns the command that repeats the study."""
     from roadgpt.cli.repeat_commands import option_words
 
     words = ["roadgpt", "study", plan.kind, *([plan.source] if plan.source else [])]

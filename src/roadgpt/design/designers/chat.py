@@ -22,7 +22,9 @@ class ChatDesigner:
     """A designer that asks a language model, in one or more rounds."""
 
     redrafts = False
-    """False: this designer itself asks the model again, so it is not called again if rules object."""
+    """False: this designer itself asks the model for corrections, so it is not called again if its draft
+    violates a rule.
+    """
 
     def __init__(self, settings: ChatSettings | None = None, chat: Chat | None = None) -> None:
         self._settings = settings or configured()
@@ -38,7 +40,7 @@ class ChatDesigner:
         Args:
             brief: the requirements for the road.
             world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: objections of rules to an earlier draft.
+            notes: sentences that say which rules an earlier draft violated.
             earlier: designs of the campaign so far; the new one should not be like any of them.
             seed: determines the start that is suggested to the model.
 

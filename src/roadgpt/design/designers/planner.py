@@ -1,4 +1,5 @@
-"""The default designer: tries random drafts until one meets the Brief, is valid and unlike earlier roads.
+"""The default designer: tries random drafts until one meets the Brief, is valid and differs from earlier
+roads.
 
 Each draft is checked, the cheapest check first: it must fit on the map, keep clear of itself, differ from
 earlier roads and meet the requirements as measured on its line; then the rules must accept the road that is
@@ -45,7 +46,7 @@ from roadgpt.road import Design, Road, Segment, World, build
 DRAFTS = 320  # for one road, at most
 ALIKE = 120  # drafts like earlier roads, after which the least similar one is taken
 ALIKE_STRAIGHTS = 12  # the same for a road without turns, where only the length can differ
-CHOOSY = 1 / 8  # share of these drafts for which a road that only continues an earlier one is also alike
+CHOOSY = 1 / 8  # share of these drafts during which roads that only continue an earlier one count as alike
 CROWDED = 400  # earlier roads, above which that share is divided by three
 FINISHED = 100  # drafts that fit and fail a requirement or rule, after which the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are finished if there are no others
@@ -75,7 +76,7 @@ class Planner:
         Args:
             brief: the requirements for the road.
             world: size of the map, and limits that the rules check, such as the steepest grade.
-            notes: objections to an earlier draft; only their number matters, as it changes the seed.
+            notes: sentences about an earlier draft; only their number matters, as it changes the seed.
             earlier: designs of the campaign so far; the new one differs from them as far as possible.
             seed: seed of the random number generator.
 
@@ -99,9 +100,9 @@ def fits(brief: Brief, world: World) -> bool:
 
 @lru_cache(maxsize=256)
 def sufficient_map(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a map that holds a road, if the map of the World does not.
+    """Returns the side in metres of a map large enough for a road, if the map of the World is too small.
 
-    Returns None if that map is large enough, or if no larger one would help.
+    Returns None if the World's map is large enough, or if no larger map would help.
     """
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
@@ -186,7 +187,10 @@ class _Search:
         return None
 
     def _growth(self) -> PlacedPlan | None:
-        """Returns a plan that was grown on the map; None without room, or if no length is required."""
+        """Returns a plan that was drafted turn by turn on the map.
+
+        Returns None if it ran out of room, or if no length is required.
+        """
         if self.outline.length is None:
             return None
         order = drawn_sequence(self.outline, self.rng, plain=True)
@@ -196,7 +200,10 @@ class _Search:
         return found
 
     def _speed_that_would_do(self) -> float | None:
-        """Returns a lower speed limit in km/h at which the required slopes are possible, if they failed."""
+        """Returns a lower speed limit in km/h at which the required slopes are possible.
+
+        Returns None if there is none, or if only a few drafts failed because of their slopes.
+        """
         if self.failed_on_heights < FAILED_ON_HEIGHTS:
             return None
         limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]

@@ -8,7 +8,7 @@ this designer does the following:
 * theta 0 is "along the y axis" in the prompt and +x in the program: +x is used;
 * x and y end at 200 in the prompt and at 250 in the checks, "to offer a bit of flexibility": here the
   prompt states 0.8 times the side length of the map;
-* right turns are negative in the prompt, and its own example has a left turn of -20: the field ``direction``
+* right turns are negative in the prompt, but its own example has a left turn of -20: the field ``direction``
   decides;
 * the program begins with 5 m of level road, which is kept, and shifts the start by (5, 5), which is omitted.
 

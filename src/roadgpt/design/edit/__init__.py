@@ -57,7 +57,7 @@ def edit(
 
     Raises:
         EditError: the words cannot be read, name something that is not on the road, or ask for something that
-            no valid road can have; the message says which.
+            no valid road can have; the message gives the reason.
         PartError: there is no designer of that name.
         ChatError: the language model could not be asked.
     """

@@ -1,8 +1,8 @@
 """Lists ways to make a change: target values, and ranges for the values measured on the changed road.
 
 A request without a number ('sharper') allows wide ranges. If the request gives a value, such as the angle of
-a turn, only other values may vary, such as the radius. A second candidate has wider ranges, or lets more
-elements change.
+a turn, only other values, such as the radius, may vary. A further candidate aims at a smaller change, has
+wider ranges, or lets more elements change.
 """
 
 from collections.abc import Iterable, Sequence
@@ -35,14 +35,14 @@ TIGHTER, WIDER = 0.7, 1.4  # shares of the radius
 LONGER, SHORTER = 1.4, 0.65  # shares of a length
 ROAD_LONGER, ROAD_SHORTER = 1.3, 0.75  # shares of the length of a road
 FLIPPED = Range(0.65, 1.25)  # shares of angle and radius that a turn may have when it goes the other way
-CLEARLY, FURTHER = 0.45, 1.6  # shares of a change that was only named ('sharper') that will do
+CLEARLY, FURTHER = 0.45, 1.6  # least and greatest accepted share of a change without a number ('sharper')
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
 SEEN_STEP = 9.0  # degrees: a smaller change of angle is hardly seen
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
-LEAST_ANGLE = 13.0  # degrees: a turn that is gentler yet would not be seen
+LEAST_ANGLE = 13.0  # degrees: a turn of a smaller angle would not be seen
 MOST_ANGLE = 210.0
 SEEN = 10.6  # m: the shortest straight that is seen
-KEPT = 17.5  # m of a straight that others are shortened to
+KEPT = 17.5  # m that remain of each straight when the road is shortened
 ROAD_SLACK = 0.02  # of the length of a road
 
 
@@ -52,7 +52,7 @@ def change_candidates(
     """Returns all candidates, the preferred one first; none if the road already is as requested.
 
     Args:
-        change: Any change except an addition, a removal or a mirror image.
+        change: Any change except an addition, a removal, a mirror image or alternating turns.
         elements: The elements to change.
         found: The measurements of the whole road.
         world: The limits that the rules check, such as the steepest grade.
@@ -88,7 +88,7 @@ def change_candidates(
 
 
 def _is_beyond(change: Change, element: RoadElement) -> bool:
-    """Is an element beyond the bound of a change?"""
+    """Returns whether an element violates the limit that a change sets."""
     if change.what == "slope":
         values = [abs(segment.incline) for segment in element.segments]
     elif element.seen is None:
@@ -99,7 +99,7 @@ def _is_beyond(change: Change, element: RoadElement) -> bool:
 
 
 def _is_outside(change: Change, now: float) -> bool:
-    """Is a value on the wrong side of the bound of a change?"""
+    """Returns whether a value violates the limit that a change sets."""
     assert change.to is not None
     return (now - change.to) * change.bound < 0
 
@@ -116,7 +116,7 @@ def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tup
 
 
 def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
-    """All elements alike: the first way of each, the second way of each, ..."""
+    """Returns one candidate of the first steps of all elements, one of their second steps, and so on."""
     rows = [row for row in map(with_milder, ways) if row]
     if not rows:
         return ()
@@ -124,7 +124,7 @@ def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
 
 
 def _aim(change: Change, now: float) -> float | None:
-    """The number that was asked for, where one was: said itself, as a difference or as a multiple."""
+    """Returns the requested value, given directly, as a difference or as a factor; None if none was given."""
     if change.to is not None:
         return change.to
     if change.by is not None:
@@ -133,13 +133,13 @@ def _aim(change: Change, now: float) -> float | None:
 
 
 def _towards(now: float, aim: float) -> Wanted:
-    """A value that was not said: clearly on the way from one to the other, or somewhat further."""
+    """Returns ``aim`` with a range from 0.45 to 1.6 times the change from ``now`` to ``aim``."""
     ends = now + CLEARLY * (aim - now), now + FURTHER * (aim - now)
     return Wanted(aim, Range(min(ends), max(ends)))
 
 
 def _not_away(now: float, aim: float) -> Wanted:
-    """A value that may stay as it is, or go the way of the aim."""
+    """Returns ``aim`` with a range from no change to 1.6 times the change from ``now`` to ``aim``."""
     ends = now, now + FURTHER * (aim - now)
     return Wanted(aim, Range(0.99 * min(ends), 1.01 * max(ends)))
 
@@ -183,7 +183,7 @@ def _cannot(degrees: float, radius: float) -> EditError:
 
 
 def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> EditStep:
-    """A turn whose angle, or radius, was said."""
+    """Returns the step that gives a turn the requested angle or radius."""
     seen = element.seen
     assert seen is not None
     if change.what == "angle":
@@ -207,7 +207,7 @@ def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> 
 
 
 def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep]:
-    """A hairpin, a sharp or a gentle turn; nothing where it is one."""
+    """Returns the step that makes a turn a hairpin, sharp or gentle; none if it already is."""
     seen = element.seen
     assert seen is not None
     d, r = seen.degrees, seen.radius
@@ -265,7 +265,7 @@ def _lengths(change: Change, element: RoadElement, world: World) -> list[EditSte
 
 
 def _road_lengths(change: Change, elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Another length of the road: by its straights alone, or by its turns as well."""
+    """Returns candidates that change the road's length by its straights alone, or by its turns as well."""
     own = sum(element.length for element in elements)
     aim = _aim(change, own)
     if aim is None:
@@ -293,7 +293,7 @@ def _road_lengths(change: Change, elements: Sequence[RoadElement], world: World)
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """The mirror image of each; where that finds no room, turned a little less or more as well."""
+    """Returns a candidate that mirrors each element; its angle and radius may change where room is short."""
     steps: list[EditStep] = [Mirror(frozenset(element.name for element in elements))]
     for element in elements:
         d, r = (element.seen.degrees, element.seen.radius) if element.seen else (0.0, inf)
@@ -306,6 +306,6 @@ def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandida
 
 
 def _straightened(element: RoadElement) -> list[EditStep]:
-    """A straight in the place of a turn, as long as the turn was if there is room for it."""
+    """Returns the step that replaces a turn by a straight, as long as the turn if there is room for it."""
     bends = element.kind == "turn" and element.seen is not None
     return [Become(element, (straight(element.length, element.incline),))] if bends else []

@@ -36,7 +36,7 @@ PROPERTIES = {
 }
 NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
 NEXT_TO = ("after", "before", "between", "on")
-"""Where something new can stand."""
+"""Positions, relative to other elements, at which a new element can be added."""
 POSITIONS = (*NEXT_TO, "from", "up_to")
 ENDS: dict[str, Literal["start", "end", "middle"]] = {
     "at_start": "start",
@@ -112,7 +112,7 @@ def _position(place: Place) -> str:
 
 
 def _place(target: Target) -> str:
-    """Returns a place; without a noun it is a turn, as ``pointing`` takes it."""
+    """Returns the text of a target; without a noun it becomes a turn, which is how ``pointing`` reads it."""
     words: list[str] = [target.kind or target.noun or "turn"]
     if target.numbers:
         words.append(",".join(map(str, target.numbers)))

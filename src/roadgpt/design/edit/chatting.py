@@ -70,8 +70,8 @@ def edited_by_chat(
         words: the change request.
         elements: the elements of that road.
         found: the measurements of that road.
-        allowed: numbers, from 1, of the segments that the model may change. None if the rules could not
-            find them; the model then lists them itself.
+        allowed: numbers, from 1, of the segments that the model may change. None if these could not be
+            determined from the request; the model then lists them itself.
         world: size of the map, and limits that the rules check, such as the steepest grade.
         geometry: the kind of geometry that roads are built with.
 
@@ -162,15 +162,16 @@ def _seen(elements: Sequence[RoadElement]) -> list[str]:
 
 
 def _kept(design: Design, answer: EditedRoad, allowed: set[int] | None) -> Design:
-    """The answer with every segment that was not to be touched as it was, and in its order.
+    """Returns the changed design; the segments that must not change have their old values and order.
 
     Args:
-        design: as it was.
-        answer: of the model.
-        allowed: segments that it may touch at most; None: those that it names itself.
+        design: the road before the edit.
+        answer: the answer of the model.
+        allowed: numbers of the segments that may change if the model lists them; None if any of them may.
 
     Raises:
-        UsageError: one of them is missing or stands elsewhere; fit to be shown to the model.
+        UsageError: a segment that must not change is missing or misplaced; the message can be shown to the
+            model.
     """
     old = design.segments
     touched = {number for number in answer.touched if 1 <= number <= len(old)}
@@ -200,6 +201,6 @@ def _new(answer: EditedSegment, before: Segment | None) -> Segment:
     same = before is not None and all(
         getattr(segment, n) == getattr(before, n) for n in ("distance", "turn_degrees")
     )
-    if before is not None and same:  # only its slope is another: radius and transition stay
+    if before is not None and same:  # only its slope differs: radius and transition stay
         return before.model_copy(update={"incline": segment.incline})
     return segment

@@ -1,6 +1,4 @@
-"""Returns candidates that add or remove turns and straights; the elements around them keep all their
-values.
-"""
+"""Makes candidates that add or remove turns and straights; the elements around them keep all their values."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -31,11 +29,13 @@ from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
-JOINT = 8.0  # m between turns of either hand
+JOINT = 8.0  # m between turns to opposite sides
 LEAD = 17.0  # m before the first turn and behind the last
-NEW_STRAIGHT = 40.0  # m of one whose length was not said
+NEW_STRAIGHT = 40.0  # m, length of a new straight if the request gives none
 SPARE = (0.0, 20.0)
-"""Metres of straight road before and behind a new turn, besides what it needs: where it would meet others."""
+"""Additional metres of straight road before and after a new turn; the second value is tried if the first does
+not lead to a valid road, for example because the road would meet itself.
+"""
 TRANSITION_SHARE = 0.22  # of the arc
 PREFERRED = {
     "": (60.0, 25.0),
@@ -47,10 +47,10 @@ PREFERRED = {
     "gentle": (40.0, 55.0),
     "sweeping": (40.0, 75.0),
 }
-"""Degrees, and metres of radius, of a new turn of which no more is said."""
+"""Angle in degrees and radius in metres of a new turn if the request does not give them."""
 MOST_NEW = 12
-FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a turn that goes
-SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent that are aimed at
+FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
+SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent to aim at
 
 
 def insertion_candidates(
@@ -85,7 +85,11 @@ def insertion_candidates(
 
 
 def _place(placed: PlacedChange, elements: RoadElements) -> tuple[str, list[tuple[str, int]]]:
-    """The element to stand before (empty: none), and gaps that may be split instead, with their segment."""
+    """Returns the name of the element before which to insert, and the ways to split a gap for this.
+
+    The name is empty for the end of the road. Each way is the name of the gap to split, empty to split none,
+    and the number of segments before the split, as in ``Insert.index``.
+    """
     place, mark, stop = placed.change.place, placed.marks, placed.stop
     how = place.how if place else "end"
     if how == "end":
@@ -126,7 +130,7 @@ def _place(placed: PlacedChange, elements: RoadElements) -> tuple[str, list[tupl
 
 
 def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
-    """The gap nearest to the road's middle, and its nearest joint; 0: halve its longest segment."""
+    """Returns the gap nearest to the road's middle, and where to split it, as in ``Insert.index``."""
     whole, at = sum(element.length for element in elements), 0.0
     best, found = float("inf"), (elements[0], 0)
     for element in elements:
@@ -144,7 +148,7 @@ def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
 
 
 def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
-    """Angle and radius of the new turns."""
+    """Returns the angle in degrees and the radius in metres of the new turns."""
     least = least_radius(world)
     if change.radius is not None and change.radius < world.limits.min_radius:
         raise EditError(
@@ -170,7 +174,10 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
 
 
 def _sides(change: Change, elements: RoadElements, before: str) -> list[list[Side]]:
-    """Sides of the new turns: as said, else away from the turn before."""
+    """Returns the sequences of sides to try for the new turns.
+
+    If no side is requested, the first sequence begins opposite to the turn before, the second on its side.
+    """
     count = change.count * (2 if change.kind in ("s_bend", "chicane") else 1)
     alternates = change.kind in ("s_bend", "chicane") or (count > 1 and change.side is None)
     firsts: list[Side] = [change.side] if change.side else _away(elements, before)
@@ -231,21 +238,21 @@ def _turns(
 
 
 def _grade(change: Change) -> Range | None:
-    """The grade in percent that was asked for."""
+    """Returns the requested range of grades in percent; None if the request gives none."""
     if change.grade is not None:
         return Range(change.grade - 0.6, change.grade + 0.6)
     return SLOPES[change.way].grade if change.way else None
 
 
 def _incline_asked(change: Change, incline: float) -> float:
-    """The percent that a new element is written with: as asked, else those of the place."""
+    """Returns the incline of a new element in percent: as requested, or else ``incline``."""
     if change.grade is not None:
         return change.grade
     return SLOPED[change.way] if change.way else incline
 
 
 def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
-    """Metres since the last turn, and that turn."""
+    """Returns the metres after the last turn, and that turn; None if there is no turn."""
     metres = 0.0
     for element in reversed(elements):
         if element.kind == "turn":
@@ -255,13 +262,13 @@ def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
 
 
 def _lead(turn: RoadElement | None, side: Side, gap: float) -> float:
-    """Metres that are missing between a turn (None: an end of the road) and the next of that side."""
+    """Returns the metres missing between a turn, or an end of the road (None), and a new turn to ``side``."""
     needed = LEAD if turn is None else SEPARATE if turn.side == side else JOINT
     return round(needed - gap, 1) if gap < needed - 0.5 else 0.0
 
 
 def _incline(elements: RoadElements, at: int) -> float:
-    """Percent, of what stands next to a place."""
+    """Returns the incline in percent of the segment before a place, or after it at the start of the road."""
     before = [s for element in elements[:at] for s in element.segments]
     after = [s for element in elements[at:] for s in element.segments]
     return before[-1].incline if before else after[0].incline

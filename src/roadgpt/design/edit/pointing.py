@@ -123,7 +123,7 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
 
 
 def _half(elements: RoadElements, half: int) -> list[RoadElement]:
-    """The elements whose middle lies in the first or in the second half of the road."""
+    """Returns the elements whose middle lies in the first or in the second half of the road."""
     whole, at, out = sum(element.length for element in elements), 0.0, list[RoadElement]()
     for element in elements:
         if (at + element.length / 2 < whole / 2) == (half == 1):
@@ -162,7 +162,7 @@ def _single(target: Target) -> Target:
 
 
 def _among(target: Target, found: Sequence[RoadElement], elements: RoadElements) -> list[RoadElement]:
-    """Those that are as they were said to be, and where."""
+    """Returns the elements with the properties and the place that the target names."""
     out = [element for element in found if _fits(target, element)]
     if target.half:
         there = {element.name for element in _half(elements, target.half)}
@@ -174,7 +174,7 @@ def _among(target: Target, found: Sequence[RoadElement], elements: RoadElements)
 
 
 def _spared(target: Target, found: list[RoadElement], elements: RoadElements) -> list[RoadElement]:
-    """Without those that 'except' names."""
+    """Returns the elements without the exceptions that the target names."""
     if target.but is None:
         return found
     but = replace(target.but, noun=target.but.noun or target.noun)
@@ -236,7 +236,7 @@ def _named(target: Target) -> Target:
 
 
 def _chosen(target: Target, found: Sequence[RoadElement], noun: str) -> list[RoadElement]:
-    """By number, by superlative, or all; one alone where one was meant."""
+    """Chooses by superlative, middle or number, or takes all; refuses several if only one was meant."""
     told = _told(target, noun)
     if not found:
         raise EditError(f"there is no {told} on this road")

@@ -22,7 +22,7 @@ What = Literal[
 Way = Literal["up", "down", "flat"]
 Measure = Literal["sharp", "long", "steep"]
 SLIGHTLY, MUCH = 0.5, 1.8
-"""Doses of a change for which no number is given."""
+"""Sizes of a change ('slightly', 'much') for which no number is given, relative to the usual size."""
 SUPERLATIVES: dict[str, tuple[Measure, int]] = {
     "longest": ("long", 1),
     "shortest": ("long", -1),
@@ -31,7 +31,7 @@ SUPERLATIVES: dict[str, tuple[Measure, int]] = {
     "steepest": ("steep", 1),
     "flattest": ("steep", -1),
 }
-"""Words for what is most, or least, of its kind."""
+"""The superlatives, each with its measure and 1 for the largest value or -1 for the smallest."""
 HALVES = {"half1": 1, "half2": 2}
 
 
@@ -61,7 +61,7 @@ class Target:
     indefinite: bool = False
     """True for 'a turn': a new element, not one that is on the road."""
     count: int | None = None
-    """The number of new elements, as in 'two turns'."""
+    """The number of elements, as in 'two turns' (new ones) or 'the two sharpest turns'."""
     degrees: float | None = None
     """The angle, as in 'the 90 degree bend'."""
     length: float | None = None
@@ -106,7 +106,7 @@ class Change:
     mentioned before.
     """
     more: int = 0
-    """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if a value is given."""
+    """1 for sharper, wider, longer or steeper, -1 for the opposite, 0 if the request gives no direction."""
     by: float | None = None
     to: float | None = None
     times: float | None = None

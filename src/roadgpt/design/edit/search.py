@@ -28,7 +28,7 @@ from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
 
 MOST_TRIALS = 40
-FITTED_WHOLE = 2  # trials of which all elements are fitted, where no trial is valid with the others frozen
+FITTED_WHOLE = 2  # trials that are fitted again with all elements free, if none is valid otherwise
 LARGEST = 12  # candidates of one change that are combined with others
 HUNDREDTH = 100.0
 SEEN_STRAIGHT = Feature("straight", "straight", length=Range(LEAST_STRAIGHT + 0.3))
@@ -39,9 +39,9 @@ class Made(NamedTuple):
 
     road: Look
     draft: Design
-    """The design before any element was changed that the request does not name."""
+    """The design before any change to elements that the request does not name."""
     idle: tuple[Change, ...]
-    """The changes not needed because the road already was as requested."""
+    """The changes that were not needed, because the road already was as requested."""
 
 
 def made(
@@ -63,7 +63,7 @@ def made(
         geometry: The kind of geometry that roads are built with.
 
     Raises:
-        EditError: Nothing is to be changed, or no valid road has the requested changes.
+        EditError: The road already is as requested, or no valid road has the requested changes.
     """
     ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
     rows = [(placed.change, row) for placed, row in zip(changes, ways, strict=True) if row]
@@ -83,7 +83,7 @@ def made(
 def _ways(
     placed: PlacedChange, elements: RoadElements, found: Measures, world: World, number: int
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidates of one change, the preferred one first; none if the road is so already."""
+    """Returns the candidates of one change, the preferred one first; none if the road already is so."""
     match placed.change.what:
         case "mirror":
             if not any(element.is_turn for element in elements):
@@ -100,7 +100,10 @@ def _ways(
 
 
 def _agreed(rows: Sequence[tuple[Change, Sequence[EditCandidate]]]) -> list[Sequence[EditCandidate]]:
-    """The ways of all; where one says the angle of a turn and another its radius, each keeps to its own."""
+    """Returns the candidates of all changes.
+
+    If one change gives the angle of a turn and another its radius, each sets only its own value.
+    """
     said: dict[What, set[str]] = {"angle": set(), "radius": set()}
     for change, ways in rows:
         if change.what in said and (change.to or change.by or change.times):
@@ -122,9 +125,9 @@ def _fitted(
     world: World,
     geometry: Geometry,
 ) -> tuple[Look | None, str, Design]:
-    """Returns the road with all changes, and the design before other elements had to change too.
+    """Returns the road with all changes, an empty text, and the design before other elements had to change.
 
-    If there is none, the road is None, and the sentence says what was wrong with the first road tried.
+    If no valid road was found, the road is None, and the text says what was wrong with the first one tried.
     """
     objection, drafts = "", list[Look]()
     for steps in islice(_combined(changes), MOST_TRIALS):
@@ -148,7 +151,7 @@ def _fitted(
 
 
 def _staying(elements: RoadElements) -> RoadElements:
-    """The elements, of which straights that were seen between two turns are to be seen afterwards."""
+    """Returns the elements; a straight that was measured between two turns must be measured again."""
     own = [element for element in elements if element.segments]
     kinds = ["turn", *(element.kind for element in own), "turn"]
     beside = dict(zip((element.name for element in own), zip(kinds, kinds[2:], strict=False), strict=True))
@@ -161,7 +164,7 @@ def _staying(elements: RoadElements) -> RoadElements:
 
 
 def _combined(changes: Sequence[Sequence[EditCandidate]]) -> Iterator[tuple[EditStep, ...]]:
-    """Ways of all changes together, those nearest to the preferred ones first."""
+    """Yields combinations of one candidate of each change, the most preferred combinations first."""
     some = [list(ways)[: LARGEST if len(changes) > 1 else None] for ways in changes]
     rows = product(*(range(len(ways)) for ways in some))
     for row in sorted(rows, key=lambda r: (sum(r), max(r, default=0), r)):
@@ -177,16 +180,16 @@ def _requirements(
 
 
 def _may_change(element: RoadElement) -> bool:
-    """Was the plan of an element spoken of? Then something is asked of it, and not of its grade alone."""
+    """Returns whether the plan of an element may change: it has a requirement, and not only for its grade."""
     asked = element.asked
     return asked is not None and bool(asked.degrees or asked.radius or asked.length or not asked.grade)
 
 
 def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) -> RoadElements:
-    """The elements after all steps.
+    """Returns the elements after all steps.
 
     Raises:
-        UsageError: There would be none left, or too many.
+        UsageError: The road would have no segment, or too many.
     """
     after = elements
     for step in steps:
@@ -202,7 +205,10 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
 def _started(
     design: Design, after: RoadElements, before: RoadElements, world: World, is_mirrored: bool
 ) -> Design:
-    """The design with other segments; where something new stands in front, the rest stays where it was."""
+    """Returns the design with the new segments.
+
+    If elements were added at the start, the start moves so that the rest of the road stays where it was.
+    """
     segments = joined(after)
     x, y, z = design.starting_point
     if is_mirrored:

@@ -14,7 +14,7 @@ from roadgpt.road import World
 STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
 STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
 LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
-STEEP_FROM = 4.0  # percent: what a level place becomes that is to be steeper
+STEEP_FROM = 4.0  # percent: the grade to which 'steeper' changes a level place
 
 
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> EditStep:
@@ -30,7 +30,7 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
     """Returns the steps that give one turn or straight another grade; none if it already has this grade.
 
     Raises:
-        EditError: the grade is steeper than the rules allow.
+        EditError: the grade is steeper than the rules allow, or cannot become steeper.
     """
     now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.limits.max_grade
@@ -73,7 +73,7 @@ def _refuse_too_steep(grade: float, limit: float) -> None:
 
 
 def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
-    """A step for each range, all with the same aim; percent, downhill where the sign is -1."""
+    """Returns a step per range of grades in percent, all with the same aim; downhill if ``sign`` is -1."""
     ends = [sorted((sign * one, sign * other)) for one, other in rooms]
     return [Adjust(element, grade=Wanted(sign * aim, Range(low, high))) for low, high in ends]
 

@@ -1,8 +1,8 @@
-"""Defines the steps of an edit, which change elements and store in ``RoadElement.asked`` the ranges that the
-measured values must meet.
+"""Defines the steps of an edit.
 
-A step sets the desired values. ``design.fit`` then adjusts the elements that have a requirement, if the road
-would break a rule, or if its measurements differ from the desired values.
+A step sets the desired values of elements, and stores in ``RoadElement.asked`` the ranges in which the
+measured values must lie. ``design.fit`` then adjusts the elements that have a requirement, if the road would
+violate a rule, or if measured values lie outside these ranges.
 """
 
 from collections.abc import Callable, Sequence
@@ -27,8 +27,8 @@ from roadgpt.road.design import MAX_TURN
 MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
 LEAST = 1.0  # m that a straight segment keeps
 TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
-SEPARATE = 18.0  # m between turns of one hand, so that they are seen as two
-HIDDEN = 9.0  # m, measured: turns of one hand with so much between them are two, but no straight is seen
+SEPARATE = 18.0  # m between turns to the same side, so that they are seen as two
+HIDDEN = 9.0  # m between turns to the same side at which they are measured as two, without a straight
 FREE_STRAIGHT = Feature("straight", "straight")
 
 
@@ -121,7 +121,10 @@ class Adjust:
         return Feature("turn", "turn", None, degrees, radius, length, grade)
 
     def _bent(self, now: RoadElement) -> RoadElement:
-        """Angles, lengths and radii scaled alike; more segments where one would turn too far."""
+        """Returns the turn with scaled angles, lengths and radii.
+
+        It is split into more segments if one would turn by more than 70 degrees.
+        """
         before, seen = self.element, self.element.seen
         assert seen is not None
         turn = abs(now.degrees)
@@ -236,8 +239,8 @@ def _with_distance(segment: Segment, distance: float) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class RoadLength:
-    """Requires a range of lengths for the whole road, in metres; other steps decide which elements may
-    change to meet it.
+    """Requires the length of the whole road, in metres, to lie in a range; other steps decide which elements
+    may change for this.
     """
 
     room: Range
@@ -251,7 +254,7 @@ class RoadLength:
 class SlopeOfAll:
     """Changes the incline of each segment of several elements; no incline exceeds what the rules allow.
 
-    An incline i becomes |i| * ``times`` + ``more`` with the sign that it had, all in percent.
+    The size of an incline i becomes |i| * ``times`` + ``more`` percent, limited by ``least`` and ``most``.
     """
 
     names: frozenset[str]
@@ -363,7 +366,7 @@ class Insert:
 
 
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Inserts straights between turns that bend the same way and newly follow each other, to keep them apart.
+    """Inserts straights to keep apart turns that bend the same way and did not follow each other before.
 
     Two turns need no straight if they already followed each other, to the same sides, before the edit.
     """

@@ -2,9 +2,9 @@
 
     elements --look--> what is wrong? --least_change--> lengths and turns --slopes--> look --> ... --> Look
 
-A repair leaves all elements of a proposal free. An edit freezes every element that the request does not name:
-its lengths, turns and radii stay exactly as they are. The road as a whole may be shifted or rotated, so that
-it stays inside the map.
+A full repair leaves all elements of a proposal free. An edit first freezes every element that the request
+does not name: the element's lengths, turns and radii stay exactly as they are. The road as a whole may be
+shifted or rotated, so that it stays inside the map.
 """
 
 from collections.abc import Collection
@@ -17,7 +17,7 @@ from roadgpt.design.fit.plan import MARGINS, TIGHT, planned
 from roadgpt.design.road_elements import RoadElements
 from roadgpt.road import Design
 
-MOST_SEGMENTS = 60  # that are free; on a road with more, none is fitted
+MOST_SEGMENTS = 60  # free segments; a road with more is not fitted
 
 
 def fit(
@@ -36,9 +36,9 @@ def fit(
         frozen: Names of the elements whose lengths, turns and radii stay as they are.
 
     Returns:
-        A Look at that road, with an empty ``objection``. If there is none, a Look at a road that breaks
-        no rule, but whose turns have other slopes than proposed. Failing both, a Look at the design,
-        moved inside the map if possible.
+        A Look at that road, with an empty ``objection``. If no such road was found, a Look at a road that
+        breaks no rule, but whose turns have other slopes than proposed. If neither was found, a Look at the
+        design, moved inside the map if possible.
 
     Raises:
         UsageError: No road can be built from these segments.

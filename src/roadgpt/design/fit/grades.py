@@ -153,8 +153,8 @@ def _slopes(elements: RoadElements, outline: Outline, world: World, is_edited: b
 
 
 def _missing(slopes: Sequence[_Slope], found: Measures) -> Array:
-    """Returns by how many percentage points the element of each segment is measured off its aim, ``(n,)``;
-    0 if its grade is accepted.
+    """Returns, for each segment, the percentage points by which the measured grade of its element must change
+    to reach the aim, ``(n,)``; 0 if the grade is accepted.
     """
     elements = tuple(slope.element for slope in slopes)
     out = np.zeros(elements[-1].members.stop)
@@ -167,7 +167,7 @@ def _missing(slopes: Sequence[_Slope], found: Measures) -> Array:
 
 
 def _moved(grades: Array, missing: Array, lows: Array, highs: Array) -> Array:
-    """Returns grades moved by what is missing, as far as they may; the rest is moved at their neighbours."""
+    """Returns grades changed by ``missing`` within their limits; neighbours are changed by the remainder."""
     after = np.clip(grades + missing, lows, highs)
     rest = grades + missing - after
     for i in np.flatnonzero(np.abs(rest) > 1e-9):

@@ -91,7 +91,7 @@ class Look:
         return not self.findings and self.has_turns
 
     def _unmet(self) -> str:
-        """Returns what is asked of an element, or of the whole road, and is measured otherwise."""
+        """Returns a sentence about the first requirement that the measurements do not meet; empty if none."""
         turns = 0
         for element, seen in zip(self.elements, self.seen, strict=True):
             turns += element.is_turn
@@ -134,10 +134,12 @@ def look(design: Design, elements: RoadElements, requirements: Requirements) -> 
 
 
 def restored(mended: Look, first: Look) -> Look:
-    """Returns the repaired road with all proposed values put back that break no rule or requirement.
+    """Returns the repaired road, with changed values set back to the proposed ones where possible.
+
+    A value is set back if the road then still meets all rules and requirements.
 
     Args:
-        mended: the repaired road, without objections.
+        mended: the repaired road; it must meet all rules and requirements.
         first: the road as it was proposed.
     """
     trials: list[tuple[float, int, str]] = []
@@ -152,7 +154,7 @@ def restored(mended: Look, first: Look) -> Look:
         rows = list(mended.design.segments)
         was, now = first.design.segments[index], rows[index]
         if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
-            continue  # it belongs to them
+            continue  # the radius belongs to the proposed distance and angle
         rows[index] = now.model_copy(update={name: getattr(was, name)})
         segments = tuple(rows)
         tried = first.design.model_copy(update={"segments": segments})

@@ -1,9 +1,8 @@
 """Finds lengths and turns that meet all requirements. Main function: ``planned``.
 
-Their limits are written as rows of a matrix: a . lengths + b . |turns| <= c, all in metres.
-A minimum radius can be written as such a limit: if a segment turns by ``turn`` radians over ``length``
-metres, and its maximum curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak *
-turn).
+The limits of lengths and turns are rows of a matrix: a . lengths + b . |turns| <= c, all in metres. A minimum
+radius can be written as such a limit: if a segment turns by ``turn`` radians over ``length`` metres, and its
+maximum curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak * turn).
 """
 
 from collections.abc import Sequence
@@ -24,30 +23,30 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment, World
 from roadgpt.road.design import MAX_TURN
 
-ROUNDS = 2  # of solving: the second with the transitions that came of the first
+ROUNDS = 2  # of solving: the second with the transitions that result from the first
 TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
 SHORTEST_TRANSITION = 0.1  # m
 FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter than it is written
-LEAST_TRANSITION = 0.1  # of a segment that turns, for each clothoid: as short as it may be made
-METRES_PER_RADIAN = 30.0  # how heavy a missing radian weighs beside a missing metre
+LEAST_TRANSITION = 0.1  # share of a turning segment to which each of its clothoids may be shortened
+METRES_PER_RADIAN = 30.0  # weight of a missing radian relative to a missing metre
 SHARE_KEPT = 0.2  # of every length and turn: less would not be the segment that was proposed
-CLEARLY = 260.0  # m: of a turn that is to be seen as one, the largest radius (the measure says 300)
-SLIGHT_BEND = 9.0  # degrees: what was proposed as no turn stays less
+CLEARLY = 260.0  # m: largest radius of a turn that must be seen as one (measurements have a limit of 300)
+SLIGHT_BEND = 9.0  # degrees: a bend that was proposed too slight for a turn stays below this
 WIDTH_KEPT_OFF = 0.2  # of a promised range, at either end, besides the margin of promises
 ANGLE_MARGIN = 0.4  # degrees, off what was promised
 
 
 TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
-"""Margins of a changed road, most of which stays as it is, and which may lie close to the limits."""
+"""Margins of an edited road. Most of the road stays as it is, and it may lie close to the limits."""
 MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
 
 
 def planned(first: Look, last: Look, free: NDArray[np.bool_], margins: Margins) -> tuple[Segment, ...] | None:
-    """Returns the segments with lengths and turns that keep all limits, changed as little as possible.
+    """Returns the segments with lengths and turns that meet all limits, changed as little as possible.
 
     Args:
         first: the road as it was proposed.
-        last: the last road that was tried; it says how much the measured values differ from the written ones.
+        last: the last road that was tried; it shows how much measured values differ from written ones.
         free: whether the length and the turn of each segment may change, ``(n,)``.
         margins: distances to keep from the limits.
 
@@ -71,7 +70,7 @@ def planned(first: Look, last: Look, free: NDArray[np.bool_], margins: Margins) 
 
 
 def _as_written(first: Look, last: Look) -> RoadElements:
-    """The elements, with lengths, angles and radii asked for as they must be written to be measured so."""
+    """Returns the elements, with required measured values converted to the values to write in the design."""
     figure = polyline_of(last.design.segments)
     is_seen = first.requirements.brief is None and last.has_turns
     seen = last.seen if is_seen else (None,) * len(last.elements)
@@ -84,7 +83,7 @@ def _as_written(first: Look, last: Look) -> RoadElements:
 
 
 def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, figure: PlanPolyline) -> Feature:
-    """What must be written so that the ranges of a feature are measured."""
+    """Returns a feature's ranges of measured values, converted to ranges of the values to write."""
     degrees, radius, length = asked.degrees, asked.radius, asked.length
     if seen is None:
         if length and length.lo > 0:
@@ -110,7 +109,11 @@ def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, fig
 def _written(
     proposed: tuple[Segment, ...], lengths: Array, turns: Array, free: NDArray[np.bool_], radius: float
 ) -> tuple[Segment, ...]:
-    """Segments with new measures, rounded; radii and transitions grow with them, or give way."""
+    """Returns the segments with new lengths and turns, rounded.
+
+    Radii are scaled accordingly. A radius that becomes too small is removed together with its transition, and
+    a transition that becomes too long is shortened.
+    """
     out = []
     for segment, length, turn, may_change in zip(proposed, lengths, turns, free, strict=True):
         if not may_change:
@@ -143,7 +146,7 @@ def _written(
 
 
 def _rounded(value: float, before: float) -> float:
-    """To a tenth; what was written, where hardly anything changed."""
+    """Returns a value rounded to a tenth; the value before, if the difference is at most 0.5 %."""
     return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
 
 
@@ -229,14 +232,14 @@ def _limits_of(
 
 
 def _seen(rows: _Rows, element: RoadElement, peak: Array, margins: Margins) -> None:
-    """A turn stays one that is seen, and whole; a slighter bend stays slight."""
+    """Adds limits so that a turn is still measured as one turn, and a slight bend is still not measured."""
     members = list(element.members)
     if not element.degrees:
         return
     if not element.is_turn:
         rows.turned(members, Range(0, max(SLIGHT_BEND, abs(element.degrees))))
         return
-    least = LEAST_TURN + 0.4 * (margins.seen - LEAST_TURN)  # of a turn that was proposed with hardly as many
+    least = LEAST_TURN + 0.4 * (margins.seen - LEAST_TURN)  # for a turn proposed with a small angle
     rows.turned(members, Range(max(min(abs(element.degrees), margins.seen), least)))
     bends = [abs(segment.turn_degrees) / segment.distance for segment in element.segments]
     tightest = members[bends.index(max(bends))]
@@ -264,7 +267,7 @@ def _wish(rows: _Rows, element: RoadElement, wish: Feature, peak: Array, margins
 
 
 def _drawn_in(span: Range, share: float) -> Range:
-    """A range without its edges: that share of them, and no more than some of its width."""
+    """Returns a range narrowed at both ends by ``share`` of each bound, limited to a part of its width."""
     most = min(WIDTH_KEPT_OFF + share, 0.4) * (span.hi - span.lo)
     low = span.lo + min(share * abs(span.lo), most) if span.lo > -inf else span.lo
     return Range(low, span.hi - min(share * span.hi, most) if span.hi < inf else inf)

@@ -35,7 +35,7 @@ HEADINGS = np.radians([0, 5, -5, 10, -10, 15, -15, 20, -20, 30, -30, 40, -40, 45
 PENALTIES = (0.05, 1.0, 20.0)  # per square metre by which a limit is broken
 STEPS = 25  # at every penalty, at most
 SETTLED = 1e-5  # relative gain
-FEW = 0.04  # a relative change below which it costs no more to change one thing more
+FEW = 0.04  # relative change; values that change by more get a smaller weight in the second round
 MOST_WORK = 2e7  # points squared, times steps: after this much no further start is tried (about 2 s)
 BROKEN = 0.15  # m: a limit, margins included, may be broken by this much
 CHEAP = 0.05  # cost of a change for each segment, below which no other start is tried
@@ -159,7 +159,7 @@ class Solution(NamedTuple):
 def least_change(aim: Aim) -> Solution | None:
     """Returns the cheapest change that was found; None if no change meets the limits.
 
-    Limits that concern only segments that are not free are ignored.
+    Limits that concern only frozen segments are ignored.
     """
     concerned = (aim.rows[:, np.tile(aim.free, 2)] != 0).any(axis=1)
     aim = aim._replace(rows=aim.rows[concerned], most=aim.most[concerned])
@@ -210,9 +210,10 @@ def _units(aim: Aim) -> Array:
 
 
 def _laid(aim: Aim, v: Array, hands: Array) -> Array:
-    """Heading and start at which the road's box is smallest, and lies in the middle of the map.
+    """Returns the first heading tried at which the road fits on the map, and the start that centres it there.
 
-    Left at heading 0, a straight road would be made shorter, as a small turn alone gains nothing.
+    If it fits at none, the heading with the smallest bounding box is returned. If the search always began at
+    heading 0, a straight road would be shortened, because a small rotation by itself gains nothing.
     """
     n = len(aim.lengths)
     z, _ = aim.figure.walk(v[:n], hands * v[n : 2 * n], 0.0)
@@ -230,7 +231,7 @@ def _laid(aim: Aim, v: Array, hands: Array) -> Array:
 def _settled(
     aim: Aim, hands: Array, units: Array, weights: Array, v: Array, penalty: float
 ) -> tuple[Array, int]:
-    """The bottom of the valley that ``v`` lies in, at one penalty, and the steps that it took."""
+    """Returns the local minimum reached from ``v`` at one penalty, and the number of steps taken."""
     n, damping = len(aim.lengths), 1e-3
     free = np.concatenate([np.tile(aim.free, 2), [True] * 3])
     scale = np.concatenate([1 / units, [0.3, 20.0, 20.0]])[free]
@@ -268,12 +269,12 @@ def _settled(
 
 
 def _misses(aim: Aim, hands: Array, v: Array) -> Array:
-    """Metres by which limits are missed, ``(m,)``."""
+    """Returns the metres by which limits are exceeded, ``(m,)``."""
     return _misses_and_slopes(aim, hands, v, with_slopes=False)[0]
 
 
 def _misses_and_slopes(aim: Aim, hands: Array, v: Array, with_slopes: bool = True) -> tuple[Array, Array]:
-    """Metres by which limits are missed, ``(m,)``, and how each changes with every unknown."""
+    """Returns the metres by which limits are exceeded, ``(m,)``, and their derivatives by every unknown."""
     n = len(aim.lengths)
     by_rows = aim.rows @ v[: 2 * n] - aim.most
     over = by_rows > 0
@@ -305,9 +306,10 @@ def _misses_and_slopes(aim: Aim, hands: Array, v: Array, with_slopes: bool = Tru
 
 
 def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
-    """Pairs of points, every other one, that lie nearer to each other than the road may come to itself.
+    """Returns pairs of points that lie nearer to each other than the road may come to itself.
 
-    Points with no free segment between them are left out: they stay as far apart as they are.
+    Only every second point is compared. Points with no free segment between them are left out, because their
+    distance cannot change.
     """
     owner = aim.figure.owner
     count = np.bincount(owner, minlength=len(lengths))

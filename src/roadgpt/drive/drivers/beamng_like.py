@@ -95,7 +95,7 @@ class BeamngLike:
         limits = DrivingLimits(
             min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.limits.speed_limit
         )
-        # Like BeamNG's, its plan knows slopes, and no crests; that it knows superelevation is assumed.
+        # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
         self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
@@ -127,8 +127,8 @@ class BeamngLike:
         return np.where(rims.left > edges.left, kept, least)
 
     def _joined(self, s: FloatArray) -> FloatArray:
-        """Returns the share, 0..1, of the lateral move from the lane's middle, where the car is parked, to
-        its line."""
+        """Returns, for each station, which share (0..1) of the lateral move from the lane's middle, where the
+        car starts, to the planned line is complete."""
         share = np.clip(s / self.joining, 0.0, 1.0) if self.joining > 0 else np.ones_like(s)
         return np.asarray(share * share * (3 - 2 * share), float)
 
@@ -145,7 +145,7 @@ class BeamngLike:
 
 
 def _smoothed(values: FloatArray, step: float) -> FloatArray:
-    """Returns the mean under a Hann window; beyond both ends the end values continue."""
+    """Returns the values smoothed with a Hann window; beyond each end, the end value is repeated."""
     half = max(1, round(SMOOTHING / step))
     window = np.hanning(2 * half + 1 + 2)[1:-1]
     held = np.pad(values, half, mode="edge")

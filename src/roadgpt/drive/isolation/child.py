@@ -27,8 +27,8 @@ from roadgpt.drive.view import View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
-LOOK = 1.0  # s between two checks that the asking process still exists
-ALONE = 90.0  # s without any Python running here, in which nothing can check; longer than a driver may take
+LOOK = 1.0  # s between two checks that the parent process still exists
+ALONE = 90.0  # s that compiled code may keep Python from running these checks; longer than a driver may take
 MOST_SAID, MOST_TRACE = 4_000, 40_000  # characters of an error's message and traceback
 
 
@@ -47,7 +47,7 @@ class _InitialState:
         self._threads = threading.active_count()
 
     def restore(self, folder: str, environment: dict[str, str], path: list[str]) -> None:
-        """Restores the state; folder, environment and module path are those of the process that asks."""
+        """Restores the state, with the working folder, environment and module path of RoadGPT's process."""
         if hasattr(signal, "setitimer"):
             signal.setitimer(signal.ITIMER_REAL, 0)
         for number, handler in self._handlers.items():
@@ -77,7 +77,8 @@ class _DriverHost:
         self._picture: Any = None
 
     def make(self, spec: str, *surroundings: Any) -> dict[str, Any]:
-        """Creates a driver; folder, environment and module path are those of the process that asks."""
+        """Creates a driver; ``surroundings`` are the folder, environment and module path of RoadGPT's
+        process."""
         self._start.restore(*surroundings)
         driver = load_driver(spec)
         camera = camera_of(driver)
@@ -95,7 +96,8 @@ class _DriverHost:
         return {}
 
     def steer(self, place: tuple[float, ...], motion: tuple[float, ...], image: Any) -> dict[str, Any]:
-        """Asks the driver for a command; place and motion are the fields of a View around road and world."""
+        """Asks the driver for a command; ``place`` has the fields of a View before ``road`` and ``world``,
+        and ``motion`` those after them."""
         if image is not None and not isinstance(image, str):
             self._picture = image
         picture = None if image is None else self._picture
@@ -154,7 +156,7 @@ def _leave() -> None:
 
 
 def _stay_while(parent: int) -> None:
-    """Ends this process when the asking one is gone, even if compiled code prevents Python from running."""
+    """Ends this process when its parent has ended, even if compiled code prevents Python from running."""
     nothing = Path(os.devnull).open("w", encoding="ascii")  # noqa: SIM115 - as long as the process lives
     while os.getppid() == parent:
         faulthandler.dump_traceback_later(ALONE, exit=True, file=nothing)

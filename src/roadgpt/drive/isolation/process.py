@@ -17,7 +17,7 @@ from roadgpt.drive.isolation import protocol
 
 TICK = 0.2  # s between two checks of the clock and the memory
 SHARE = 0.5  # of the machine's memory that a driver may take
-MOST_IDLE = 4  # idle processes that are kept for later drivers
+MOST_IDLE = 4  # maximum number of idle processes that are kept for later drivers
 BEGIN = 60.0  # s within which a new process must be ready
 
 
@@ -48,7 +48,7 @@ class DriverProcess:
         self._most = memory_limit()
         self.is_broken = False
         self.has_served = False
-        """Whether it has already held a driver."""
+        """Whether the process has already held a driver."""
         self._ends = threading.Event()
         threading.Thread(target=self._watch, name="roadgpt-driver", daemon=True).start()
 
@@ -121,7 +121,8 @@ class DriverProcess:
 
 
 def memory_limit() -> float:
-    """Returns the memory limit of a driver in bytes: half of the memory of the machine or the container."""
+    """Returns the memory limit of a driver in bytes: half of the memory of the machine or the container,
+    whichever is smaller. If the system does not state its memory, there is no limit (infinity)."""
     found = []
     with suppress(ValueError, OSError, AttributeError):
         found.append(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
@@ -164,7 +165,8 @@ def take() -> DriverProcess:
 
 
 def give_back(process: DriverProcess) -> None:
-    """Discards the driver of a process, and keeps the process for another driver."""
+    """Discards the driver of a process, and keeps the process for another driver; if MOST_IDLE processes are
+    idle already, ends it instead."""
     if not process.is_alive:
         process.end()
         return

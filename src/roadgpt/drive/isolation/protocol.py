@@ -12,7 +12,7 @@ HEAD = struct.Struct("<I")
 ROOM = 1 << 16  # bytes that are read at once, as many as a pipe holds
 MOST = 1 << 20  # bytes, the largest answer that the driver's process may send
 SAME_PICTURE = "same"
-"""Stands for the image of the previous request."""
+"""Sent instead of an image that is the same as in the previous request."""
 
 
 def send(number: int, body: bytes) -> None:

@@ -31,7 +31,11 @@ class IsolatedDriver:
     """A driver that runs in another process."""
 
     def __init__(self, spec: str, limit: float = BEFORE_START) -> None:
-        """Creates the driver there; raises the errors of ``loading.driver_of``."""
+        """Creates the driver in another process.
+
+        Raises:
+            PartError, UsageError, DriverError: as for ``loading.driver_of``.
+        """
         self._road: Road | None = None
         self._world: World | None = None
         self._picture: Any = None

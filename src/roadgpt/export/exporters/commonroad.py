@@ -28,7 +28,7 @@ SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, a
 
 
 class CommonRoad:
-    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, the task to drive to the end."""
+    """CommonRoad scenario 2020a: lanelets in plan view, a speed limit, and the task to drive to the end."""
 
     name = "commonroad"
     suffix = ".cr.xml"
@@ -129,7 +129,8 @@ def _limit(id_: int, place: Array, world: World) -> XmlElement:
 
 
 def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
-    """Returns the planning problem: from rest to the last lanelet, within twice the time of a calm drive."""
+    """Returns the planning problem: to drive from rest to the last lanelet. The time limit is 10 s plus twice
+    the time that a calm driver needs for the road at constant speed."""
     start = start_of(road)
     place = np.round(road.at(start, world.profile_of(road).middle(start)), 6)
     out = XmlElement("planningProblem", {"id": id_})

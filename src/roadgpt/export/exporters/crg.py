@@ -22,8 +22,8 @@ MOST = 200_000  # cross sections; longer roads have a wider step
 RULER = "$" * 72  # ends the header
 NOTHING = "*" * 20  # a field without a value
 ROUNDS = 3  # of the iteration that finds the station of a point beside the centre line
-CLOSEST = 0.05  # share of the radius; closer to the centre of a bend, the iteration takes this
-ROOM = 0.99  # share of the radius, so that the surface does not reach the centre of a bend
+CLOSEST = 0.05  # share of the radius: least distance from the centre of a bend that the iteration assumes
+ROOM = 0.99  # largest width as a share of the radius, so that the surface does not reach a bend's centre
 
 
 class Crg:
@@ -81,7 +81,8 @@ def _heights(road: Road, points: Array, t: float) -> Array:
 
 
 def _header(length: float, step: float, points: Array, headings: Array, across: _Across) -> list[str]:
-    """Returns the lines on the reference line, the surface's width, and the columns of a cross-section."""
+    """Returns the header: lines of text that define the reference line, the surface's width, and the columns
+    of a cross-section."""
     end = points[0, :2] + step * np.array([np.cos(headings).sum(), np.sin(headings).sum()])
     numbers = {
         "start_u": 0.0,
@@ -119,8 +120,9 @@ def _header(length: float, step: float, points: Array, headings: Array, across: 
 def _headings(points: list[list[float]], step: float) -> list[float]:
     """Returns the heading in radians from each cross-section to the next, ``(n - 1,)``.
 
-    A reader walks steps of equal length in these directions. Each one aims from the point that the walk has
-    reached at the next point of the road, so that errors do not add up across the road.
+    A program that reads the file computes each point from the previous one by a step of constant length in
+    the given direction. Each direction therefore points from the computed point, not from the exact one, to
+    the next point of the road, so that errors across the road do not add up.
     """
     x, y = points[0]
     out = []
@@ -132,7 +134,11 @@ def _headings(points: list[list[float]], step: float) -> list[float]:
 
 
 def _across(headings: Array, step: float, profile: Profile, length: float) -> _Across:
-    """Returns the extent of lanes and shoulders, or what the tightest bend allows."""
+    """Returns the extent of lanes and shoulders, reduced to what the tightest bend allows.
+
+    Raises:
+        ExportError: In the tightest bend, not even the lanes have room.
+    """
     turns = np.abs(wrap_angle(np.diff(headings)))
     room = ROOM * step / math.sin(min(float(turns.max(initial=1e-12)), math.pi / 2))
     if room < profile.paved_reach:

@@ -16,7 +16,8 @@ DRIVE = "time_s,x_m,y_m,z_m,heading_rad,pitch_rad,roll_rad,speed_mps"
 
 
 class Csv:
-    """Two tables: the centre line at every metre, with heading, curvature, grade and widths; and the drive.
+    """Comma-separated tables of the road (a row per metre, with heading, curvature, grade and widths) and of
+    the drive.
 
     If the road does not have the default cross-section (one lane of constant width in each direction, level),
     the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.

@@ -84,7 +84,8 @@ class _MapBuilder:
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
-        """Adds nodes in degrees for every reader, and in metres for readers that use local_x and local_y."""
+        """Adds nodes with positions in degrees, and also in metres, for programs that read local_x and
+        local_y; returns the ids of the nodes."""
         longitude, latitude = degrees(points[:, 0] / UTM_SCALE, points[:, 1] / UTM_SCALE)
         numbers = [next(self._numbers) for _ in points]
         for number, lon, lat, (x, y, z) in zip(

@@ -102,7 +102,7 @@ def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
 
 
 def _drives_off(ground: Array) -> int:
-    """Returns the index of the last pose in which the car still stands at its start; 0 where it never moves.
+    """Returns the index of the last pose in which the car still stands at its start; 0 if it never moves.
 
     The car waits until then, and the trajectory begins there: players may merge poses that are close
     together, as esmini does within 0.1 m, and a standing car would then move at once.
@@ -120,7 +120,7 @@ def _trajectory(time: Array, rows: Array) -> XmlElement:
 
 
 def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlElement, XmlElement]:
-    """Returns the document, the initial actions of the car, and its story."""
+    """Returns the document, and its elements for the car's initial actions and for the story."""
     root = XmlElement("OpenSCENARIO")
     header: dict[str, Value] = {
         "revMajor": 1,
@@ -141,7 +141,7 @@ def _frame(world: World, map_: str, description: str) -> tuple[XmlElement, XmlEl
 
 
 def _vehicle() -> XmlElement:
-    """Returns our saloon, measured from its rear axle."""
+    """Returns the description of the ego vehicle; positions are relative to the rear axle."""
     out = XmlElement("Vehicle", {"name": "saloon", "vehicleCategory": "car", "mass": CAR.mass})
     box = out.add("BoundingBox")
     box.add("Center", {"x": round(CAR.middle - CAR.rear_axle, 3), "y": 0, "z": CAR.height / 2})
@@ -157,7 +157,8 @@ def _vehicle() -> XmlElement:
 
 
 def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
-    """Adds an empty private action of the car that begins ``begin`` seconds into the simulation."""
+    """Adds to the story an empty private action of the car, which starts ``begin`` seconds after the start of
+    the simulation, and returns the action."""
     act = story.add("Act", {"name": f"{name} act"})
     group = act.add("ManeuverGroup", {"name": f"{name} group", "maximumExecutionCount": 1})
     group.add("Actors", {"selectTriggeringEntities": "false"}).add("EntityRef", {"entityRef": EGO})
@@ -201,7 +202,8 @@ def _speed(target: float) -> XmlElement:
 
 
 def _profile(profile: SpeedProfile) -> XmlElement:
-    """Returns speeds over time, with as few entries as keep them within KEPT of the plan."""
+    """Returns the action that follows the planned speeds over time, simplified to few entries that stay
+    within KEPT of the plan."""
     graph = LineString(np.column_stack([profile.time, profile.speed])).simplify(KEPT)
     time, speed = np.array(graph.coords).T
     out = XmlElement("LongitudinalAction")

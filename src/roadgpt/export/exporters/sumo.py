@@ -29,12 +29,13 @@ PATIENCE = 120.0  # s, for netconvert
 PRECISION = 4  # decimals of a metre in a network
 DECIMALS = 4
 SHORTEST = 12.0  # m, the shortest part with a speed limit of its own
-LOOKS = 13  # places in such a part at which the bend is sampled
+LOOKS = 13  # places in such a part at which the curvature is sampled
 ROUND = 5 / 3.6  # m/s: limits are multiples of 5 km/h, as on signs
 
 
 class Sumo:
-    """SUMO's plain nodes and edges with heights, a trip, settings; .net.xml where netconvert is installed.
+    """SUMO network in plain XML (nodes and edges, with heights), a trip and settings; also .net.xml if
+    netconvert is installed.
 
     A lane in SUMO has a single width and a level cross-section: if the width of a lane varies, its mean is
     written, and superelevation is left out.
@@ -67,7 +68,7 @@ class Sumo:
 def netconvert() -> str | None:
     """Returns the path of SUMO's netconvert; None if it is not installed.
 
-    It is looked for in PATH, SUMO_HOME and the Python package eclipse-sumo.
+    The function searches PATH, SUMO_HOME and the Python package eclipse-sumo.
     """
     places = [Path(os.environ["SUMO_HOME"])] if os.environ.get("SUMO_HOME") else []
     package = find_spec("sumo")
@@ -96,8 +97,8 @@ class SpeedZone(NamedTuple):
 
 
 def speed_zones(road: Road, world: World) -> list[SpeedZone]:
-    """Divides the road into consecutive zones. The speed limit of each is the lowest speed of a calm driver
-    in it.
+    """Divides the road into consecutive zones. The speed limit of a zone is the lowest speed of a calm driver
+    within the zone, rounded down to a multiple of 5 km/h, but at least 5 km/h.
 
     A zone is at least SHORTEST metres long, unless the whole road is shorter. Cars in SUMO brake in time for
     the speed limit of the next zone, so they drive bends at a suitable speed.
@@ -146,7 +147,7 @@ def _edges(shape: Array, road: Road, world: World, limits: Sequence[SpeedZone]) 
 def _widths(road: Road, profile: Profile) -> tuple[list[float], list[float]]:
     """Returns the mean widths in metres of the driving lanes, from the centre line outwards.
 
-    The first list has the lanes along the road, the second one those against it.
+    The first list is for the lanes in the direction of the road, the second one for the oncoming lanes.
     """
     forward, backward = profile.count
     s = road.sample().s
@@ -167,7 +168,7 @@ def _from_the_right(profile: Profile) -> int:
 
 
 def _ends(limits: Sequence[SpeedZone], length: float) -> list[tuple[float, float]]:
-    """Returns the end and the speed of each part, from the last to the first."""
+    """Returns the end in metres and the speed limit in m/s of each zone, from the last zone to the first."""
     ends = [*(limit.start for limit in limits[1:]), length]
     return [(end, limit.speed) for end, limit in zip(ends, limits, strict=True)][::-1]
 

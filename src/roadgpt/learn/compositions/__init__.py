@@ -66,7 +66,9 @@ def composed(rng: np.random.Generator) -> Composition | None:
 
 
 def _written(brief: Brief) -> str:
-    """Returns the plan in standard form, but keeps what all of several turns share after the bar."""
+    """Returns the plan in standard form. If several clauses turn, degrees and radii that were required of all
+    turns stay after the ``|``.
+    """
     if len([clause for clause in brief.clauses if clause.kind != "straight"]) < SEVERAL:
         return standard(brief)
     rest = normal(brief.model_copy(update={"degrees": None, "radius": None}))

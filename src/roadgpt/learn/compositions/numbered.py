@@ -78,7 +78,7 @@ def _rest(voice: Voice, total: int, chosen: set[int]) -> str:
 
 
 def _shape(voice: Voice, is_one: bool) -> tuple[str, str, dict[str, str]]:
-    """Returns what some turns are: the words for it, their kind, and their plan words."""
+    """Returns a random property of turns: its words in the text, the kind of turn, its words in the plan."""
     way = voice.rng.random()
     if way < 0.4:
         return "a hairpin" if is_one else "hairpins", "hairpin", {}

@@ -51,7 +51,7 @@ class Settings:
     height: int = 360
     fps: int = 25
     begin: float = 0.0
-    """Seconds from the start of the drive to that of the film."""
+    """Seconds from the start of the drive to the start of the film."""
     seconds: float | None = None
     """Largest number of seconds of the drive that the film shows; None for all of it."""
 

@@ -10,7 +10,7 @@ from roadgpt.report.film.glyphs import Frame
 from roadgpt.run.atomic import whole_file
 
 ENCODER = "libx264"
-QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which less is better
+QUALITY, PRESET = 20, "veryfast"  # x264's scale, on which smaller is better
 
 
 def encoder() -> Any:

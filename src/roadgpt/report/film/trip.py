@@ -15,9 +15,9 @@ from roadgpt.scene import Pose
 from roadgpt.verdict.margin import margins
 
 COLUMNS = ("x", "y", "z", "heading", "pitch", "roll", "steer", "speed", "brake")
-STEP = 0.02  # s, of a trip along a road that nobody drove
-TURN_LAG, TILT_LAG = 0.30, 0.45  # s by which the camera behind the car follows its heading and its slope
-STEEPEST = 0.35  # rad; the camera behind the car does not tumble with it
+STEP = 0.02  # s, time step of a trip along a road that was not driven
+TURN_LAG, TILT_LAG = 0.30, 0.45  # s by which the camera behind the car lags behind its heading and pitch
+STEEPEST = 0.35  # rad, largest pitch of the camera behind the car, even if the car tumbles
 LONGEST = 3600.0  # s
 
 
@@ -107,13 +107,13 @@ class Trip:
 
 
 def _lagging(values: Array, share: float) -> Array:
-    """Returns values smoothed by a filter of first order with this coefficient."""
+    """Returns values smoothed by a first-order low-pass filter with this coefficient."""
     share = min(1.0, share)
     return np.asarray(lfilter([share], [1.0, share - 1.0], values, zi=[values[0] * (1 - share)])[0])
 
 
 def _ride(road: Road, world: World) -> tuple[Array, dict[str, Array], Array]:
-    """Returns a ride along the middle of the right lane at a constant speed, from start to goal of drives."""
+    """Returns a ride along the middle of the driven lane at a constant speed, from the start to the goal."""
     speed = calm_speed(road, world)
     way = goal_of(road) - start_of(road)
     if way / speed > LONGEST:

@@ -3,7 +3,7 @@
 A Page holds a short summary, sections with text, tables and figures, and information on how it was made.
 ``write`` writes it into a folder:
 
-    report.html            the page, without scripts and network access; printable, light and dark
+    report.html            the page, for screen (light and dark) and print; needs no scripts and no network
     report.md              the same text and tables
     tables/NAME.csv .tex   every table, as CSV with plain numbers and as LaTeX (booktabs)
 

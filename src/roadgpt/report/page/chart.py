@@ -21,8 +21,8 @@ CSS = Path(__file__).parent / "style.css"
 SERIES = 6  # colours of the page that tell series apart
 LETTERS = 12.0  # px
 STEPS = (1, 2, 5, 10)  # of ticks
-# licence and type, a style that would hold for the whole page, names that nothing in the picture refers to,
-# rotations by nothing, and matplotlib's font: the page has its own
+# what is removed from matplotlib's SVG: metadata, a style that would apply to the whole page, ids that
+# nothing refers to, rotations by 0 degrees, and matplotlib's font, because the page has its own
 NEEDLESS = (
     r'<metadata>.*?</metadata>|<style .*?</style>| id="[a-z0-9.]+_\d+"| transform="rotate\(-?0 [^"]*"'
     r"|font-family: [^;\"]*;? ?"
@@ -102,7 +102,7 @@ def embedded(figure: Figure, label: str) -> str:
         label: what the chart shows, for screen readers.
     """
     data = io.BytesIO()
-    with rc_context({"svg.hashsalt": label}):  # names within, which no two charts of a page may share
+    with rc_context({"svg.hashsalt": label}):  # else two charts of a page could have the same ids
         figure.savefig(data, format="svg", metadata=dict(UNDATED["svg"]))
     _, _, inside = data.getvalue().decode().partition("<svg ")
     head, _, content = inside.partition(">")

@@ -31,7 +31,7 @@ class Share(NamedTuple):
 
 @in_page_style
 def forest(groups: Sequence[tuple[str, Sequence[Share]]], series: Sequence[str], label: str) -> str:
-    """Returns a chart of shares from 0 to 100 % as SVG: a dot for each and a line for its interval.
+    """Returns a chart of shares from 0 to 100 % as SVG: a dot for each share, and a line for its interval.
 
     Args:
         groups: the name and the shares of each group, from top to bottom.

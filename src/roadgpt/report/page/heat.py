@@ -16,9 +16,9 @@ from roadgpt.report.page.chart import (
     tick_text,
 )
 
-FEW = 10  # cells, below which a map shows nothing where all hold the same number
+FEW = 10  # a map with fewer filled cells, all with the same number, is not drawn
 SIDE, LEFT, BOTTOM, TOP, BAR = 380.0, 74.0, 46.0, 12.0, 96.0  # px
-BLUE = "#2b8ccc"  # stands out from light and from dark paper: how much of it there is says the number
+BLUE = "#2b8ccc"  # visible on light and on dark pages; its opacity shows the number
 FAINTEST = 0.1  # opacity
 
 

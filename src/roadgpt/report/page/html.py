@@ -19,7 +19,7 @@ from roadgpt.report.page.model import (
 
 STYLE = Path(__file__).parent / "style.css"
 SHORT = 24  # letters; a shorter cell is not broken into lines
-MANY = 9  # columns; more of them stand closer together
+MANY = 9  # columns; if there are more, they are set closer together
 TOTAL = ' class="total"'
 # The content security policy: the page runs no script and fetches nothing.
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"

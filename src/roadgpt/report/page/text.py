@@ -38,7 +38,7 @@ LATEX = {
     "×": r"$\times$",
 }
 
-FORMULA = ("=", "+", "-", "@", "\t")  # a spreadsheet takes a cell that begins with one for a formula
+FORMULA = ("=", "+", "-", "@", "\t")  # spreadsheets treat a cell that begins with one of these as a formula
 HTML = str.maketrans({"<": "&lt;", "&": "&amp;"})  # Markdown passes HTML tags through
 
 
@@ -102,8 +102,8 @@ def _table(table: Table) -> str:
 
 
 def csv_of(table: Table) -> str:
-    """Returns a table as CSV with raw values; None becomes an empty field, and text is changed where a
-    spreadsheet would read it as a formula.
+    """Returns a table as CSV with raw values; None becomes an empty field, and an apostrophe is put in
+    front of text that a spreadsheet would treat as a formula.
     """
     values = (
         [None if each.value is None else unformulated(each.value) for each in row] for row in table.rows
@@ -112,8 +112,8 @@ def csv_of(table: Table) -> str:
 
 
 def unformulated(value: Raw) -> Raw:
-    """Returns a value for a CSV file. In text, line ends become newlines, and a formula gets an apostrophe in
-    front."""
+    """Returns a value for a CSV file. In text, line ends become newlines; text that a spreadsheet would treat
+    as a formula is prefixed with an apostrophe."""
     if not isinstance(value, str):
         return value
     words = value.replace("\r\n", "\n").replace("\r", "\n")  # csv would end the row there

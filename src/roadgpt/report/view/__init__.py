@@ -66,7 +66,7 @@ def page_of(scenes: Sequence[Mapping[str, Any]]) -> str:
         "SCRIPT": "\n".join(_part(f"page/{name}") for name in SCRIPTS),
         "DATA": embedded(scenes),
     }
-    # in one pass, so that nothing in a description is taken for a place to fill
+    # in one pass, so that no text in a description is mistaken for a placeholder
     return re.sub("@@([A-Z]+)@@", lambda found: parts[found[1]], _part("page/page.html"))
 
 

@@ -17,7 +17,7 @@ from roadgpt.road.profile import LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 
-CHORD = 0.01  # m, most distance between what is drawn and the road
+CHORD = 0.01  # m, largest distance between the road and the drawn lines
 MOST_STEPS = 6000  # of a drive; 2 minutes are complete, longer ones are thinned
 MILLIMETRES, FINE = 3, 5  # digits
 DRIVE = {
@@ -41,7 +41,7 @@ WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
-"""Thresholds and colours of how far outside its lane the car is."""
+"""A threshold and colours that show how far outside its lane the car is."""
 
 
 def scene(run: Run) -> dict[str, Any]:
@@ -98,7 +98,7 @@ def _road(road: Road, world: World) -> dict[str, Any]:
 
 
 def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
-    """Returns the cross-section at the stations ``s``; what does not change along the road is one number."""
+    """Returns the cross-section at the stations ``s``; offsets that are constant are given as one number."""
     rims, edges = profile.rims(s), profile.edges(s)
     shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
     return {

@@ -43,9 +43,9 @@ SPEEDS = (5 / 3.6, 300 / 3.6)  # m/s
 NODES = 5.0  # m between the nodes of a spline that rounds off kinks
 CLOSEST = 0.5  # m between such nodes
 SAME_SPEED = 0.1  # m/s
-MOST_SPANS = 3  # that are listed in a remark
-MOST_STATIONS = 10_000  # between which stations of file and Road are interpolated
-PLACES = 1_000  # at which the spline is compared with the line, and at which widths are sampled
+MOST_SPANS = 3  # spans that a remark lists
+MOST_STATIONS = 10_000  # pairs of corresponding stations in the file and on the Road, for interpolation
+PLACES = 1_000  # stations at which the spline is compared with the line, and at which widths are sampled
 
 
 @dataclass(frozen=True)
@@ -88,8 +88,9 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
 
     Args:
         path: The file.
-        road: Id of the road. None selects the longest road with a driving lane that is not part of a
-            junction.
+        road: Id of the road. None selects the longest road that has a driving lane and is not part of a
+            junction; if there is none, a road with a driving lane is preferred to others, then a road outside
+            junctions, then the longer one.
 
     Raises:
         UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown
@@ -162,7 +163,9 @@ def _carried(own: FileProfile, carry: Carry, length: float, is_reversed: bool) -
 
 
 def _grown(node: Node, line: list[GeometryElement], lanes: Lanes) -> tuple[Road, Carry, list[str]]:
-    """Returns the road, how stations of the file become its own, and a sentence for each thing changed."""
+    """Returns the road, the ``Carry`` that converts cubics over stations of the file to cubics over stations
+    of the road, and a remark for each thing changed.
+    """
     heights, length = elevation(node), line[-1].s + line[-1].length
     step = jumps(heights, length)
     remarks = [step] if step else []
@@ -222,7 +225,7 @@ def _rounded(found: SampledLine, heights: Array) -> tuple[Road, Array]:
 
 
 def _driven_otherwise(node: Node, lanes: Lanes) -> list[str]:
-    """Returns a sentence for each way in which traffic in the file differs from ours."""
+    """Returns a sentence for each way in which traffic in the file differs from traffic on the Road."""
     remarks = []
     spans = lanes.stretches()
     if spans[0][0] > NEAR or spans[-1][1] < lanes.length - NEAR or len(spans) > 1:

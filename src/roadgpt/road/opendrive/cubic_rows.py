@@ -13,7 +13,7 @@ from roadgpt.road.opendrive.numbers import Cubic
 Row = tuple[float, Cubic]
 """A station in metres, and the cubic that begins there."""
 
-SAME = 1e-12  # m; two constants closer than this are one
+SAME = 1e-12  # m; two constants closer than this are treated as equal
 TOUCHES = 1e-9  # m by which a cubic may be beyond a limit, because of rounding
 SHORTEST = 1e-6  # m between two stations
 
@@ -82,9 +82,9 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the rows as a profile. It keeps its last value beyond the end of the road, which is ``length``
-    metres long.
+    """Returns the rows as a profile of a road that is ``length`` metres long.
 
+    Beyond the end of the road, the profile keeps its last value.
     A constant row that repeats the value of the previous constant row is left out.
     """
     kept: list[Row] = []

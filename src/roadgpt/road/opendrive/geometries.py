@@ -21,7 +21,7 @@ SHORTEST = 1e-3  # m; shorter elements are merged with the previous ones
 FINE = 0.1  # m between the places at which the length of a polynomial is summed
 MOST_PLACES = 20_000
 MOST = 4_000  # elements of one line
-OFF = 0.1  # m, between the end of an element and the station of the next
+OFF = 0.1  # m, allowed between the end of an element and the station of the next
 SMALLEST_RADIUS = 0.1  # m
 SMALLEST = 1e-9  # m, length given to an element of zero length
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(5)
@@ -69,7 +69,7 @@ class PieceShape:
 
 @dataclass(frozen=True)
 class Polynomial:
-    """A curve (u(p), v(p)), where u and v are cubic polynomials of p, from 0 to ``end``."""
+    """A curve (u(p), v(p)), where u and v are cubic polynomials and p runs from 0 to ``end``."""
 
     u: Cubic
     v: Cubic
@@ -77,7 +77,7 @@ class Polynomial:
 
     @cached_property
     def _walked(self) -> tuple[Array, Array]:
-        """Returns parameters and the length reached at each."""
+        """Returns values of the parameter p, and the arc length in metres up to each of them."""
         rough = np.linspace(0.0, self.end, 65)
         length = float(np.hypot(*np.diff(self._at(rough), axis=1)).sum())
         count = int(min(MOST_PLACES, max(64, length / FINE)))

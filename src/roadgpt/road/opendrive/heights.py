@@ -86,7 +86,8 @@ def edge_heights(heights: CubicProfile, lanes: Lanes) -> CubicProfile:
 def _edge_height(heights: CubicProfile, lanes: Lanes, s: Array) -> tuple[Array, Array]:
     """Returns the height of the edge and its change per metre.
 
-    The surface is inclined across the road, so on a grade g the edge is 1 / cos(atan g) higher than t sin e.
+    With superelevation e and grade g, the edge at offset t lies t sin e / cos(atan g) above the reference
+    line.
     """
     assert lanes.angle is not None
     t, slope = lanes.edge_on_surface(s)

@@ -105,7 +105,10 @@ class Lanes:
         return t, slope
 
     def _outer(self, section: LaneSection, last: int, s: Array) -> tuple[Array, Array]:
-        """Returns how far the outer edge of a lane is from lane 0, and its slope; 0 before the first lane."""
+        """Returns the distance in metres of a lane's outer edge from lane 0, and the slope of this edge.
+
+        ``last`` is the index of the lane in ``section.lanes``; for -1 both values are 0.
+        """
         across, lean = np.zeros(len(s)), np.zeros(len(s))
         for lane in section.lanes[: last + 1]:
             if lane.width is None and lane.border is not None:
@@ -211,7 +214,7 @@ def _both(profile: CubicProfile | None, s: Array) -> tuple[Array, Array]:
 def speed_limits(road: Node, driven: Sequence[Node]) -> list[float]:
     """Returns all speed limits of the driven lane in m/s, in driving order.
 
-    If the lane has none, those of the road are returned.
+    If the lane has no speed limits, those of the road are returned.
 
     Args:
         road: The road.

@@ -8,13 +8,13 @@ from roadgpt.road.opendrive.numbers import number
 from roadgpt.road.opendrive.profile import FileProfile
 from roadgpt.road.opendrive.tree import Choice, Node
 
-UNUSED = ("none", *BESIDE)  # lanes that are not worth a word
+UNUSED = ("none", *BESIDE)  # types of lanes that are not listed
 
 
 def left_out(choice: Choice, profile: FileProfile) -> str | None:
     """Returns a sentence that lists the contents of the file that are left out.
 
-    None if nothing is left out.
+    Returns None if nothing is left out.
     """
     parts = [*_parts(choice, profile)]
     return f"left out: {', '.join(parts)}" if parts else None
@@ -43,7 +43,7 @@ def _parts(choice: Choice, profile: FileProfile) -> Iterator[str]:
 
 
 def _further_lanes(road: Node, used: Container[int]) -> Counter[str]:
-    """Counts the lanes that are not in the profile by type; a lane in several sections counts once."""
+    """Counts, by type, the lanes that are not in the profile; a lane in several sections counts once."""
     found = {
         (name, place, node.attributes.get("type", ""))
         for section in road.all("lanes", "laneSection")

@@ -92,7 +92,10 @@ def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
 
 
 def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iterator[tuple[Array, Array]]:
-    """Yields stations ``(n,)`` and poses ``(n, 3)`` along one element with its ends, cut at the joints."""
+    """Yields the parts into which the joints cut one element: stations ``(n,)`` and poses ``(n, 3)`` each.
+
+    Every part includes both of its ends.
+    """
     start, end = element.s, element.s + element.length
     count = max(FEWEST, int(np.ceil(element.length / STEP)))
     while (
@@ -112,7 +115,7 @@ def _parts(element: GeometryElement, joints: Array, lanes: Lanes | None) -> Iter
 def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
     """Returns the poses moved onto the edge of the lane.
 
-    At both ends the lanes are those inside the element.
+    At both ends of the poses, the lanes just inside are used.
     """
     inside = min(TOGETHER, float(s[-1] - s[0]) / 4)
     at = np.clip(s, s[0] + inside, s[-1] - inside)
@@ -128,7 +131,7 @@ def _moved_aside(s: Array, poses: Array, lanes: Lanes) -> Array:
 
 
 def _strays(element: GeometryElement, count: int) -> bool:
-    """Returns whether clothoids between ``count`` poses would leave the line."""
+    """Returns whether ``count`` clothoids would be more than ``CLOSE`` metres away from the element."""
     poses = element.poses(np.linspace(0.0, 1.0, 2 * count + 1))
     ends, middles = poses[::2], poses[1::2]
     if np.abs(np.diff(ends[:, 2])).max() < GENTLE:

@@ -23,7 +23,7 @@ MARKS: dict[str, Marking] = {
 
 
 class MarkedLane(NamedTuple):
-    """A lane in one lane section; its XML element contains the road marks at its outer edge."""
+    """A lane in one lane section. Its XML element, ``node``, contains the road marks at the outer edge."""
 
     span: Span
     node: Node

@@ -23,7 +23,7 @@ def number(node: Node, name: str, missing: float | None = None) -> float:
         missing: Value to return if the attribute is missing; None if the attribute is required.
 
     Raises:
-        UsageError: The attribute is missing, not a number, or not finite.
+        UsageError: The attribute is missing, not a number, not finite, or has an absolute value above 1e12.
     """
     text = node.attributes.get(name)
     if text is None:

@@ -146,7 +146,7 @@ def _outward(span: Span) -> Iterator[WideLane]:
 
 
 def _inward(span: Span) -> Iterator[WideLane]:
-    """Yields the lanes from the centre line on towards the other side, without those that have no width."""
+    """Yields the lanes from the centre line towards the side not driven on, except lanes without a width."""
     lanes, others = span.section.lanes, span.section.others
     inner = (
         WideLane(lanes[place], _width(lanes, place, span)) for place in reversed(range(span.section.first))
@@ -156,7 +156,7 @@ def _inward(span: Span) -> Iterator[WideLane]:
 
 
 def _is_wide(rows: list[Row], end: float) -> bool:
-    """Returns whether a lane is wider than rounding somewhere in its section."""
+    """Returns whether a lane is wider than ``ADJOINS`` somewhere in its section, or has a varying width."""
     return any(any(row[1][1:]) or row[1][0] > ADJOINS for row in rows) or value_at(rows[-1], end) > ADJOINS
 
 
@@ -214,8 +214,8 @@ def _joined(sides: Sequence[_SectionSide], length: float) -> list[JoinedLane]:
 def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> list[dict[int, WideLane]]:
     """Returns the lanes of successive sections, joined where they continue each other, from the inside out.
 
-    Lanes that end or begin without a width continue no other lane. The others are joined in their order.
-    Each result has the lanes by the index of their section.
+    A lane that is narrower than ``THIN`` where two sections meet is not joined there. The other lanes are
+    joined in order, from the inside out. Each result maps the index of a section to the lane in it.
 
     Args:
         spans: The sections.
@@ -243,11 +243,11 @@ def _aligned(spans: Sequence[Span], sections: Sequence[Sequence[WideLane]]) -> l
 def _joined_lane(
     kind: Kind, spans: Sequence[Span], lanes: Mapping[int, WideLane], length: float
 ) -> JoinedLane:
-    """Returns one lane of the road, given by the lanes that it consists of, by the index of their section."""
+    """Returns one lane of the whole road. ``lanes`` maps the index of a section to the lane's part in it."""
     rows: list[Row] = []
     end = 0.0
     for n, span in enumerate(spans):
-        if rows and span.start > end:  # no lane is driven between: the width stays
+        if rows and span.start > end:  # no driving lane in between: the width stays
             rows.append(constant(end, value_at(rows[-1], end)))
         rows += lanes[n].width if n in lanes else [constant(span.start, 0.0)]
         end = span.end
@@ -271,7 +271,7 @@ def checked(cubics: CubicProfile) -> CubicProfile:
 
 
 def _rightmost(right: Sequence[JoinedLane]) -> int:
-    """Returns the number of the outermost driving lane that is wide enough everywhere; 0 if none is."""
+    """Returns the index of the outermost driving lane that is wide enough everywhere; 0 if none is."""
     wide = [
         number
         for number, slot in enumerate(right)
@@ -281,7 +281,7 @@ def _rightmost(right: Sequence[JoinedLane]) -> int:
 
 
 def _driven_width(width: CubicProfile, length: float) -> tuple[CubicProfile, list[str]]:
-    """Returns the width of the driven lane within its limits, and a remark if that changes it."""
+    """Returns the width of the driven lane, clamped to its limits, and a remark if this changes the width."""
     low, high = width.extremes()
     if low > LEAST - ROUNDING and high < MOST + ROUNDING:
         return width, []
@@ -293,7 +293,7 @@ def _driven_width(width: CubicProfile, length: float) -> tuple[CubicProfile, lis
 
 
 def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
-    """Returns the superelevation, None for a level road, and a remark if it is too steep for a Road."""
+    """Returns the superelevation (None for a level road), and a remark if it had to be limited."""
     if lanes.angle is None:
         return None, []
     rows = rows_of(lanes.angle)
@@ -310,7 +310,7 @@ def _superelevation(lanes: Lanes) -> tuple[CubicProfile | None, list[str]]:
 def _markings(
     road: Node, spans: Sequence[Span], right: Sequence[JoinedLane], left: Sequence[JoinedLane]
 ) -> tuple[LaneMarkings, list[str]]:
-    """Returns the markings, and a remark if the file has others."""
+    """Returns the markings, and a remark if they differ from those in the file."""
     if not has_marks(road):
         along, against = (sum(slot.kind == "driving" for slot in side) for side in (right, left))
         usual = Profile.of(along, against, shoulder=0.0)
@@ -333,7 +333,10 @@ def _padded(lanes: Sequence[Lane], count: int) -> tuple[Marking, ...]:
 
 
 def _inner(span: Span) -> Node:
-    """Returns the lane whose outer edge is the centre line; lane 0 where lanes between have no width."""
+    """Returns the XML element of the lane whose outer edge is the centre line.
+
+    Lanes without a width and without road marks are skipped, as far as lane 0.
+    """
     section = span.section
     for place in reversed(range(section.first)):
         lane = section.lanes[place]

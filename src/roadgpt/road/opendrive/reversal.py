@@ -23,7 +23,7 @@ def reversed_road(road: Road) -> Road:
 
 
 def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
-    """Returns the heights as seen from the end of a road of this length."""
+    """Returns the heights as a function of the distance from the end of a road of this length."""
     if isinstance(profile, GradeProfile):
         stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
         grades = -profile.grade(stations)[::-1]

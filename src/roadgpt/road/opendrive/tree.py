@@ -81,7 +81,9 @@ def is_driven(lane: Node) -> bool:
 def read_tree(path: Path, wanted: str | None) -> Choice:
     """Returns the road with the id ``wanted``.
 
-    If ``wanted`` is None, returns the longest road with a driving lane that is not part of a junction.
+    If ``wanted`` is None, returns the longest road that has a driving lane and is not part of a junction. If
+    there is none, a road with a driving lane is preferred to others, then a road outside junctions, then the
+    longer one.
 
     Raises:
         UsageError: The file cannot be read, is not OpenDRIVE, is too large, or has no such road.

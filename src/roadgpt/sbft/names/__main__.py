@@ -1,5 +1,5 @@
-"""Runs a generator in its own interpreter, which may be as old as Python 3.8; ``roadgpt compete sbft`` starts
-it."""
+"""Runs a generator in its own interpreter, which may be as old as Python 3.8. ``roadgpt compete sbft`` starts
+this program."""
 
 import sys
 

@@ -73,10 +73,11 @@ class RoadGPT:
         """Starts the process.
 
         Args:
-            python: the interpreter that RoadGPT is installed in; None: that of ROADGPT_PYTHON, or this one.
+            python: the interpreter that RoadGPT is installed in; None: the one that ROADGPT_PYTHON names, or
+                else the one that runs this code.
 
         Raises:
-            RoadGPTError: it does not start.
+            RoadGPTError: RoadGPT does not start.
         """
         self.python = python or os.environ.get(PYTHON) or _own()
         self._lock = threading.Lock()
@@ -163,7 +164,7 @@ class RoadGPTTestGenerator:
     """Path of the interpreter in which RoadGPT is installed; ROADGPT_PYTHON takes precedence."""
 
     def __init__(self, executor: Any = None, map_size: Optional[int] = None) -> None:
-        """Has the signature that the competition calls."""
+        """Takes the arguments that the competition passes."""
         self.executor = executor
         self.map_size = map_size
 

@@ -14,7 +14,7 @@ from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskFeatures, fit_model, order, ris
 log = logging.getLogger(__name__)
 
 NAME = "RoadGPT"
-MOST_OUTCOMES = 5000  # known outcomes that are used, which takes some 6 s of processor time
+MOST_OUTCOMES = 5000  # known outcomes that are used; they take about 6 s of processor time
 WORKERS = 4
 
 

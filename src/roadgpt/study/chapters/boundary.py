@@ -15,9 +15,9 @@ from roadgpt.report.page import Block, Table, TableCell, cell
 from roadgpt.study.chapters.campaign_tests import again
 from roadgpt.study.chapters.wording import decimal, row
 
-MOST = 1000  # tests of all cells among which pairs are looked for; first those that lie half-way between two
-NAMED = 30  # pairs of a campaign of one cell
-FEW = 10  # of each of several
+MOST = 1000  # tests of all cells in which pairs are searched; tests half-way between two others come first
+NAMED = 30  # pairs that are shown for a campaign with one cell
+FEW = 10  # pairs that are shown per cell for a campaign with several cells
 NEAR = (
     "tests.number IN (SELECT number FROM tests JOIN details USING (cell, number) WHERE tests.cell = ? "
     "AND outcome IN ('PASS', 'FAIL') ORDER BY origin LIKE 'between %' DESC, number DESC LIMIT ?)"

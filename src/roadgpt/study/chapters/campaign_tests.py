@@ -108,8 +108,9 @@ def _far_heads(drives_on: bool) -> list[str]:
 def _how_far(margin: float | None, outside: float | None, drives_on: bool) -> list[TableCell]:
     """Returns the cells under ``_far_heads``.
 
-    They are the largest share of the car outside its lane and, if it drove on, how many metres it was beyond
-    the limit. A drive that ends at the limit ends within centimetres of it, so its distance says nothing.
+    They show the largest share of the car outside its lane and, if cars drive on after leaving their lane,
+    how many metres the car was beyond the limit. If a drive ends where the car leaves its lane, this distance
+    is at most a few centimetres and says nothing.
     """
     share = cell(None) if outside is None else cell(round(outside, 4), percent(outside, 0))
     far = None if margin is None or margin >= 0 else -margin
@@ -168,7 +169,7 @@ def coverage(record: Record, done: int) -> list[Block]:
 
 
 def _map(record: Record, across: str, upwards: str, every: int) -> NDArray[np.float64]:
-    """Returns the number of tests in each cell of a map ``(CELLS, CELLS)``, counted by the store."""
+    """Returns the number of tests in each cell of a map ``(CELLS, CELLS)``, counted by the database."""
     (x0, x1), (y0, y1) = BOUNDS[across], BOUNDS[upwards]
     rows = record.query(
         "SELECT CAST((x - ?) * ? AS INTEGER), CAST((y - ?) * ? AS INTEGER), count(*) FROM "

@@ -1,5 +1,5 @@
-"""Makes the list of information that is needed to reproduce a report: command, seed, versions, hashes of
-the weights of the neural network that reads descriptions."""
+"""Makes the list of information that is needed to reproduce a report: command, seed, versions, and
+hashes of the weights of the neural network that reads descriptions."""
 
 from collections.abc import Mapping, Sequence
 from hashlib import sha256
@@ -55,7 +55,7 @@ def _said(name: str, value: float | str) -> str:
 
 
 def _versions(parts: Sequence[StudyPartRecord]) -> str:
-    """Returns the versions of all runs; several of one library if a study was resumed with another."""
+    """Returns the versions of all libraries; several of one if it changed before a study was resumed."""
     found: dict[str, dict[str, None]] = {}
     for part in parts:
         for road in part.roads:

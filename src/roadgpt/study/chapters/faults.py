@@ -1,5 +1,5 @@
-"""Makes the section on distinct faults and, if no road failed, a section on what to try next. It runs no
-simulations."""
+"""Makes the section on distinct faults and, if no road failed, a section on what to try next. No simulations
+are run."""
 
 import shlex
 from collections.abc import Sequence

@@ -15,8 +15,8 @@ OLD = "An older version wrote this store without distances; the shares are there
 
 
 class Passed(NamedTuple):
-    """The passed tests with one result of ``verdict.severity``, such as "partly outside": their number, and
-    the largest share and distance by which the car was outside its lane."""
+    """The passed tests that have the same grade of ``verdict.severity``, such as "partly outside": their
+    number, and the largest share and distance by which the car was outside its lane."""
 
     severity: Severity
     tests: int

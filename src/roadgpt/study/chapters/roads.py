@@ -1,5 +1,5 @@
-"""Makes the sections that show roads: the first section of a report, all roads as thumbnails, feature
-maps."""
+"""Makes the sections that show roads: the overview at the start of a report, thumbnails of all roads, and
+feature maps."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 
 SHOWN = 3  # pictures of the first section
 SIDE = 3  # roads along each side of one of them
-MOST, MOST_PARTS = 100, 30  # roads in a picture of all roads, and such pictures
+MOST, MOST_PARTS = 100, 30  # roads in one picture of all roads, and number of such pictures
 CELLS = 25  # along each side of a feature map
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))
 """Pairs of features, each shown as one map: the first along the horizontal axis, the second along the

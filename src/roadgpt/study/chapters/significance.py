@@ -1,5 +1,5 @@
-"""Checks with contingency tables, as in the thesis, whether a count of roads (such as valid roads) depends on
-the description."""
+"""Checks with contingency tables, as in the thesis, whether the share of roads with a property (such as valid
+roads) depends on the description."""
 
 from collections.abc import Sequence
 from typing import NamedTuple

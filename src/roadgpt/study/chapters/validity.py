@@ -23,7 +23,7 @@ from roadgpt.study.chapters.wording import (
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 from roadgpt.study.statistics import exact
 
-MOST_DRAWN = 12  # prompts in a figure; of more, all together
+MOST_DRAWN = 12  # prompts in a figure; if there are more, they are shown as one
 ALL = "all prompts"
 LONGEST = 66  # letters of a prompt in a figure
 
@@ -52,7 +52,8 @@ def of_thesis(parts: Parts) -> list[StudyPartRecord]:
 
 
 def _source(parts: Parts, designer: str, which: str, of: str, name: str, slug: str) -> Source:
-    """Counts the roads of a designer that have one property, of those that have another one."""
+    """Counts, for each prompt, a designer's roads with the property ``which``, and in total those with the
+    property ``of`` (all roads if ``of`` is empty)."""
     counts = (
         Count(part.words, part.count(which), part.count(of) if of else len(part.roads), part.overview)
         for part in parts
@@ -189,7 +190,7 @@ def _silent(parts: Parts) -> list[Block]:
 
 
 def _named(parts: Parts, says: Callable[[RoadRecord], str]) -> list[Block]:
-    """Returns a line with a link for each road of which something is said."""
+    """Returns a line with a link for each road for which ``says`` returns a sentence."""
     return [
         [linked(f"{part.part.name}, road {road.index}", part.href(road)), f": {sentence}"]
         for part in parts

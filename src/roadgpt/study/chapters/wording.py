@@ -41,7 +41,7 @@ def row(*values: Raw | TableCell) -> list[TableCell]:
 
 
 def decimal(value: float | None, digits: int = 2, href: str = "") -> TableCell:
-    """Returns a number as a table cell, rounded to ``digits``; a dash for None and NaN."""
+    """Returns a number as a table cell, with ``digits`` decimals; a dash for None, NaN and infinity."""
     if value is None or not math.isfinite(value):
         return cell(None)
     return cell(round(value, digits + 3), f"{value:z.{digits}f}".replace("-", "−"), href)

@@ -267,7 +267,7 @@ def _kind(request: Request) -> str:
 
 
 def _fields(request: Request, body: bytes) -> dict[str, str]:
-    """Returns the fields of a form, the last of each name; empty if the body is no form."""
+    """Returns the fields of a form; the last field of a name counts. Empty if the body is not a form."""
     if _kind(request) != FORM:
         return {}
     try:

@@ -161,7 +161,8 @@ def clean(text: str) -> str:
 
 
 def _letter(letter: str) -> str:
-    """Returns a character as stored: any space becomes a plain one; invisible ones but joiners vanish."""
+    """Returns a character as it is stored. White space becomes a plain space (tabs and line feeds are
+    kept); other invisible characters, except joiners, become an empty string."""
     if letter in "\n\t\u200c\u200d" or letter.isprintable():
         return letter
     return " " if letter.isspace() else ""

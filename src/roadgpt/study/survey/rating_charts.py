@@ -20,7 +20,7 @@ from roadgpt.report.page.chart import embedded, palette
 from roadgpt.report.text_width import fitted
 from roadgpt.study.survey.tally import RatingTally, Unit
 
-# from orange to blue, told apart by colour-blind people too; every piece has its number in it
+# from orange to blue, which colour-blind people can distinguish; every piece contains its number
 SHADES = ("#c2510a", "#efb184", "#c9ccd1", "#8fc1e3", "#0a69a8")
 ON_SHADES = ("#fefefe", "#101216", "#101216", "#101216", "#fefefe")  # the same on light and dark pages
 WIDE, LEFT, RIGHT = 9.6, 3.1, 0.75  # inches
@@ -150,7 +150,7 @@ def about_bars(
 def _finished(
     figure: Drawing, name: str, label: str, caption: str, folder: Path, is_synthetic: bool
 ) -> Figure:
-    """Writes a figure as PNG, PDF and SVG; returns it for the page, whose colours its text takes."""
+    """Writes a figure as PNG, PDF and SVG, and returns it as SVG whose text has the colours of the page."""
     if is_synthetic:
         figure.text(0.995, 0.995, MADE_UP, size=10, weight="bold", color=VERMILLION, ha="right", va="top")
         figure.text(

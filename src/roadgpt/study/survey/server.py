@@ -15,8 +15,8 @@ from roadgpt.study.survey.app import SurveyApp
 
 MOST_AT_ONCE = 600  # connections; a browser opens up to six
 MOST_HEAD = 32 * 1024  # bytes of a request before its body
-PATIENCE = 15  # s that a connection may say nothing between requests, or take to receive 64 kB
-SLOWEST = 60.0  # s in which a whole request must have come, however slowly it drips in
+PATIENCE = 15  # s that a connection may be silent between requests, or take to receive 64 kB
+SLOWEST = 60.0  # s in which a whole request must have arrived, even if its bytes come slowly
 BACKLOG = 128  # connections that wait to be accepted
 LONGEST_END = 5.0  # s in which requests under way may end, after Ctrl-C
 BUSY = b"HTTP/1.1 503 Service Unavailable\r\nConnection: close\r\nRetry-After: 2\r\nContent-Length: 0\r\n\r\n"
@@ -34,7 +34,7 @@ class LimitedConnection(H11Protocol):
     def connection_made(self, transport: Transport) -> None:  # type: ignore[override]
         """Accepts a connection, or answers with status 503 if too many are open."""
         super().connection_made(transport)
-        # else an answer, whose head and body are sent apart, waits 40 ms for the other side's kernel
+        # else answers take 40 ms longer: their body waits until the other side has confirmed their head
         transport.get_extra_info("socket").setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         if len(self.connections) >= (self.limit_concurrency or MOST_AT_ONCE):
             transport.write(BUSY)
@@ -72,7 +72,7 @@ class LimitedConnection(H11Protocol):
         super().connection_lost(exc)
 
     def _watch(self) -> None:
-        """Limits the time from the end of the last answer until the next request is there as a whole."""
+        """Limits the time from the end of the last answer until the whole next request has arrived."""
         if self.conn.their_state not in WAITS_FOR_CLIENT:
             self._stop("request")
         elif "request" not in self._timers:
@@ -135,7 +135,7 @@ class Server:
         thread = Thread(target=self._run, daemon=True)
         try:
             thread.start()
-            # not Thread.join, which takes a thread for ended when a KeyboardInterrupt is raised in it
+            # not Thread.join: after a KeyboardInterrupt in join, Python treats the thread as ended
             while not self._has_ended.wait(0.5):
                 pass
         finally:

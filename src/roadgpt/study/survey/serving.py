@@ -63,7 +63,7 @@ def serve(
     is_open: bool = False,
     url: str = "",
 ) -> None:
-    """Serves a survey until Ctrl-C. It reports the raters' links and writes them into ``links.txt``.
+    """Serves a survey until Ctrl-C. The raters' links are reported first, and written into ``links.txt``.
 
     Args:
         folder: the survey's folder.
@@ -100,7 +100,7 @@ def serve(
 
 
 def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[str]:
-    """Writes the links of all raters, new ones among them, and returns the lines that show them."""
+    """Writes the links of all raters, including those of new raters, and returns the lines that show them."""
     path = folder / LINKS
     tokens = re.findall(r"/r/([\w-]+)\s*$", read_text(path), re.M) if path.is_file() else []
     tokens = [token for token in tokens if store.rater_of(token) is not None]
@@ -116,7 +116,7 @@ def _invited(folder: Path, store: AnswerStore, wanted: int, base: str) -> list[s
     links = [f"{base}/r/{token}" for token in tokens]
     with explained(RoadGPTError, f"cannot write {path}", "make room there"):
         write_whole(path, "\n".join(links) + "\n", is_private=True)
-    for token in new:  # last: a link that stands nowhere is lost, one that opens nothing is made again
+    for token in new:  # last: a link without a rater is replaced later, but a rater without a link is lost
         store.add_rater(token=token)
     return [*links, f"one link for each rater; {path} lists them, too"]
 

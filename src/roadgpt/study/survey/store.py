@@ -72,7 +72,7 @@ class AnswerStore:
         try:
             _private(Path(path))
             self._file = sqlite3.connect(path, timeout=30, isolation_level=None, check_same_thread=False)
-            # FULL waits for the disk at every commit; deleted answers are overwritten and not only let go
+            # FULL: every commit waits for the disk; secure_delete: deleted answers are overwritten
             for pragma in ("journal_mode=WAL", "synchronous=FULL", "secure_delete=ON", "foreign_keys=ON"):
                 self._file.execute(f"PRAGMA {pragma}")
             self._file.executescript(TABLES)
@@ -121,7 +121,7 @@ class AnswerStore:
         return int(self._read("SELECT count(*) FROM raters WHERE NOT joined")[0][0])
 
     def raters(self) -> list[Rater]:
-        """Returns all invited raters, also those who withdrew."""
+        """Returns all raters, including those who joined by the shared link and those who withdrew."""
         rows = self._read("SELECT digest, state, agreed_on FROM raters ORDER BY digest")
         return [Rater(*row) for row in rows]
 

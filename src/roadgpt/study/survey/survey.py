@@ -98,8 +98,9 @@ class Survey(Frozen):
         rater.
 
         The page about the rater comes first, then the roads in random order, then the pairs of roads in
-        random order, then the last page. The attention check is one of the pages about roads; if there are
-        two or more roads, it is neither first nor last.
+        random order, then the last page. The attention check is placed among the roads, or among the pairs if
+        there are no roads; if there are two or more of them, it is neither before the first nor after the
+        last.
 
         Args:
             digest: digest of the rater's token, hexadecimal.

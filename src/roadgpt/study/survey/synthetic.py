@@ -21,9 +21,9 @@ def synthetic(
 ) -> Answers:
     """Returns the answers of simulated raters.
 
-    Every rating has a hidden true answer, which differs from road to road. A rater gives the true answer with
-    the probability ``agreement`` and otherwise a random answer. Krippendorff's alpha is therefore 1 if
-    ``agreement`` is 1, and near 0 if ``agreement`` is 0.
+    Every rating question has a hidden true answer, which differs from road to road. A rater gives the true
+    answer with the probability ``agreement`` and otherwise a random answer. Krippendorff's alpha is therefore
+    1 if ``agreement`` is 1, and near 0 if ``agreement`` is 0.
 
     Args:
         survey: the survey.
@@ -48,9 +48,10 @@ def synthetic(
 
 
 def _truths(survey: Survey, rng: np.random.Generator) -> dict[str, int]:
-    """Returns the index of each rating's true answer: random for each criterion, one further for each road.
+    """Returns the index of each rating's true answer. It is random for the first road, separately for each
+    criterion, and increases by one from road to road.
 
-    If all roads had the same truth, raters could not show that they agree.
+    If the true answer were the same for all roads, agreement between raters could not be measured.
     """
     start: dict[tuple[str, str], int] = {}
     truth: dict[str, int] = {}

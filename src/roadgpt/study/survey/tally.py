@@ -15,7 +15,7 @@ from roadgpt.study.survey.survey import Item
 
 Array = NDArray[np.float64]
 Rated = Literal["alignment", "similarity"]
-FAVOURABLE = 4  # a score from which an answer speaks for the road, or for likeness
+FAVOURABLE = 4  # lowest score that is in favour of the road, or of the two roads being similar
 
 
 @dataclass(frozen=True, eq=False)

@@ -205,14 +205,15 @@ class ModelReader:
         return self._as_brief(words, text, draft)
 
     def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
-        """Returns the error for a refusal; if the size of the map may be the reason, it carries the Brief."""
+        """Returns the error for a refusal; the error carries the Brief if the map may just be too small."""
         brief = self._for_the_usual_map(words, text) if why.startswith("!impossible") else None
         return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
 
     def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
-        """Returns the Brief that is read if large numbers are replaced by ordinary ones.
+        """Returns the Brief that the network reads if large numbers are replaced by ordinary ones first.
 
-        None if the numbers are ordinary already, or if the description is refused even so.
+        The Brief has the original numbers. None if the numbers are ordinary already, or if the description is
+        refused with ordinary numbers too.
         """
         as_usual = with_ordinary_numbers(text)
         if as_usual.text == text:
@@ -237,7 +238,7 @@ class ModelReader:
         seen: tuple[SlottedText, Sequence[str]] | None = None,
     ) -> Brief:
         """Returns the Brief of a plan; ``seen`` is the text that the network read and the tokens that it
-        wrote, if they differ from these.
+        wrote, if they differ from ``text`` and from the tokens of ``draft``.
         """
         try:
             brief = with_checked_counts(read_plan(draft.line), text)
@@ -269,7 +270,7 @@ class ModelReader:
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
-    """Returns the small numbers of a change request that its plan does not have: places and counts."""
+    """Returns the small numbers of a change request (positions and counts) that its plan lacks."""
     if draft.is_refusal:
         return ()
     return tuple(
@@ -280,7 +281,9 @@ def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan whose turns have the sides that the words list; None if they list none."""
+    """Returns the likeliest plan whose turns have the sides listed in the words; None if there is no list or
+    no such plan.
+    """
     sides = listed_sides(text)
     if not sides or not found or found[0].is_refusal:
         return None
@@ -289,7 +292,7 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 
 def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
-    """Returns the likeliest plan that asks for something else than the Brief; empty if there is none."""
+    """Returns the likeliest plan that asks for something other than the Brief; empty if there is none."""
     said = normal(brief).model_copy(update={"beside": ()})
     for draft in found:
         if draft.is_refusal or not _can_be_kept(draft.line):

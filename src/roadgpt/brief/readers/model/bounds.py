@@ -68,7 +68,7 @@ def bounded(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
 
 
 def _size(tokens: Sequence[str], at: int) -> int:
-    """Returns how many tokens this key's amount has if it is one slot, with or without a bound; else 0."""
+    """Returns how many tokens the amount after a key has: 1 (a slot), 2 (a slot and a bound), else 0."""
     if tokens[at] not in KEYS:
         return 0
     after = [*tokens[at + 1 : at + 4], "", "", ""]

@@ -1,4 +1,4 @@
-"""Computes the confidence in a reading from how likely its plan is and which numbers it lacks."""
+"""Computes the confidence in a reading from how likely its plan is and how many numbers the plan lacks."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,8 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.used_words import left_out, passes_over_a_negation
 
 DOUBT = 0.5
-"""The highest confidence of a reading that does not change without a "not"."""
+"""The highest confidence of a reading that would stay the same if a word such as "not" were left out, and of
+the reading of a change request that says only what must not change."""
 
 DENIAL = re.compile(r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*", re.IGNORECASE)
 """Matches a change request that says only what must not change."""
@@ -28,9 +29,9 @@ def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
 
 
 def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:
-    """Returns how often readings like this one were right on held-back texts, from 0 to 1.
+    """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts.
 
-    A reading that passes over a negation gets DOUBT at most.
+    A reading that ignores a negation gets DOUBT at most.
 
     Args:
         weights: the weights of the confidence model, and its bias.

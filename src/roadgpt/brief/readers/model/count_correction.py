@@ -28,7 +28,7 @@ MORE = word_set(
     "more further other others additional else otherwise weiteren weitere weiter anderen sonst autres",
     "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",
 )
-"""Words that exclude turns other than the named ones: "no further turns"."""
+"""Words that limit "no turns" to turns other than the named ones, as in "no further turns"."""
 MOST_COUNTS = 8
 """The largest number of counts that are checked: eight counts already have 255 possible sums."""
 
@@ -43,7 +43,7 @@ def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
 
 
 def _without_more(brief: Brief, words: set[str]) -> Brief:
-    """Removes 'no turns' if turns are named, since the words then only exclude further ones."""
+    """Removes 'no turns' if turns are named and a word such as "further" says that only others are meant."""
     turning = any(clause.kind not in STRAIGHT for clause in brief.clauses)
     if turning and brief.turns and brief.turns.hi == 0 and words & MORE:
         return brief.model_copy(update={"turns": None})
@@ -93,7 +93,7 @@ def _total(brief: Brief) -> int | None:
 
 
 def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
-    """Corrects the one count that was not said by the one number that no count has."""
+    """Corrects the only count that is not in the text by the only number in the text that is not a count."""
     if words & MULTIPLES or brief.left or brief.right or brief.hills:
         return brief
     turning = [index for index, clause in enumerate(brief.clauses) if clause.kind not in STRAIGHT]
@@ -122,7 +122,7 @@ def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
 
 
 def _total_kept(brief: Brief, text: SlottedText, said: set[int]) -> Brief:
-    """Keeps a number of turns that is no sum of the counts, if all of those were said."""
+    """Adds the number of turns that the text gives, if all counts are in the text and none add up to it."""
     turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
     counts = [_exact(clause.count) for clause in turning]
     if brief.turns or not 2 <= len(counts) <= MOST_COUNTS or not said.issuperset(n or 0 for n in counts):

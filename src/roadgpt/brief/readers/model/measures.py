@@ -8,9 +8,10 @@ from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
 from roadgpt.brief.readers.model.units import JOINTS, TIMES, UNITS, Unit
 
 LARGEST_SEEN = 20
-"""Numbers without a unit up to this one remain digits in the text for the model; larger ones become slots."""
+"""The largest number without a unit that remains as digits in the text for the model. Larger ones become
+slots."""
 SIDES = LEFT | RIGHT | {"g", "d", "i", "der", "sn", "ds"}
-"""Words for left and right, and the short ones that stand only before numbers, as in "G90"."""
+"""Words for left and right, and their abbreviations that occur only before numbers, as in "G90"."""
 RADIUS = frozenset(
     ["radius", "radii", "rad", "halbmesser", "radien", "rayon", "rayons", "ray", "radio", "radios", "raggio"]
     + ["raggi"]

@@ -25,7 +25,7 @@ WIDTH = 4
 FAVOUR = 0.3
 """Exponent of the length normalisation: a plan's log-probability is divided by its length to this power."""
 LEAST = np.float32(-30)
-"""Log-probability below which differences say nothing."""
+"""Smaller log-probabilities count as this one, since differences between them say nothing."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 
 
@@ -51,7 +51,7 @@ class Network:
     """The trained network, which reads a description and writes plans."""
 
     def __init__(self, folder: Path, name: str = "") -> None:
-        """Takes the folder of the weights, and what follows 'encoder' and 'decoder' in their names."""
+        """Takes the folder of the weights, and what follows 'encoder' and 'decoder' in the file names."""
         self.folder, self.name = folder, name
         self.pieces = WordPieces(read_text(folder / "pieces.txt").split("\n"))
 
@@ -88,7 +88,7 @@ class Network:
 
         Returns:
             Two arrays of shape (texts, tokens + 1), for each token of the plan and its end: the
-            log-probability, and its lead over the likeliest other token (negative if that one is likelier).
+            log-probability, and its lead over the likeliest other token (negative if the other is likelier).
         """
         rows = [self.pieces.encode(word.text for word in text.words)[0] for text in texts]
         pieces = np.zeros((len(rows), max(map(len, rows))), dtype=np.int64)
@@ -185,7 +185,7 @@ class Network:
     def _scored(
         self, token: Numbers, place: int, own: Array, across: Array, seen: Array
     ) -> tuple[Array, Array]:
-        """Returns the scores of the next tokens, and ``own`` with the keys and values of these tokens."""
+        """Returns the scores of the next tokens, and ``own`` extended by the keys and values of ``token``."""
         feed = {"token": token, "place": np.array([place]), "own": own, "across": across, "seen": seen}
         scores, kept = self._decoder.run(None, feed)
         return scores, kept
@@ -229,13 +229,13 @@ class Draft:
 
 
 def _nothing(across: Array) -> Array:
-    """Returns the keys and values of a plan without tokens, for a network with these of the description."""
+    """Returns the keys and values of a plan without tokens; ``across`` gives the sizes of the network."""
     layers, _, _, heads, _, size = across.shape
     return np.zeros((layers, 2, 1, heads, 0, size), dtype=np.float32)
 
 
 def _without(logs: Array, tokens: Sequence[int]) -> Array:
-    """Returns the log-probabilities that result if some tokens are excluded as well."""
+    """Returns the log-probabilities, normalised again, after some further tokens are excluded."""
     out = logs.copy()
     out[list(tokens)] = -np.inf
     top: Array = out - np.log(np.exp(out[np.isfinite(out)]).sum())

@@ -54,7 +54,7 @@ def with_ordinary_numbers(text: SlottedText) -> OrdinaryNumbers:
 
 
 def _large_count(text: SlottedText, at: int) -> str:
-    """Returns the number of turns as text if it is larger than usual; empty for any other word."""
+    """Returns the number in a word as text if it counts more than MOST_TURNS turns; otherwise empty."""
     word = text.words[at].text
     values = {slot_name(i): slot.value for i, slot in enumerate(text.slots) if not slot.unit}
     value = float(word) if word.isdecimal() else values.get(word, 0.0)

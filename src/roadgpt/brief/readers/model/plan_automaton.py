@@ -61,7 +61,7 @@ MOST_CHANGES = 8
 MOST_NAMES = 4
 MOST_NUMBERS = 8
 DEEPEST = 2
-"""How often a place of a change may contain another one: all but (the straight after (the first turn))."""
+"""How deeply places in a change may be nested: "all but (the straight after (the first turn))" is depth 2."""
 WAYS = ("up", "down", "flat")
 
 

@@ -46,11 +46,11 @@ SYMBOLS = str.maketrans({
 })  # fmt: skip
 WORD = re.compile(r"\d+(?:[.,]\d+)*|[^\W\d_]+|[^\w\s]|_")
 CHANGE = "[unused13]"
-"""The mark in front of a change request, by which the model tells it from a description."""
+"""The token in front of a change request, which tells the model that the text is not a description."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 FAR = 100
-"""The smallest unit, in metres, that may stand for one of it without a number, as in "mile and a half"."""
+"""The smallest unit, in metres, that means one such unit if it has no number, as in "mile and a half"."""
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
@@ -145,7 +145,7 @@ def _ratio(tokens: list[str], at: int) -> Number | None:
 
 
 def _millions(tokens: list[str], at: int) -> Number | None:
-    """Reads a million: more than anything on a road, however many there are."""
+    """Reads "a million", "two billion" and the like as one million, which is too many for any road."""
     if tokens[at] in MILLIONS:
         return Number(MILLION, at, at)
     many = tokens[at] in ONES or tokens[at].isdecimal() or (tokens[at],) in words()
@@ -281,7 +281,7 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
 
 
 def _count(number: Number, spoken: str) -> list[Word]:
-    """Keeps a small bare number as a digit; with a tolerance it becomes "3 to 5"."""
+    """Returns a small number without a unit as digits; with a tolerance, as a range such as "3 to 5"."""
     value, spread = int(number.value), number.spread
     if not spread:
         return [Word(str(value), spoken)]

@@ -58,8 +58,9 @@ def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Nu
 
 
 def _take_one(number: Number, tokens: Sequence[str]) -> None:
-    """Gives a count the tolerance "one", which is not read as a number elsewhere since it is mostly an
-    article.
+    """Sets the tolerance of a count to 1 if the text gives the tolerance as a word such as "one" or "eine".
+
+    Such words are not read as numbers elsewhere, since they are mostly articles.
     """
     if not (number.is_bare and is_count(tokens, number)) or number.spread:
         return

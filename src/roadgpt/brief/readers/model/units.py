@@ -7,7 +7,7 @@ from roadgpt.brief.readers.model.word_set import word_set
 Unit = Literal["metres", "percent", "degrees", "kmh", ""]
 
 UNITS: dict[tuple[str, ...], tuple[Unit, float]] = {}
-"""Maps the words of a unit to what it measures, and to its size in metres, percent or degrees."""
+"""Maps the words of a unit to the unit in plans (such as metres) and to the factor that converts to it."""
 
 _SAID: tuple[tuple[str, Unit, float], ...] = (
     (

@@ -1,7 +1,7 @@
 """Finds the words of a text that its plan does not depend on: the plan stays the likeliest without them.
 
-Every word except function words is left out once, and the network computes how likely the plan is for the
-remaining words. If this hardly changes, the word is reported as unused.
+Each word in turn, except function words, is left out, and the network computes how likely the plan is for
+the remaining words. If this hardly changes, the word is reported as unused.
 """
 
 from collections.abc import Collection, Sequence
@@ -14,12 +14,13 @@ from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 from roadgpt.brief.readers.model.word_set import word_set
 
 NOTICED = 0.02
-"""Loss of log-probability from which a word counts as used although the plan stays the likeliest."""
+"""If leaving a word out lowers the log-probability of the plan by more than this, the word counts as used,
+even if the plan stays the likeliest."""
 NEGATORS = NOT | word_set(
     "don doesn isn shouldn only except weder nur ausser ni rien seulement sauf nessuna nessuno solo soltanto",
     "tranne salvo excepto",
 )
-"""Words that deny or limit: a reading that does not change without them has passed over them."""
+"""Words that deny or limit something: a reading that stays the same without them has ignored them."""
 SHORTEST = 3  # letters; shorter words are function words in all five languages
 MOST_WORDS = 60
 """The largest number of words that are tried."""
@@ -28,7 +29,7 @@ MOST_WORDS = 60
 def unused_words(
     network: Network, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
 ) -> tuple[str, ...]:
-    """Returns the words that the plan does not depend on, in their spelling, each once and in text order.
+    """Returns the words that the plan does not depend on, as spelled in the text, each once, in text order.
 
     Args:
         network: the network that wrote the plan.
@@ -65,8 +66,8 @@ def _idle(
 ) -> frozenset[int]:
     """Returns the places of the words that the plan does not depend on.
 
-    Words that say the same twice ("uphill, climbing all the way") can each be left out, but not both. Of such
-    words, those that bring the plan back alone count as used.
+    If two words mean the same ("uphill, climbing all the way"), each of them can be left out, but not both.
+    If the plan changes when all such words are left out, a word that alone restores the plan counts as used.
     """
     tried = [place for place, word in enumerate(text.words) if _is_content(word, fillers)][:MOST_WORDS]
     kept = _are_kept(network, text, tokens, [{place} for place in tried])

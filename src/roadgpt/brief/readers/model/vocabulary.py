@@ -36,7 +36,7 @@ PLACES = ["starts(", "ends("]
 FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NEWER = ("135",)
-"""Angles that were added later, so that their tokens stand at the end."""
+"""Angles that were added later, and whose tokens therefore stand at the end."""
 OLDER_NUMBERS = [
     *(str(number) for number in range(LARGEST_SEEN + 1)),
     *(number for number in FIXED if int(number) > LARGEST_SEEN and number not in NEWER),
@@ -59,16 +59,16 @@ CAUSES = [
     "cobbles", "size", "place", "compared", "alike", "wet", "snow", "ice", "lanes", "lane_width", "bank",
     "speed",
 ]  # fmt: skip
-"""Causes of refusals, and names of what is beside the road, in the order in which the weights know them."""
+"""Causes of refusals, and names in ``Brief.beside``, in the order in which the weights know them."""
 NOUNS = ["turn", "straight", "start", "end", "road"]
 SUPERLATIVES = ["longest", "shortest", "sharpest", "gentlest", "steepest", "flattest"]
 HALVES = ["half1", "half2"]
 NEXT_TO = ["after(", "before(", "between(", "on("]
-"""Where something new can stand."""
+"""The positions of a feature that a change adds, relative to a place on the road."""
 POSITIONS = [*NEXT_TO, "from(", "up_to("]
 ENDS_OF_ROAD = ["at_start", "at_end", "at_middle"]
 MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent"}
-"""The wishes of a change that have a value, with its unit."""
+"""The properties to which a change can give a value, with the unit of the value."""
 ALONE = ["straighten", "remove", "mirror", "alternate"]
 FACTORS = (
     "-1", "0.1", "0.2", "0.25", "0.3", "0.333", "0.4", "0.5", "0.6", "0.667", "0.7", "0.75", "0.8", "0.9",
@@ -76,7 +76,7 @@ FACTORS = (
 )  # fmt: skip
 """The factors that words imply without a number: "a third longer"."""
 PERCENTS = ["x+", "x-", "x%"]
-"""Introduce a factor that the text gives in percent: more by, less by, to."""
+"""Tokens before a factor that the text gives in percent: "more by N %", "less by N %", "to N %"."""
 CHANGES = [
     "!unclear", *CAUSES, "beside(", ",", "add", ":", *NOUNS, "all", "middle", *SUPERLATIVES, *HALVES,
     *POSITIONS, *ENDS_OF_ROAD, "but(", *MEASURED, "side", "other", "shape", *ALONE, "=", "+", *PERCENTS,
@@ -89,15 +89,15 @@ PIECE = re.compile(
     r"![a-z]+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
 )
 LISTED = re.compile(r",(?=\s*-?\d)")
-"""A comma between numbers of a list, which is no token: the numbers follow each other."""
+"""A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 UNIT_OF = {
     "deg=": "degrees", "r=": "metres", "len=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
 }  # fmt: skip
-"""The unit of the number behind a key; other numbers are counts."""
+"""The unit of the number after a key; numbers after other keys are counts."""
 CLOSE = 0.0051
-"""Largest difference of a factor from the number of the text that it is taken for."""
+"""A factor is taken for a number in the text, or for a usual factor, if it differs by less than this."""
 
 
 def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
@@ -128,7 +128,7 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
 
 
 def _factor_tokens(factor: float, slots: Sequence[NumberSlot]) -> list[str] | None:
-    """Returns the tokens of a factor: a percentage of the text, a number of the text, or a usual factor."""
+    """Returns the tokens of a factor: a percentage or a number in the text, or a usual factor."""
     for index, slot in enumerate(slots):
         if slot.unit in ("percent", ""):
             share = slot.value / 100
@@ -176,7 +176,7 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
             out.append(word)
     text = ""
     for word in out:
-        # a minus or an equals sign behind a blank is that of a change, and holds the number as well
+        # a minus or an equals sign after a space belongs to a change; it also has no space after it
         follows = text.endswith(("=", "(", "-", "+", " x")) or (
             text.endswith("..") and (word[0].isdigit() or word == "-")
         )

@@ -1,7 +1,7 @@
-"""The executor ``processes``: workers that are processes of this machine.
+"""The executor ``processes``: workers that are processes on this machine.
 
-Each worker has a thread in the campaign's process that receives its messages and sends it the next job, even
-while the main thread is busy. One more thread watches for workers that hang. This executor does not use
+For each worker, a thread in the campaign's process receives the worker's messages and sends it the next job,
+even while the main thread is busy. One more thread watches for workers that hang. This executor does not use
 ``concurrent.futures``, whose pool loses all jobs when one process dies.
 """
 
@@ -16,7 +16,7 @@ from roadgpt.campaign.workers.process_loop import READY, JobMessage
 from roadgpt.campaign.workers.worker_log import shorten
 from roadgpt.errors import RoadGPTError
 
-SILENCE = 60.0  # s without a sign of life, after which a worker is given up; one comes every second
+SILENCE = 60.0  # s without a sign of life, after which a worker is killed; it sends one every second
 ROUND = 0.5  # s between two looks at all workers
 
 
@@ -27,12 +27,12 @@ class Processes(JobQueue):
         """Starts the workers.
 
         Raises:
-            RoadGPTError: the system refuses.
+            RoadGPTError: the operating system cannot start a process.
         """
         super().__init__(staff.workers)
         self._staff = staff
         self._prepare = pickled(staff.prepare)
-        self._in_vain = 0  # workers that ended before they were ready, since the last that was
+        self._in_vain = 0  # workers that ended before they were ready, since one last became ready
         self._started = 0
         self._stops = threading.Event()
         self._workers: list[Worker] = []
@@ -144,7 +144,7 @@ class Processes(JobQueue):
         while not self._stops.wait(ROUND):
             now = time.monotonic()
             for worker in [*self._workers]:
-                if now - last > 10 * ROUND:  # we were stopped ourselves, and have heard nobody
+                if now - last > 10 * ROUND:  # this process was suspended, and received nothing
                     worker.heard = now
                 elif now - worker.heard > SILENCE:
                     worker.kill(f"gave no sign of life for {SILENCE:g} s")

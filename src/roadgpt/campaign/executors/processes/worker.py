@@ -14,8 +14,8 @@ from roadgpt.campaign.workers.messages import receive, send
 from roadgpt.campaign.workers.process_loop import ALIVE, JobMessage
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-FAREWELL = 10.0  # s for a process that has nothing to do, or was killed, to be gone
-PATIENCE = 1.0  # s for a process in the middle of a job to end what it has started, and itself
+FAREWELL = 10.0  # s for an idle or killed process to end
+PATIENCE = 1.0  # s for a process in the middle of a job to end its child processes and itself
 
 
 class Worker:
@@ -26,22 +26,22 @@ class Worker:
 
         Args:
             name: shown to people.
-            log: the file that receives what it prints.
-            hear: called with (worker, kind, value) for every message but signs of life; at its end kind
-                is None.
+            log: the file that receives what the process prints.
+            hear: called with (worker, kind, value) for every message except signs of life; called with kind
+                None when the process has ended.
         """
         self.name = name
         self.is_ready = False
         self.job: Any = None
-        """The job that it runs now; None: none."""
+        """The job that the worker is running; None if it runs no job."""
         self.begun = self.heard = time.monotonic()
         self.has: set[str] = set()
-        """Names of the shared values that it was sent."""
+        """Names of the shared values that were sent to the worker."""
         self.fault = ""
-        """Why it was ended; empty for one that ended by itself."""
-        self._asked = 0.0  # s, on the monotonic clock; 0: it was not asked to end
+        """Why the worker was killed; empty if it ended by itself."""
+        self._asked = 0.0  # s on the monotonic clock, when the worker was asked to end; 0: it was not
         self._hear = hear
-        # every worker has a core of its own, so that libraries need no threads in it
+        # every worker has one core, so libraries in it must not start threads of their own
         alone = {name: "1" for name in ONE_THREAD if name not in os.environ}
         with log.open("ab") as file:
             self._process = children.python("roadgpt.campaign.workers.process_loop", stderr=file, env=alone)
@@ -70,7 +70,7 @@ class Worker:
         self._say(order)
 
     def _say(self, message: Any) -> None:
-        with suppress(OSError, ValueError):  # it is gone; whoever hears it will tell
+        with suppress(OSError, ValueError):  # the process has ended; the listening thread reports this
             send(self._down, message)
 
     def _listen(self, stream: IO[bytes]) -> None:
@@ -88,7 +88,7 @@ class Worker:
         """
         if self.is_ready and self.job is None:
             with suppress(OSError, ValueError):
-                self._down.close()  # it reads that there are no more jobs, and leaves its simulator politely
+                self._down.close()  # it sees the end of its input, and closes its simulator properly
         else:
             children.ask_to_end(self._process)
         self._asked = time.monotonic()

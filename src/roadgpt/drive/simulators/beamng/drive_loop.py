@@ -122,8 +122,9 @@ class DriveLoop:
         return self.monitor.is_out(sample.outside, pose)
 
     def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
-        """Inserts the moment at which something happened before the last sample, or replaces that sample with
-        it."""
+        """Finds by interpolation the moment between the last two samples at which ``has_happened`` became
+        true. A sample of this moment is inserted before the last one if ``keep``, else it replaces the last
+        one."""
         if len(self.samples) < 2 or has_happened(self.samples[-2]):
             return
         before, after = self.samples[-2:]

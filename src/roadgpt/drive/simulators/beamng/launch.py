@@ -20,7 +20,7 @@ BINARIES = {
     "Windows": ("BeamNG.tech.exe", "BeamNG.drive.exe", "Bin64/BeamNG.tech.x64.exe", "Bin64/BeamNG.x64.exe"),
 }
 LOOK = 0.1  # s between two checks
-GRACE = 10.0  # s in which it may end by itself
+GRACE = 10.0  # s in which BeamNG may end by itself before it is killed
 
 
 def binary_of(home: Path) -> Path:
@@ -57,10 +57,10 @@ class BeamngProcess:
     """A BeamNG process that RoadGPT has started."""
 
     def __init__(self, words: list[str], host: str, port: int) -> None:
-        """Starts it.
+        """Starts BeamNG.
 
         Raises:
-            SimulatorError: the system does not start it.
+            SimulatorError: the system cannot start BeamNG.
         """
         self.words, self.host, self.port = words, host, port
         try:

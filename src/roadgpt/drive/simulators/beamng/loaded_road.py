@@ -17,7 +17,7 @@ from roadgpt.export.exporters.beamng.roads import GOAL, Materials, Strip, level_
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-# Of the competition's level, and of the stock levels' shared art.
+# Materials of the competition's level, and of the art that BeamNG's own levels share.
 TIG = Materials("tig_road_rubber_sticky", "tig_grass", "tig_road_rubber_sticky", "line_white", "line_yellow")
 STOCK = Materials(
     "track_editor_C_center", "track_editor_C_border", "road_rubber_sticky", "line_white", "line_yellow"
@@ -27,11 +27,11 @@ SETTLING = 3.0  # s, the longest wait for that
 DROP = 0.02  # m above the ground at which a car of known height is placed
 DECIMALS = 4
 GEARBOX = "arcade"
-"""In this mode the car drives forwards by throttle alone, with any gearbox. BeamNGpy: in
-"realistic_automatic" the driver has to select D, in "realistic_manual" every gear."""
-TRIAL, TRIAL_TIME = 0.4, 4.0  # steering input, and s at most, of the trial of the steering
-TRIAL_SPEED = 1.0, 4.0  # m/s between which it counts
-STRAIGHT = 0.003  # 1/m; a trial with less curvature was not a turn
+"""In this mode the throttle alone makes the car drive forwards, with any gearbox. According to BeamNGpy, the
+driver has to select D in the mode "realistic_automatic", and every gear in "realistic_manual"."""
+TRIAL, TRIAL_TIME = 0.4, 4.0  # steering input, and longest duration in s, of the trial of the steering
+TRIAL_SPEED = 1.0, 4.0  # m/s; the trial is evaluated between these speeds
+STRAIGHT = 0.003  # 1/m; if the curvature is smaller, the car did not turn in the trial
 WHEELBASE = 0.6  # of the length, typical of saloons
 LOCKS = 0.3, 1.0  # rad, plausible lock angles of front wheels
 REFRESH = "if map and map.reset then map.reset() end"
@@ -46,7 +46,7 @@ class LoadedRoad:
         """Loads the road and places the car at its start.
 
         Raises:
-            Exception: any error of the client; the session cannot be used afterwards.
+            Exception: any error of beamngpy; the session cannot be used afterwards.
         """
         self.session, self.bng = session, session.bng
         self.settings = session.settings
@@ -100,7 +100,8 @@ class LoadedRoad:
         return _triple(place), as_quaternion(turn)
 
     def _settle(self) -> None:
-        """Waits until the car is at rest; the first car is measured, and then moved to where it should be."""
+        """Waits until the car is at rest. The first car of a session is also measured, and then moved to its
+        exact start."""
         with self.session.within(self.settings.poll_timeout, "the car was put down"):
             self._rest()
             if self.session.body is None:
@@ -139,8 +140,8 @@ class LoadedRoad:
         return car_sample(state, electrics, self.body, self.lift, since, time)
 
     def _time_after(self, since: CarSample) -> float:
-        """Returns the time of the car's clock, which always advances; if the car reports no time, steps are
-        counted."""
+        """Returns the seconds since the start by the car's clock, but at least half a step more than at the
+        previous sample. If the car reports no time, its steps are counted."""
         step = 1.0 / self.settings.rate
         if "time" not in self.vehicle.state:
             return since.time + step
@@ -188,7 +189,8 @@ class LoadedRoad:
             self.vehicle.set_shift_mode(GEARBOX)  # it may have been reset with the car
 
     def _measure_steering(self) -> None:
-        """Measures to which side, and how far, a steering input turns the wheels; then returns to the start.
+        """Measures to which side, and how far, a steering input turns the wheels; then moves the car back to
+        its start.
 
         BeamNG does not document this, and it differs from car to car.
         """
@@ -252,7 +254,8 @@ class LoadedRoad:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Removes the road and the car; after an error as far as possible."""
+        """Removes the road and the car as far as possible. After an exception other than RoadGPTError, leaves
+        both, because the whole session is then dropped."""
         session = self.session
         if kind is not None and not issubclass(kind, RoadGPTError):
             return  # the session is dropped as a whole
@@ -270,8 +273,8 @@ def _road_of(package: Any, strip: Strip) -> Any:
     if strip.is_mesh:
         road = package.MeshRoad(strip.material, rid=strip.name)
     else:
-        # BeamNGpy numbers a scenario's decal roads anew, from 0 in the order in which they are added, and so
-        # does level_road: whichever holds, it is the same.
+        # BeamNGpy renumbers the decal roads of a scenario from 0, in the order in which they are added.
+        # level_road uses the same numbers, so the drawing order does not depend on which of them BeamNG uses.
         look = {"drivability": strip.drivability, "render_priority": strip.priority}
         road = package.Road(strip.material, rid=strip.name, **look)
     road.add_nodes(*(tuple(node) for node in strip.nodes.round(DECIMALS).tolist()))

@@ -49,7 +49,8 @@ class Check:
 
 
 def bent(z: float, incline: float) -> Road:
-    """Returns a test road of 190 m: a straight, a left bend, a right bend, and another straight."""
+    """Returns a test road of 190 m that starts at height ``z`` in metres and climbs by ``incline`` percent:
+    a straight, a left bend, a right bend, and another straight."""
     left = Segment(distance=40, direction="left", turn_degrees=60, incline=incline)
     right = Segment(distance=50, direction="right", turn_degrees=-60, incline=incline)
     straight = Segment(distance=50, direction="straight", incline=incline)

@@ -71,11 +71,11 @@ class Session:
         return LEVELS.get(self.level, 0.0)
 
     def ready(self) -> None:
-        """Makes sure that a BeamNG is ready to load a road.
+        """Makes sure that BeamNG is ready to load a road.
 
         Raises:
             PartError: beamngpy is not installed or does not match BeamNG; BeamNG is not in the given folder
-                or is not BeamNG.tech; or it has no suitable level. No road can be driven then.
+                or is not BeamNG.tech; or it has no suitable level. In each case no road can be driven.
             SimulatorError: BeamNG does not start or does not answer.
         """
         if self.bng is not None and self.settings.launches and self.roads >= self.settings.recycle:
@@ -194,8 +194,8 @@ class Session:
             self.game.kill()
 
     def _sockets(self) -> list[socket.socket]:
-        """Returns the present sockets of the engine and of the car; the client may replace them at any
-        time."""
+        """Returns the sockets that beamngpy currently uses for BeamNG and for the car; it may replace them at
+        any time."""
         found = []
         for holder in (self.bng, self.vehicle):
             link = getattr(getattr(holder, "connection", None), "skt", None)

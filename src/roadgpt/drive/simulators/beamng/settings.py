@@ -23,7 +23,7 @@ class BeamngSettings(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     home: Path | None = None
-    """BeamNG's folder. If it is None, RoadGPT starts no BeamNG, and uses one that is already running."""
+    """BeamNG's folder. If it is None, RoadGPT does not start BeamNG, but uses one that is already running."""
     user: Path | None = None
     """BeamNG's user folder; worker processes after the first get folders next to it."""
     host: str = "127.0.0.1"

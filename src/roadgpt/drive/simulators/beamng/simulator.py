@@ -23,19 +23,19 @@ class BeamngSimulator:
     """Simulates an ETK 800 in BeamNG.tech on a mesh road; BeamNG's AI drives, or the driver is asked at every
     step.
 
-    The driver ``beamng_like`` is replaced by BeamNG's own AI, which it imitates; Drive.driver is then
-    ``beamng_ai``. If BeamNG hangs, ends or loses its connection, the road is tried once more on a new BeamNG;
-    a second failure raises SimulatorError.
+    Unless the setting ``imitation`` is true, BeamNG's own AI drives in place of the driver ``beamng_like``,
+    which imitates it; Drive.driver is then ``beamng_ai``. If BeamNG hangs, ends or loses its connection, the
+    road is tried once more with a new BeamNG process or connection; a second failure raises SimulatorError.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.
     ignores = ("friction", "bank")
 
     def __init__(self, settings: BeamngSettings | None = None) -> None:
-        """Uses these settings; None stands for those of the environment.
+        """Uses these settings; if they are None, reads the settings from the environment variables.
 
         Raises:
-            UsageError: a setting of the environment is invalid.
+            UsageError: an environment variable has an invalid value.
         """
         self.settings = BeamngSettings.of() if settings is None else settings
 

@@ -95,8 +95,8 @@ def _locked(host: str, port: int) -> IO[str] | None:
 
 
 def _end_orphan(lock: IO[str], host: str, port: int) -> None:
-    """Ends the BeamNG that a killed worker left behind on its port; the lock is free, so nothing else uses
-    it."""
+    """Ends a BeamNG process that a killed worker left behind on its port. No other worker uses that process,
+    because the port's lock was free."""
     lock.seek(0)
     said = lock.read()
     if os.name != "posix" or not said.isdecimal() or not is_taken(host, port):

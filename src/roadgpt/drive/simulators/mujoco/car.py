@@ -50,7 +50,7 @@ class Tyre:
     relaxation_length_y: float = 0.45
     """Distance in m over which a slip angle builds up."""
     camber_horizontal_shift: float = 0.03
-    """Slip angle to which one rad of camber is equivalent (p_Hy3)."""
+    """Slip angle in rad that has the same effect as a camber of one rad (p_Hy3)."""
     camber_vertical_shift: float = 0.0
     """Lateral force per rad of camber, as a share of the load (p_Vy3)."""
     camber_friction_loss: float = 0.0

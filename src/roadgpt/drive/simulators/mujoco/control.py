@@ -100,7 +100,7 @@ def control_step(
     state = car_state.state
     gx, gy = (vx - state[PAST_VX]) / dt, (vy - state[PAST_VY]) / dt
     state[PAST_VX], state[PAST_VY] = vx, vy
-    # Level axes of the car; over a step of 20 ms the mean acceleration.
+    # The mean acceleration of this control step, along the car's axes projected to the horizontal plane.
     norm = 1.0 / max(math.hypot(m[0], m[3]), 1e-6)
     c, n = m[0] * norm, m[3] * norm
     row[AX] = gx * c + gy * n

@@ -194,8 +194,8 @@ def _ground_contact(
 
 @inlined
 def _contact_axes(axis: Vector, normal: Vector) -> tuple[Vector, Vector, float]:
-    """Returns the directions in the ground along the wheel and to its left, and 1 / cosine of the camber,
-    at most 20."""
+    """Returns two unit vectors in the plane of the ground, along the wheel and to its left, and the
+    reciprocal of the camber's cosine, at most 20."""
     lx, ly, lz = cross(axis, normal)
     norm = 1.0 / max(math.sqrt(lx * lx + ly * ly + lz * lz), 0.05)
     along = lx * norm, ly * norm, lz * norm
@@ -218,8 +218,8 @@ def _wheel_load(axle: Any, share: float, depth: float, rate: float) -> float:
 
 @inlined
 def _suspension_force(i: int, mj: MujocoHandles, car: Any, axle: Any, force: Vector) -> float:
-    """Returns the force along the suspension in N: the tyre's force less spring, damper, anti-roll bar and
-    bump stops."""
+    """Returns the force along the suspension in N: the tyre's force minus the forces of spring, damper,
+    anti-roll bar and bump stops."""
     slide, opposite = SLIDE_DOF[i], SLIDE_DOF[i + 1 - 2 * (i % 2)]
     out, other = mj.qpos[slide + 1], mj.qpos[opposite + 1]
     m = mj.xmat[BODY]
@@ -235,7 +235,8 @@ def _suspension_force(i: int, mj: MujocoHandles, car: Any, axle: Any, force: Vec
 def _set_valves(car: Any, friction: float, forward: float, wheel: FloatArray) -> None:
     """Updates the valves of ABS and traction control.
 
-    The slip at peak friction falls with the friction; the valves are assumed to know the friction.
+    The slip at which a tyre reaches its peak friction decreases with the road's friction, and so do the
+    thresholds. ABS and traction control are assumed to know the road's friction.
     """
     grip = min(friction, 1.0)
     wheel[ABS] = (
@@ -248,8 +249,8 @@ def _set_valves(car: Any, friction: float, forward: float, wheel: FloatArray) ->
 
 @inlined
 def _spin_torque(car: Any, axle: Any, load: float, free: float, brake: float, rate: float) -> float:
-    """Returns the torque about the wheel's axle in Nm: ``free`` (engine and tyre) turns it; brakes and
-    rolling resistance can only stop it. ``rate`` is its angular speed in rad/s."""
+    """Returns the torque about the wheel's axle in Nm: ``free`` (engine and tyre) turns the wheel; brakes and
+    rolling resistance can only stop it. ``rate`` is the wheel's angular speed in rad/s."""
     most: float = brake + axle.tyre_rolling_resistance * load * car.unloaded_radius
     stops: float = -(car.wheel_inertia * rate / STEP + free)
     return free + min(max(stops, -most), most)
@@ -268,14 +269,14 @@ def _wheel(
     hold: float,
     extra: float,
 ) -> None:
-    """Adds one wheel to the generalised forces: tyre, spring, engine and brakes."""
+    """Adds the forces of one wheel (tyre, suspension, engine and brakes) to the generalised forces."""
     spin = SPIN_DOF[i]
     centre, k = mj.xpos[WHEEL[i]], mj.xmat[CARRIER[i]]
     axis = k[1], k[4], k[7]
     normal, gap, share = _ground_contact(car, ground, wheel, centre)
     state[SUPPORT] = min(state[SUPPORT], share)
     px, py, pz = centre[0] - normal[0] * gap, centre[1] - normal[1] * gap, centre[2] - normal[2] * gap
-    # As if the wheel did not spin.
+    # The velocity that the contact point would have if the wheel did not spin.
     velocity = velocity_at(mj, CARRIER[i], (px, py, pz))
     along, left, norm = _contact_axes(axis, normal)
     depth = car.unloaded_radius - gap * norm

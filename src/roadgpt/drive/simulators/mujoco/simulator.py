@@ -1,4 +1,4 @@
-"""The simulator ``mujoco``: rigid bodies by MuJoCo, with RoadGPT's own tyres and road surface."""
+"""The simulator ``mujoco``: MuJoCo computes the rigid bodies, RoadGPT the tyres and the road surface."""
 
 from typing import TYPE_CHECKING
 

@@ -18,7 +18,8 @@ MOST_SLIP = 3.0  # normalised, limit of the slip that a standing tyre's carcass 
 
 @inlined
 def _curve(shape: float, bend: float, slip: float) -> float:
-    """Returns the Magic Formula of height 1 and slope 1, over normalised slip."""
+    """Returns the value of the Magic Formula at a normalised slip; the curve has the height 1, and the slope
+    1 at the origin."""
     b = slip / shape
     return math.sin(shape * math.atan(b - bend * (b - math.atan(b))))
 

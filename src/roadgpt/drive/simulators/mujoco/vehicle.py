@@ -49,7 +49,7 @@ class Vehicle:
         self._ground = ground
         self._state = np.zeros(STATE)
         self.wheels: FloatArray = np.zeros((4, WHEEL_STATE))
-        """The state of the wheels, in the order of `dynamics`: slips, valves, station, load and forces."""
+        """The state of each wheel: slips, valves, station, load and forces; the indices are in `dynamics`."""
         scratch = (np.zeros((4, 2)), np.zeros((2, 16, 2)))
         car_state = CarState(self._state, self.wheels, hull_points(car), *scratch)
         self._parts = (_handles(self._model, self._data), *tables(car), ground, car_state)
@@ -124,7 +124,8 @@ class Vehicle:
         return x - t * math.sin(heading), y + t * math.cos(heading), z
 
     def _frame(self, s: float) -> FloatArray:
-        """Returns the axes forward, left and up of the road at s, as columns."""
+        """Returns the road's unit vectors forward, left and up at station s, as the columns of a (3, 3)
+        array."""
         _, _, _, heading, grade, *more = self._row_at(s).tolist()
         along = np.array([math.cos(heading), math.sin(heading), grade])
         along /= np.linalg.norm(along)
@@ -147,7 +148,13 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
     """Returns a car in the middle of a plane that climbs along x, for manoeuvres that need more space than a
     road has.
 
-    The plane is one endless lane, so the car is never outside.
+    The plane is one large lane, so the car is never outside its lane.
+
+    Args:
+        friction: friction coefficient of the plane.
+        grade: grade of the plane as a ratio.
+        size: length of the plane along x in metres.
+        car: the car.
     """
     s = np.array([0.0, size / 2, size])
     table = np.zeros((3, 8))

@@ -23,7 +23,7 @@ SEED = 0  # of the offsets against flicker
 
 
 class BeamNG:
-    """BeamNG level folder: mesh road, drivable decal road, markings, materials, start, goal, scenario."""
+    """BeamNG level folder: mesh road, drivable decal road, markings, materials, start, goal and scenario."""
 
     name = "beamng"
     suffix = "-beamng"

@@ -70,7 +70,7 @@ def _surroundings(level: str, world: World, height: float) -> list[Item]:
 
 
 def _dashes(strip: Strip) -> list[Strip]:
-    """Returns a broken line as decals of its dashes, each with its ends and the nodes between them."""
+    """Returns one decal for each dash of a broken line, with a node at both ends and one in the middle."""
     nodes = strip.nodes
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(nodes[:, :3], axis=0), axis=1))]
 
@@ -127,7 +127,7 @@ def _strip(level: str, strip: Strip) -> Item:
 
 
 def _across(strip: Strip) -> list[list[float]]:
-    """Returns the directions at right angles to a mesh, one for each node."""
+    """Returns an upward unit vector for each node of a mesh: the normal of a banked mesh, else (0, 0, 1)."""
     if strip.normals is None:
         return [[0, 0, 1]] * len(strip.nodes)
     return _rows(strip.normals)

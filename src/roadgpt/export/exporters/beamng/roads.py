@@ -7,8 +7,8 @@ simulator.
 As in the bachelor thesis behind RoadGPT, both follow the same line, the middle of the carriageway, and the
 nodes of the mesh road are shifted slightly at random so that the two surfaces do not flicker. In addition,
 the decal is placed a little above the mesh. The shifts depend only on the seed. The shoulder is a second,
-wider mesh just below the first one. It reaches down to the ground, which is at the height of the lowest point
-of the road. A road without shoulders floats, and the ground is just below ``world.site.z_floor``.
+wider mesh just below the first one. It reaches down to the ground, which is just below the lowest point of
+the road. A road without shoulders floats, and the ground is just below ``world.site.z_floor``.
 """
 
 from dataclasses import dataclass
@@ -95,7 +95,8 @@ class LevelRoad:
 def level_road(
     road: Road, world: World, seed: int, materials: Materials = OWN, lift: float = 0.0, prefix: str = ""
 ) -> LevelRoad:
-    """Returns the mesh roads and decal roads of a road with its shoulder and markings, and start and goal.
+    """Returns the mesh roads and decal roads of a road with its shoulder and markings, and the start and goal
+    of the drive.
 
     The same arguments always give the same result.
 
@@ -133,7 +134,8 @@ def level_road(
 
 
 def _ground(road: Road, profile: Profile, s: Array, world: World) -> float:
-    """Returns a height in metres just below the lowest shoulder, or below the floor without a shoulder."""
+    """Returns the height of the ground in metres: just below the lowest point of the shoulders, or, without
+    shoulders, just below the floor of the world."""
     if not profile.has_shoulders:
         return world.site.z_floor - CLEAR
     lowest = min(float(line(road, s, t)[:, 2].min()) for t in (0.0, *profile.rims(s)))

@@ -12,7 +12,7 @@ from roadgpt.road import Road, World
 
 
 class Gltf:
-    """Binary glTF 2.0: road, shoulders, markings, textures, ground, the path of the car; y is up."""
+    """Binary glTF 2.0: road, shoulders, markings, textures, ground and the path of the car; y is up."""
 
     name = "gltf"
     suffix = ".glb"

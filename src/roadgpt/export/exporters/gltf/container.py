@@ -40,7 +40,7 @@ class TriangleMesh:
     texture: Array
     """Texture coordinates of shape (n, 2) in metres, across and along the surface.
 
-    The texture of the material is repeated across the surface.
+    The texture of the material is repeated in both directions.
     """
     triangles: np.ndarray
     """Indices of points, of shape (m, 3), counter-clockwise seen from outside."""

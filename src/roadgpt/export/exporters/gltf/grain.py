@@ -44,7 +44,7 @@ def picture(name: str) -> bytes:
 
 
 def _noise(grain: Grain) -> Array:
-    """Returns the brightness of each pixel, about 1, of shape (SIDE, SIDE)."""
+    """Returns the brightness of each pixel, 1 on average, as an array of shape (SIDE, SIDE)."""
     rng = np.random.default_rng(grain.seed)
     out = np.ones((SIDE, SIDE))
     for cells, strength in grain.octaves:

@@ -53,7 +53,8 @@ def meshes(road: Road, world: World, poses: Poses | None = None) -> list[Triangl
 
 
 def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
-    """Returns the land around the road, and the embankments that run down into it from its edges and ends."""
+    """Returns the land around the road, and the embankments from the edges and ends of the road down to the
+    land."""
     land = Land.around(road, world)
     near = slice(len(FAR), -len(FAR))  # the rest is only for the horizon
     x, y = np.meshgrid(land.x[near], land.y[near])
@@ -72,7 +73,7 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
 
 
 def _sloped(bank: Embankment) -> TriangleMesh:
-    """Returns an embankment as seen from outside."""
+    """Returns the mesh of an embankment, with its front faces outwards."""
     left, right = (bank.foot, bank.edge) if bank.is_left else (bank.edge, bank.foot)
     along = np.gradient(bank.edge, axis=0)
     facing = np.cross(along, left - right)
@@ -128,7 +129,7 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
 def _strip(
     name: str, material: str, road: Road, s: Array, left: ArrayLike, right: ArrayLike, lift: float = PAINT
 ) -> TriangleMesh:
-    """Returns the surface between two offsets, seen from above."""
+    """Returns the surface between two offsets, ``lift`` metres above the road, with its front faces up."""
     a, b = line(road, s, left) + lift * UP, line(road, s, right) + lift * UP
     return TriangleMesh(name, material, *_band(a, b, normals(road, s), s, (left, right)))
 

@@ -17,7 +17,7 @@ ROAD = 1  # id of the one road in the file
 
 
 class OpenDrive:
-    """ASAM OpenDRIVE 1.8, exact: lines, arcs, spirals and parabolas; cubics where the road is a spline."""
+    """ASAM OpenDRIVE 1.8 with exact lines, arcs, spirals and parabolas, or fitted cubics for a spline."""
 
     name = "opendrive"
     suffix = ".xodr"

@@ -52,7 +52,8 @@ def _elements(name: str, station: str, stations: Array, table: Array) -> list[Xm
 
 
 def _table(road: Road) -> tuple[Array, Array]:
-    """Returns stations ``(n,)``, and the height as a cubic ``(n, 4)`` of the distance from each."""
+    """Returns stations ``(n,)``, and for each station the four coefficients ``(n, 4)`` of the height as a
+    cubic of the distance from it."""
     profile, length = road.elevation, road.length
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
@@ -86,5 +87,5 @@ def _without_repetition(stations: Array, found: Array) -> tuple[Array, Array]:
 
 
 def _within(stations: tuple[float, ...], length: float) -> Array:
-    """Returns the stations inside the road, and its start."""
+    """Returns station 0, followed by those of the given stations that lie inside the road."""
     return np.array([0.0, *(s for s in stations if 1e-9 < s < length - 1e-9)])

@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 
 TOLERANCE = 1e-4  # m, between a spline and its cubics
 STRAIGHT = 1e-7  # m of lateral deviation below which an element is written as a simpler one
-ROUND = 1e-5  # m between a spiral that readers would refuse and the arcs in its place
+ROUND = 1e-5  # m between a spiral that other programs would refuse and the arcs that replace it
 APART = 0.1  # m; nodes of a spline closer together than this share a cubic
 STEP = 2.0  # m between the stations at which a curve of an unknown class is cut
 SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in its place
@@ -39,9 +39,10 @@ def _pieces(plan: PieceCurve) -> Iterator[XmlElement]:
 
 
 def _tellable(piece: Piece) -> list[Piece]:
-    """Returns the piece, or arcs where readers would take its curvatures as equal and refuse it as a spiral.
+    """Returns the piece itself, or arcs that replace it.
 
-    CommonRoad compares them with numpy's ``isclose``.
+    Some programs refuse a spiral if the curvatures at its two ends are almost equal; CommonRoad compares the
+    curvatures with numpy's ``isclose``. Such pieces are replaced by arcs.
     """
     if piece.k0 == piece.k1 or not np.isclose(piece.k0, piece.k1):
         return [piece]
@@ -56,7 +57,8 @@ def _geometry(s: float, x: float, y: float, heading: float, length: float) -> Xm
 
 
 def _shape(piece: Piece) -> XmlElement:
-    """Returns a line, arc or spiral. Readers divide by the curvature, so it is never almost zero."""
+    """Returns a line, arc or spiral. Programs that read the file may divide by the curvature of an arc, so an
+    arc that is almost straight is written as a line."""
     bend = piece.length**2 / 6
     if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
         return XmlElement("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
@@ -67,8 +69,8 @@ def _shape(piece: Piece) -> XmlElement:
 def _cubics(plan: PlanCurve) -> Iterator[XmlElement]:
     """Yields cubics by arc length, each in the frame of its start: u points ahead, v to the left.
 
-    They start and end with speed 1, and are so short that the parameter equals the arc length to a
-    micrometre.
+    The derivative by the parameter has length 1 at both ends, and the cubics are so short that the parameter
+    equals the arc length within a micrometre.
     """
 
     def ways(s: Array) -> Array:
@@ -107,9 +109,10 @@ def _cubic(cu: float, cv: float, du: float, dv: float) -> XmlElement:
 
 
 def breaks_of(plan: PlanCurve) -> Array:
-    """Returns the stations that bound the smooth parts of a curve, both ends included.
+    """Returns the stations at which a curve is divided into cubics, both ends included.
 
-    For a spline, they include the stations of all its nodes.
+    For a spline, these are its nodes, except nodes that are within APART of an end or of the previous node
+    that was kept. For any other curve, they are equally spaced, about STEP apart.
     """
     if isinstance(plan, SplineCurve):
         inner = plan.stations[1:-1]

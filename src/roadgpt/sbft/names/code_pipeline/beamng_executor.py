@@ -1,8 +1,8 @@
 """Defines the executor that a generator receives. Its class has the same name as the competition's executor
 for BeamNG.
 
-It sends road points to RoadGPT, which validates and drives the road, and returns the results to the
-generator. Only ``validate_test`` works without sending anything.
+The executor sends road points to RoadGPT, which validates and drives the road, and returns the results to
+the generator. ``validate_test`` only validates a test, without this exchange of messages.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _is_test(the_test: Any) -> bool:
 
 
 def _question(the_test: Any, generating: float) -> Dict[str, Any]:
-    """Returns the message for a test; for something that is not a test, without points."""
+    """Returns the message with a test; it has no points if ``the_test`` is not a test."""
     is_test = _is_test(the_test)
     return {
         "op": "test",
@@ -101,7 +101,7 @@ def _question(the_test: Any, generating: float) -> Dict[str, Any]:
 
 
 def _settled(the_test: Any, answer: Dict[str, Any]) -> TestResult:
-    """Returns the answer in the competition's form, and sets it on the test."""
+    """Returns the answer in the competition's form, and stores it in the attributes of the test."""
     records = [SimulationDataRecord(*record) for record in answer["records"]]
     outcome, description = answer["outcome"], answer["description"]
     if _is_test(the_test):

@@ -16,8 +16,8 @@ Feature = Tuple[str, float]
 
 
 def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[str, float]:
-    """Returns MAX_CURV and DIR_COV of the road, and STD_SA, MEAN_LP and MAX_LP of the drive if there is
-    one."""
+    """Returns MAX_CURV and DIR_COV of the road and, if the drive has three or more records, its STD_SA,
+    MEAN_LP and MAX_LP."""
     found = [max_curvature(the_test), direction_coverage(the_test)]
     if len(execution_data or ()) >= FEWEST_RECORDS:
         found += [

@@ -50,7 +50,7 @@ class RoadTestFactory:
             """Makes a test from control points.
 
             Raises:
-                AssertionError: not a list of pairs, the competition's own error.
+                AssertionError: ``road_points`` is not a list of pairs; the competition raises the same error.
                 ValueError: there are fewer than two points, or there is no spline through them.
             """
             if type(road_points) is not list:
@@ -134,7 +134,7 @@ def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]
 class TestGenerationStatistic:
     """Counts tests by outcome, and records the seconds that each test took."""
 
-    __test__ = False  # pytest is not to collect it, for all its name
+    __test__ = False  # pytest must not collect this class, in spite of its name
 
     test_generated: int = 0
     test_valid: int = 0

@@ -57,10 +57,10 @@ def min_radius(x: Sequence[Sequence[float]], w: int = 5) -> float:
 class TestValidator:
     """Validates tests as the competition's validator does, including its bugs."""
 
-    __test__ = False  # pytest is not to collect it, for all its name
+    __test__ = False  # pytest must not collect this class, in spite of its name
 
     def __init__(self, map_size: float, min_road_length: float = 20) -> None:
-        """Validates for a square map of this size in metres."""
+        """Makes a validator for a square map with sides of ``map_size`` metres."""
         self.map_size = map_size
         self.min_road_length = min_road_length
         self.max_points = 500

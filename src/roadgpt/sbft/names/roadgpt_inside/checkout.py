@@ -2,7 +2,8 @@
 from a checkout of the competition's code.
 
 A class or function that is missing in RoadGPT's module is taken from the module of the same name in the
-checkout. Most of these control BeamNG or the DAVE-2 network, which a generator does not need in RoadGPT.
+checkout. Most of the missing classes and functions control BeamNG or the DAVE-2 network; generators do not
+need them in RoadGPT.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ ADVICE = "put a checkout of the competition's code on PYTHONPATH, or do without 
 RENAMED = {"code_pipeline.utils": "pairs", "self_driving.utils": "places"}
 """Modules of the competition whose files have other names in RoadGPT, with the names of these files."""
 BEAMNG = ("self_driving.vehicle_state_reader", "VehicleStateReader")
-"""Module and name of a class that RoadGPT's version of a module leaves out, because it needs BeamNG."""
+"""Module and name of a class that RoadGPT's version of the module lacks, because the class needs BeamNG."""
 
 
 class _Loader(SourceFileLoader):
-    """Loads a module of RoadGPT, whose missing names are taken from a checkout."""
+    """Loads one of RoadGPT's modules; names that the module lacks are taken from a checkout."""
 
     def exec_module(self, module: Any) -> None:
         super().exec_module(module)

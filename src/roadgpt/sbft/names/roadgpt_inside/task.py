@@ -93,8 +93,8 @@ def main() -> None:
 
 
 def _opened() -> Connection:
-    """Returns the connection, on file descriptors of its own, so that what the generator reads or prints goes
-    elsewhere."""
+    """Returns the connection. It has its own file descriptors: afterwards, the generator reads no data from
+    standard input, and what it prints goes to standard error."""
     connection = Connection(os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb"))
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
@@ -136,7 +136,7 @@ def _worked(made: Any, task: Message, connection: Connection) -> Message:
 
 
 def _settle() -> None:
-    """Calls the functions that the generator registered for its end."""
+    """Calls the functions that the generator has registered to be called when it ends."""
     registered = sys.modules.get("code_pipeline.test_generation_utils")
     if registered is not None:
         try:
@@ -146,8 +146,8 @@ def _settle() -> None:
 
 
 def _wanted(made: Any, executor: Any, task: Message) -> Dict[str, Any]:
-    """Returns the arguments of the generator's constructor: today's, and the budget for generators of
-    2021."""
+    """Returns the arguments for the generator's constructor: the executor, the map size, and also the time
+    budget if the constructor takes it, as in the competition of 2021."""
     given: Dict[str, Any] = {"executor": executor, "map_size": task["map_size"]}
     try:
         asked = inspect.signature(made).parameters

@@ -13,7 +13,7 @@ class OutOfBoundsMonitor:
     leaves its lane."""
 
     def __init__(self, road_polygon: Any, vehicle_state_reader: Any, tolerance: float = 0.95) -> None:
-        """Starts with nothing outside."""
+        """Starts with a count of 0, as if the car were inside its lane."""
         self.road_polygon, self.vehicle_state_reader = road_polygon, vehicle_state_reader
         self.oob_counter = 0
         self.last_is_oob = False
