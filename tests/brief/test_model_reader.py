@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from roadgpt.brief import reader_of
-from roadgpt.brief.model import Brief
+from roadgpt.brief import ContradictionError, read, reader_of
+from roadgpt.brief.model import Brief, exactly
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS, ModelReader
@@ -59,6 +59,16 @@ def test_any_text_is_a_brief_or_refused(words: str) -> None:
     assert 0 <= brief.confidence <= 1
     assert brief.words == words
     assert plan(read_plan(plan(brief))) == plan(brief)
+
+
+def test_a_contradiction_is_answered_with_the_plan_that_may_be_meant() -> None:
+    with pytest.raises(
+        ContradictionError, match="the number of turns; leave one of them out; or is this meant"
+    ) as refusal:
+        read("three turns but no turns")
+    assert read_plan(refusal.value.plan).turns != exactly(0)
+    assert plan(refusal.value.brief) == refusal.value.plan
+    assert read(refusal.value.plan, "plan").clauses == refusal.value.brief.clauses
 
 
 def test_numbers_are_those_that_were_said() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.brief import Brief, NotBuiltError
+from roadgpt.brief import Brief, ContradictionError, NotBuiltError
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
@@ -81,8 +81,20 @@ def test_a_road_without_the_junction_is_offered(monkeypatch: pytest.MonkeyPatch)
     assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 
 
+def test_of_a_contradiction_the_likeliest_road_is_offered(monkeypatch: pytest.MonkeyPatch) -> None:
+    def clash(words: str) -> Brief:
+        raise ContradictionError("the sides clash", "turn x2 left", read_plan("turn x2 left"))
+
+    monkeypatch.setattr("roadgpt.brief.read", clash)
+    result = say("all left, then left", "", "all left, then left", "1", "1", "", "exit")
+    assert result.exit_code == 0
+    assert "the sides clash; or is this meant: a road with 2 left turns" in result.stdout
+    assert "1 of 1 roads" in result.stdout
+    assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
+
+
 def test_a_wrong_answer_is_asked_again() -> None:
-    result = say("a road", "none", "0", "1", "", "three turns but no turns", "exit")
+    result = say("a road", "none", "0", "1", "", "a hat", "exit")
     assert result.exit_code == 0
     assert "'none' is no whole number" in result.stderr
     assert "0 is not possible" in result.stderr

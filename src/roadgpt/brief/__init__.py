@@ -36,7 +36,7 @@ from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.plan import plan
-from roadgpt.brief.refusal import NoRoomError, NotBuiltError, TooMuchError
+from roadgpt.brief.refusal import ContradictionError, NoRoomError, NotBuiltError, TooMuchError
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
@@ -47,6 +47,7 @@ __all__ = [
     "Amount",
     "Brief",
     "Clause",
+    "ContradictionError",
     "Feature",
     "Group",
     "Kind",

@@ -110,6 +110,20 @@ class NotBuiltError(BriefError):
         self.missing, self.plan, self.brief = missing, plan, brief
 
 
+class ContradictionError(BriefError):
+    """Raised if a description contradicts itself, although a plan that does not could be meant.
+
+    Attributes:
+        clash: a sentence that says what contradicts what.
+        plan: the likeliest plan that does not contradict itself.
+        brief: the requirements of this plan.
+    """
+
+    def __init__(self, clash: str, plan: str, brief: Brief) -> None:
+        super().__init__(f'{clash}; or is this meant: --plan "{plan}"')
+        self.clash, self.plan, self.brief = clash, plan, brief
+
+
 class NoRoomError(BriefError):
     """Raised if the map is too small for the requirements.
 

@@ -30,7 +30,7 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, score
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.used_words import unused_words
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.refusal import MOST_CHARACTERS, TooMuchError, refused
+from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
@@ -39,6 +39,7 @@ WEIGHTS = Path(__file__).parent / "weights"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
+NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
 TOO_MUCH = (
@@ -160,7 +161,7 @@ class ModelReader:
             key: function that returns the normal form of a plan of changes, or raises an error for an invalid
                 plan.
         """
-        found = scored_plans(self.networks, words, 2.0, key=key)
+        found = scored_plans(self.networks, words, NEVER, key=key)
         if not found:
             return None
         return UncalibratedReading(key(found[0].line), features(found[0], slotted(words, is_change=True)))
@@ -205,9 +206,28 @@ class ModelReader:
         return self._as_brief(words, text, draft)
 
     def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
-        """Returns the error for a refusal; the error carries the Brief if the map may just be too small."""
-        brief = self._for_the_usual_map(words, text) if why.startswith("!impossible") else None
-        return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
+        """Returns the error for a refusal.
+
+        It contains a Brief if only the size of the map may be the reason, or if a plan that does not
+        contradict itself could be meant.
+        """
+        if why.startswith("!impossible"):
+            brief = self._for_the_usual_map(words, text)
+            return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
+        if why.startswith("!contradiction"):
+            brief = self._without_refusal(words, text)
+            return ContradictionError(str(refused(why)), plan(brief), brief) if brief else refused(why)
+        return refused(why)
+
+    def _without_refusal(self, words: str, text: SlottedText) -> Brief | None:
+        """Returns the Brief of the likeliest plan that is no refusal; None if it contradicts itself."""
+        found = scored_plans(self.networks, words, NEVER)
+        if not found or not _can_be_kept(found[0].line):
+            return None
+        try:
+            return self._as_brief(words, text, found[0])
+        except BriefError:
+            return None
 
     def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
         """Returns the Brief that the network reads if large numbers are replaced by ordinary ones first.
