@@ -115,7 +115,8 @@ def centroids_of(samples: Array, count: int) -> Array:
     """Computes ``count`` centroids ``(count, axes)`` of samples ``(n, axes)`` with Lloyd's k-means algorithm.
 
     Initialisation and stopping rule are those of scikit-learn's ``k_means`` with ``init="random"``, which
-    pyribs uses. Maps therefore have the same cells as in earlier versions of RoadGPT, which used pyribs.
+    pyribs uses. The cells of an archive are therefore the same as in earlier versions of RoadGPT, which used
+    pyribs.
     """
     middle = samples.mean(axis=0)
     points = samples - middle

@@ -1,4 +1,4 @@
-"""Features of a road that can be axes of the map on which a search looks for diverse roads.
+"""Features of a road that can be axes of the space in which a search looks for diverse roads.
 
 ``run.features`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
 This module adds features of the road's geometry; all but the first come from ``check.measures``:

@@ -45,7 +45,7 @@ _files = partial(Option, heading=Heading.FILES)
 
 # fmt: off
 WORLD = (
-    _world("--map-size", "Side of the square map, m. [default: 250 or more]",
+    _world("--map-size", "Side of the map, m. [default: 250, more if needed]",
            measure(50, 10_000, "metres")),
     _judged("--speed-limit", "Speed limit, km/h.", measure(5, 300, "km/h"), 70, unit=3.6,
             key="speed_limit_kmh"),
@@ -65,11 +65,12 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "How to read the description: model, chat (a language model), or plan (it is one).",
+    _run("--reader", "Reader: model (built in), chat (a language model), plan (plan notation).",
          str, "model", guard=reader_guard),
-    _run("--designer", "A designer: planner, chat or thesis.", str, "planner",
+    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (the RoadGPT thesis).", str,
+         "planner",
          guard=designer_guard),
-    _run("--driver", "Name of a driver, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
+    _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
     _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
@@ -95,7 +96,7 @@ CHAT = (
           whole(16, 1_000_000, "tokens")),
     _rare("--max-tokens", "Stop when all roads together have used this many tokens.",
           whole(1, 10**12, "tokens")),
-    _chat("--max-cost", "Stop when the language model has cost this many USD in all.",
+    _chat("--max-cost", "Stop when the language model has cost this many USD.",
           measure(0, 1e6, "USD", above=True)),
     _rare("--price",
           "USD per million input and output tokens, such as 0.15/0.60. [default: from a table]"),
@@ -103,8 +104,8 @@ CHAT = (
     _rare("--replay", "Use the answers saved in this folder; ask no server."),
     _rare("--rounds", "Maximum number of requests to the model for one road. [default: 3]",
           whole(1, 20, "rounds")),
-    _rare("--repair", "How a road from a language model may be changed to become valid: none, not at all; "
-          "place, only moved and turned; full, also its lengths and angles. [default: full]",
+    _rare("--repair", "How to make a road from a language model valid: none (not at all), place (move and "
+          "turn it), full (also change its lengths and angles). [default: full]",
           click.Choice(["none", "place", "full"])),
     _rare("--strategy", "Ask for the whole road, or for one segment at a time. [default: whole]",
           click.Choice(["whole", "stepwise"])),
@@ -137,11 +138,12 @@ _place = partial(_beamng, guard=place_guard)
 BEAMNG = (
     _beamng("--beamng-home", "Start the BeamNG.tech in this folder (for --simulator beamng).", _whole_folder,
             key="home", guard=path_guard),
-    _beamng("--beamng-user", "BeamNG's user folder; other workers get folders next to it.", _whole_folder,
+    _beamng("--beamng-user", "BeamNG's user folder; each further worker gets one next to it.", _whole_folder,
             key="user", guard=path_guard),
     _place("--beamng-host", "Host of a BeamNG that is already running.", key="host"),
     _place("--beamng-port", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), key="port"),
-    _beamng("--beamng-level", "Level in which roads are placed. [default: tig, or a flat one]", key="level"),
+    _beamng("--beamng-level", "Level for the roads. [default: tig (of SBFT) or else a flat one]",
+            key="level"),
     _beamng("--beamng-aggression", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]", measure(0.3, 1),
             key="aggression"),
     _beamng("--beamng-recycle", "Restart BeamNG after this many roads. [default: 100]",
@@ -162,9 +164,9 @@ NO_PLOT = _files("--no-plot", "Draw no pictures.", bool)
 JUNIT = _files("--junit", "Also write the tests as JUnit XML.", file, metavar="FILE.xml")
 NO_DRIVE = Option("--no-drive", "Do not drive the roads.", bool, heading=Heading.DRIVE)
 DRIVER_AGAIN = Option(
-    "--driver", "File of the driver. If the run used one, name it here again: for safety, RoadGPT does not "
-    "run a file just because a run folder refers to it.", driver_again, metavar="FILE.py:CLASS",
-    heading=Heading.DRIVE,
+    "--driver", "File of the driver. If the run used a driver's file, name it here again: for safety, "
+    "RoadGPT does not run a file just because a run folder refers to it.", driver_again,
+    metavar="FILE.py:CLASS", heading=Heading.DRIVE,
 )
 
 _output = partial(Option, kind=bool, heading=Heading.OUTPUT)
@@ -172,7 +174,7 @@ QUIET = _output("--quiet -q", "Print errors only.")
 SCREEN = (
     _output("--json as_json", "Print one JSON line per road."),
     QUIET,
-    _output("--verbose -v", "Print details: requirements, versions, times."),
+    _output("--verbose -v", "Print details: what the roads must be like, versions, times."),
 )
 
 CHOICES = (

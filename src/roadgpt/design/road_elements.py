@@ -84,7 +84,7 @@ def measured(design: Design, geometry: Geometry) -> Measures:
 
 
 def elements_on_road(design: Design, geometry: Geometry = "arcs") -> tuple[RoadElements, Measures]:
-    """Returns the elements into which the measured turns divide a design, and the road's measurements."""
+    """Measures the road of a design; returns its turns and the gaps between them, and the measurements."""
     found = measured(design, geometry)
     joints = np.concatenate([[0.0], np.cumsum([s.distance for s in design.segments])])
     scale = (

@@ -238,7 +238,7 @@ def joined(
 
 
 def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
-    """Returns the segments with other inclines in percent, rounded to a tenth.
+    """Returns copies of the segments with the given inclines, in percent and rounded to a tenth.
 
     A segment whose incline would change by less than 0.05 percentage points is returned as it is.
     """

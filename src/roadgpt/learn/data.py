@@ -36,7 +36,7 @@ were written without thought of their plans, which were added later.
 MENTIONS = 0.15
 """Share of descriptions to which a mention or denial of something beside the road is added."""
 TALK = 0.07
-"""Share of all pairs to which talk that asks for nothing, such as a greeting, is added."""
+"""Share of all pairs that get additional small talk, such as a greeting."""
 CAUSED = ("!contradiction", "!impossible")
 """Refusals that have a cause; a plan that consists of only this word does not label the cause."""
 SAID_BACK = 0.06

@@ -37,7 +37,8 @@ PARAMETERS = (
     Argument("words...", "DESCRIPTION|FILE.toml",
              'Say what roads: roadgpt campaign "a winding road" --goal failures -n 200'),
     Option("-n --tests", "Number of tests.", TESTS),
-    Option("--goal", "What to search for. [default: no search; the designer makes the roads]",
+    Option("--goal", "What to search for: failures, coverage (roads as diverse as possible), hardest (least "
+           "margin), boundary (just between PASS and FAIL). [default: no search]",
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
     Option("--generator", "Test generator. [default: quality_diversity, or 'words' if no --goal is given]"),
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),

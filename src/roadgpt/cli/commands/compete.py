@@ -68,8 +68,8 @@ OPTIONS = (
     Option("--plot has_pictures", "Draw every test, and not only the overview.", bool),
     Option("--no-plot", "Draw nothing.", bool),
     *(options.AXES, options.FORMAT),
-    Option("--debug", "Log more of the generator.", bool),
-    Option("--client", "Write the file with which the competition's environment calls RoadGPT, and exit.",
+    Option("--debug", "Log more details of what the generator does.", bool),
+    Option("--client", "Write the Python module that lets the competition run RoadGPT, and exit.",
            click.Path(dir_okay=False, path_type=Path), is_eager=True, expose_value=False,
            callback=_write_client),
     *options.SCREEN,
@@ -135,7 +135,10 @@ EXTRA = "this needs more libraries: python -m pip install 'roadgpt[sdc]'"
 OPTIONS = (
     Option("--port", "Port of the service; 0: a free one.", whole(0, 65_535, "a port"), 4545),
     Option(
-        "--host", "Who can connect: 127.0.0.1, this machine; 0.0.0.0, all (in a container).", str, "127.0.0.1"
+        "--host",
+        "Who can connect: 127.0.0.1 (this machine only) or 0.0.0.0 (any machine, needed in a container).",
+        str,
+        "127.0.0.1",
     ),
     options.QUIET,
 )
@@ -146,8 +149,8 @@ def sdc_command(port: int, host: str, quiet: bool) -> None:
     """Start a gRPC server that selects and ranks tests by how likely the car is to leave its lane.
 
     The likelihood is estimated from the distance between the driver's planned path and the middle of the
-    lane; nothing is driven. Once the evaluator has sent enough outcomes, the estimate learns from them, and
-    also uses how the road bends. Ctrl-C ends the service.
+    lane; nothing is driven. Once the client has sent enough outcomes, the estimate is fitted to them and also
+    uses the curvature of the roads. Ctrl-C ends the service.
 
     \b
     roadgpt compete sdc --port 4545

@@ -36,9 +36,9 @@ OPTIONS = (
 def beamng_command(out: Path, repeats: int) -> None:
     """Test RoadGPT with an installed BeamNG.tech, and write a report.
 
-    The test covers the connection, the level, BeamNG's AI on flat, floating and steep roads, how much
-    repeated runs differ, one of RoadGPT's drivers, a picture of the road, and a level folder. It takes some
-    minutes. The exit status is 0 if no check finds a problem.
+    The test covers the connection, the level, BeamNG's AI on steep roads and on roads above the ground, the
+    differences between repeated runs, one of RoadGPT's drivers, a camera image, and a road exported as a
+    level. It takes some minutes. The exit status is 0 if no check finds a problem.
 
     \b
     roadgpt doctor beamng --beamng-home C:\\BeamNG.tech.v0.39 --beamng-user C:\\BeamNG.user

@@ -31,11 +31,11 @@ EXTRA = "this needs more libraries: python -m pip install 'roadgpt[learn]'"
 # fmt: off
 HAND = Option(
     "--hand",
-    "Folder with hand-written descriptions: JSON lines in its folders train, contrasts, validation, ...",
+    "Folder with hand-written descriptions, as JSON lines in subfolders (train, contrasts, ...).",
     folder, Path("data/descriptions"),
 )
 CHANGES = Option(
-    "--changes", "Folder with hand-written change requests: JSON lines in its folder train.",
+    "--changes", "Folder with hand-written change requests, as JSON lines in its subfolder 'train'.",
     folder, Path("data/changes"),
 )
 OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
@@ -52,7 +52,8 @@ OF_TRAIN = (
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
     Option("--second", "Start from the second network of the installed reader.", bool),
-    Option("--decoder-layers", "Decoder layers: a multiple of the weights'.", whole(1, 24, "layers")),
+    Option("--decoder-layers", "Number of decoder layers: a multiple of that in the weights.",
+           whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
@@ -61,7 +62,7 @@ OF_TRAIN = (
 )
 OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND, CHANGES),
-    Option("--second", "Folder of another training run, whose network reads the same words.", folder),
+    Option("--second", "Folder of another training run; its network becomes the reader's second.", folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )

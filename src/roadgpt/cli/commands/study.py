@@ -55,10 +55,10 @@ DRIVES = Option("--drive drives", "Drive the roads as well.", bool)
 def thesis(no_drive: bool, **rest: Any) -> int:
     """Repeat the evaluation of RoadGPT's thesis: validity, drives, match with the words, and diversity.
 
-    Takes the three descriptions of the thesis' table and those of its survey, makes and drives the roads, and
-    writes one page with tables, statistical tests, confidence intervals and figures. The report shows the
-    thesis' own counts next to the new ones. After Ctrl-C, the same command continues where it stopped. If a
-    language model cannot be used, the report says so and the exit status is 4.
+    Takes the three descriptions that the thesis evaluated and those of its survey, makes and drives the
+    roads, and writes one page with tables, statistical tests, confidence intervals and figures. The report
+    shows the thesis' own counts next to the new ones. After Ctrl-C, the same command continues where it
+    stopped. If a language model cannot be used, the report says so and the exit status is 4.
 
     \b
     roadgpt study thesis

@@ -76,8 +76,8 @@ def edited_by_chat(
         geometry: the kind of geometry that roads are built with.
 
     Returns:
-        A Look at the road. It contains the elements measured on the road if they have the same names as
-        before; otherwise it contains none.
+        A Look at the changed road. Its elements are those measured on this road, if they have the names of
+        the elements of the original road; otherwise it has none.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

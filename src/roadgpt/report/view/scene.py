@@ -41,7 +41,7 @@ WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
-"""A threshold and colours that show how far outside its lane the car is."""
+"""The colours that show how far the car is outside its lane, and the share from which "mostly" is said."""
 
 
 def scene(run: Run) -> dict[str, Any]:

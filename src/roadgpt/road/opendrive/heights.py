@@ -17,9 +17,7 @@ APART = 1.0  # m between the stations of the heights of a centre line beside the
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Returns the height as a function of the station in the file. If the file has no elevation, the height
-    is 0.
-    """
+    """Returns the height of a road as a function of its station; without elevation, it is 0 everywhere."""
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 

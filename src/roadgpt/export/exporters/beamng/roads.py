@@ -72,7 +72,7 @@ class Strip:
 
     @property
     def is_mesh(self) -> bool:
-        """Whether the strip is a mesh road, which carries the wheels."""
+        """Whether the strip is a mesh road, on whose surface the car drives."""
         return bool(self.nodes.shape[1] == 5)
 
 
