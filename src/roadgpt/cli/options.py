@@ -67,9 +67,8 @@ WORLD = (
 SETUP = (
     _run("--reader", "Reader: model (built in), chat (a language model), plan (plan notation).",
          str, "model", guard=reader_guard),
-    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (the RoadGPT thesis).", str,
-         "planner",
-         guard=designer_guard),
+    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (the RoadGPT thesis).",
+         str, "planner", guard=designer_guard),
     _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
