@@ -68,7 +68,7 @@ class Confirmation:
 CODE = NameOrigins()
 """Drivers defined in Python files; keys are the absolute path of the file and the name of the class."""
 SERVERS = NameOrigins()
-"""Servers of language models; keys are scheme, host and port."""
+"""Known servers of language models, by scheme, host and port."""
 USER = Confirmation()
 
 

@@ -18,7 +18,7 @@ from roadgpt.run.card import CARD
 
 
 class FolderStore(Store):
-    """The store of the tests in folders of runs."""
+    """A store whose tests lie in folders of runs."""
 
     group_seconds = 0.0
 

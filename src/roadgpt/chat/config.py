@@ -188,9 +188,9 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """Returns the file that names this server, if the user has not named it too; otherwise an empty text.
+    """Returns the configuration file that names this server; empty if the user named the same server.
 
-    The text is also empty for OpenAI's server, and for a server that no file names.
+    It is also empty for OpenAI's server, and for a server that no file names.
     """
     if not base_url:
         return ""

@@ -51,7 +51,7 @@ def _first_sentence(part: Any) -> str:
 def plugins_command(as_json: bool) -> None:
     """List the plug-ins: readers, designers, rules, exporters, simulators, drivers and others.
 
-    Each line shows the name of a plug-in as options take it, the package that provides it, and what it does.
+    Each line shows the name to use in options, the package that provides the plug-in, and what it does.
     """
     parts = installed()
     if as_json:

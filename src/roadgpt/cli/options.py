@@ -56,7 +56,7 @@ WORLD = (
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
-    _world("--bank", "Banked bends: none, auto, or percent.", bank, "none", unit=100.0),
+    _world("--bank", "Bank of bends: none, auto or, say, 5 (%).", bank, "none", unit=100.0),
     _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
     _world("--friction", "Friction coefficient: dry 1, wet 0.6, snow 0.35.",
@@ -65,9 +65,9 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "Reader: model (built in), chat (a language model), plan (plan notation).",
+    _run("--reader", "Reader: model (built in), chat (a language model), plan (reads plans).",
          str, "model", guard=reader_guard),
-    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (the RoadGPT thesis).",
+    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (as in the thesis).",
          str, "planner", guard=designer_guard),
     _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
@@ -103,7 +103,7 @@ CHAT = (
     _rare("--replay", "Use the answers saved in this folder; ask no server."),
     _rare("--rounds", "Maximum number of requests to the model for one road. [default: 3]",
           whole(1, 20, "rounds")),
-    _rare("--repair", "How to make a road from a language model valid: none (not at all), place (move and "
+    _rare("--repair", "How to repair an invalid road of a language model: none (not at all), place (move and "
           "turn it), full (also change its lengths and angles). [default: full]",
           click.Choice(["none", "place", "full"])),
     _rare("--strategy", "Ask for the whole road, or for one segment at a time. [default: whole]",
@@ -141,7 +141,7 @@ BEAMNG = (
             key="user", guard=path_guard),
     _place("--beamng-host", "Host of a BeamNG that is already running.", key="host"),
     _place("--beamng-port", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), key="port"),
-    _beamng("--beamng-level", "Level for the roads. [default: tig (of SBFT) or else a flat one]",
+    _beamng("--beamng-level", "Level for the roads. [default: tig (of SBFT) if installed, else a flat one]",
             key="level"),
     _beamng("--beamng-aggression", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]", measure(0.3, 1),
             key="aggression"),
@@ -153,8 +153,8 @@ BEAMNG = (
 )
 
 AXES = _files(
-    "--axes", "Axes of pictures: equal (to scale), or thesis (the ranges of the RoadGPT thesis: 220 m x "
-    "220 m from above, 200 m x 20 m for the height).", click.Choice(["equal", "thesis"]), "equal",
+    "--axes", "Axes of pictures: equal (to scale), or thesis (the ranges of the RoadGPT thesis: top view "
+    "220 m x 220 m; heights to 20 m, along 200 m).", click.Choice(["equal", "thesis"]), "equal",
     is_rare=True, table="run",
 )
 FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
@@ -173,7 +173,7 @@ QUIET = _output("--quiet -q", "Print errors only.")
 SCREEN = (
     _output("--json as_json", "Print one JSON line per road."),
     QUIET,
-    _output("--verbose -v", "Print details: what the roads must be like, versions, times."),
+    _output("--verbose -v", "Print details: requirements of the roads, versions, times."),
 )
 
 CHOICES = (
@@ -185,7 +185,8 @@ _work = partial(Option, heading=Heading.WORKERS)
 WORKERS = (
     _work("-j --workers", "Number of tests run in parallel; use one per core.",
           whole(1, 4096, "the number of workers"), 1),
-    _work("--executor", "Where workers run: 'processes' of this machine, or 'ray'.", str, "processes"),
+    _work("--executor", "Where workers run: 'processes' (here) or 'ray' (on a Ray cluster).", str,
+          "processes"),
     _work("--address", "Address of a Ray cluster. [default: this machine]", str, ""),
 )
 # fmt: on

@@ -28,7 +28,7 @@ class NetworkSizes:
     decoder_inner: int = 1024
     decoder_heads: int = 6
     places: int = 128
-    """The largest length of a text in pieces."""
+    """Maximum length of a text, in word pieces."""
     plan_places: int = 96
     """The largest length of a plan in tokens."""
 

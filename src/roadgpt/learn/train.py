@@ -46,7 +46,7 @@ class TrainingSettings:
     takes 3 for a new network.
     """
     ending: str = ""
-    """What follows 'encoder' and 'decoder' in the files of the exported network to start from."""
+    """The suffix of 'encoder' and 'decoder' in the file names of the network that training starts from."""
     seed: int = 1
     save_every: int = 100
     workers: int = 1

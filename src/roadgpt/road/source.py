@@ -93,7 +93,7 @@ def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
 
 
 def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
-    """Returns the road in parsed JSON.
+    """Returns the road that parsed JSON describes.
 
     Raises:
         UsageError: The data hold no road.

@@ -105,8 +105,8 @@ class Executor(Protocol):
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order. Queued jobs run after these calls.
-        See ``campaign.model.Pool.map``.
+        """Returns the results of ``function`` for all items, in order. Jobs that are queued wait until
+        then. See ``campaign.model.Pool.map``.
         """
         ...
 

@@ -43,8 +43,9 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
     """Show all settings that options, environment variables or files can set, and where each comes from.
 
     An option on the command line takes precedence; then an environment variable, such as ROADGPT_FRICTION;
-    then the file .env in this folder; then roadgpt.toml in this folder; then your own roadgpt/config.toml.
-    The tables of the TOML files are [run], [world], [chat] and [beamng]. API keys are masked.
+    then the file .env in this folder; then roadgpt.toml in this folder; then roadgpt/config.toml in the
+    configuration folder of your user account. The tables of the TOML files are [run], [world], [chat] and
+    [beamng]. API keys are masked.
 
     A folder may come from somebody else. For safety, .env and roadgpt.toml cannot name a driver's file, a
     program, a server that gets your API key, or a plug-in that asks a language model.

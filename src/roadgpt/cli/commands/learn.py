@@ -52,7 +52,7 @@ OF_TRAIN = (
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
     Option("--second", "Start from the second network of the installed reader.", bool),
-    Option("--decoder-layers", "Number of decoder layers: a multiple of that in the weights.",
+    Option("--decoder-layers", "Number of decoder layers, a multiple of the number in the weights.",
            whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
@@ -62,7 +62,8 @@ OF_TRAIN = (
 )
 OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND, CHANGES),
-    Option("--second", "Folder of another training run; its network becomes the reader's second.", folder),
+    Option("--second", "Folder of another training run; its network becomes the reader's second network.",
+           folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -73,7 +74,8 @@ OF_CHATS = (
 )
 OF_EVALUATE = (
     HAND,
-    Option("--split", "Part of the hand-written pairs to evaluate on.", click.Choice(SPLITS), "validation"),
+    Option("--split", "Pairs to evaluate on; exam: what must be refused, and what only seems so.",
+           click.Choice(SPLITS), "validation"),
     Option("--reader names", "Reader to evaluate; repeat the option for more readers.",
            default=("model",), multiple=True),
     Option("--misses", "Show this many descriptions that were misread.", whole(0, 10_000, "a number"), 0),
@@ -172,7 +174,7 @@ def train(
 def export(
     checkpoint: Path, out: Path, hand: Path, changes: Path, second: Path | None, chats: int | None, seed: int
 ) -> None:
-    """Write the reader of a CHECKPOINT folder, quantised to int8, into the folder OUT, ready for use."""
+    """Write the reader saved in the folder CHECKPOINT into the folder OUT, quantised to int8."""
     try:
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:

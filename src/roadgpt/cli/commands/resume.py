@@ -35,10 +35,10 @@ OPTIONS = (
 def command(folder: Path, driver: str | None, base_url: str | None, axes: "Scale", **rest: Any) -> None:
     """Continue a campaign or a run that was interrupted.
 
-    DIR is the folder that roadgpt campaign or roadgpt run wrote. Tests that had not finished are repeated.
-    The tests and tables are the same as without the interruption, whatever the number of workers. If
-    roadgpt run wrote DIR, the remaining roads are made one at a time, with the same kinds of pictures and
-    road files as the finished ones.
+    DIR is a folder that 'roadgpt campaign' or 'roadgpt run' wrote. Tests that had not finished are repeated.
+    The tests and tables are the same as without the interruption, whatever the number of workers. If DIR
+    was written by 'roadgpt run', the remaining roads are made one at a time, with the same kinds of pictures
+    and road files as the finished ones.
 
     \b
     roadgpt resume roadgpt-runs/an-uphill-road-with-3-turns-7 -j 2

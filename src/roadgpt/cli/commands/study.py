@@ -53,7 +53,7 @@ DRIVES = Option("--drive drives", "Drive the roads as well.", bool)
 
 @click.command(cls=GroupedCommand, params=[ROADS_EACH(100), options.NO_DRIVE, *STUDY_OPTIONS])
 def thesis(no_drive: bool, **rest: Any) -> int:
-    """Repeat the evaluation of RoadGPT's thesis: validity, drives, match with the words, and diversity.
+    """Repeat the evaluation of RoadGPT's thesis: validity, drives, match with descriptions, and diversity.
 
     Takes the three descriptions that the thesis evaluated and those of its survey, makes and drives the
     roads, and writes one page with tables, statistical tests, confidence intervals and figures. The report

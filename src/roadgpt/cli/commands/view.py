@@ -51,8 +51,7 @@ def command(
     DIR/runs/0001 or DIR/test.0001.json, or a test of a campaign, such as CAMPAIGN/c01/17; its drive is shown.
 
     Without --format, writes one page that needs no server and no network. With --format, saves pictures of
-    each road (top view, height, curvature and grade) in a folder of its own, inside that of --out. Prints
-    the names of the files.
+    each road (top view, height, curvature and grade) in a subfolder of --out. Prints the names of the files.
 
     \b
     roadgpt view roadgpt-runs/hairpins-7/runs/0001 --open

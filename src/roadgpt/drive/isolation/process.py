@@ -165,8 +165,10 @@ def take() -> DriverProcess:
 
 
 def give_back(process: DriverProcess) -> None:
-    """Discards the driver of a process, and keeps the process for another driver; if MOST_IDLE processes are
-    idle already, ends it instead."""
+    """Discards the driver of a process, and keeps the process for another driver.
+
+    If there are MOST_IDLE idle processes already, which is the maximum, the process is ended instead.
+    """
     if not process.is_alive:
         process.end()
         return

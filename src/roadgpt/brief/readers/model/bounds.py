@@ -16,7 +16,8 @@ from roadgpt.brief.readers.model.word_set import word_set
 Bound = Literal["lo", "hi", "none"]
 """'lo' is a lower bound, 'hi' an upper bound, 'none' certainly no bound ("60 m or so")."""
 KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
-"""Plan keys whose bounds are corrected. The climb is left out, since its bounds swap when the road falls."""
+"""Plan keys whose bounds are corrected. The climb is left out: downhill it is negative, so
+its lower and upper bounds change places."""
 SMALLER = word_set(
     "below under less smaller shorter fewer lower inside unter weniger kleiner kurzer geringer",
     "unterhalb moins inferieur inferieure inferieurs inferieures sous menos menor inferior inferiores",

@@ -52,7 +52,7 @@ def unused_words(
 
 
 def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
-    """Returns the indices of the slots of a text that do not occur among the tokens of its plan."""
+    """Returns the indices of those numbers (slots) of a text that its plan does not use."""
     return [index for index in range(len(text.slots)) if SLOT_TOKENS[index] not in tokens]
 
 
