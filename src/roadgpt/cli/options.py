@@ -56,7 +56,7 @@ WORLD = (
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
-    _world("--bank", "Bank of bends: none, auto or, say, 5 (%).", bank, "none", unit=100.0),
+    _world("--bank", "Bank of bends: none, auto, or in %.", bank, "none", unit=100.0),
     _world("--shoulder", "Width of the firm ground along each side of the road, m; 0: none.",
            measure(0, 100, "metres"), 3, is_rare=True),
     _world("--friction", "Friction coefficient: dry 1, wet 0.6, snow 0.35.",
