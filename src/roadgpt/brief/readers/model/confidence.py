@@ -12,7 +12,14 @@ DOUBT = 0.5
 """The highest confidence of a reading that would stay the same if a word such as "not" were left out, and of
 the reading of a change request that says only what must not change."""
 
-DENIAL = re.compile(r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*", re.IGNORECASE)
+DENIAL = re.compile(
+    r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
+    r"|(?:bitte )?mach\w* [^,;:.]*\bnicht \w+er[.!]*"
+    r"|ne (?:fais|rends|mets|change)[^,;:.]* pas [^,;:.]*[.!]*"
+    r"|no (?:hagas|pongas|cambies) [^,;:.]*[.!]*"
+    r"|non (?:fare|rendere|cambiare|mettere) [^,;:.]*[.!]*",
+    re.IGNORECASE,
+)
 """Matches a change request that says only what must not change."""
 
 
