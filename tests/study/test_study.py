@@ -275,10 +275,10 @@ def test_recorded_answers_stand_beside_the_planner(tmp_path: Path) -> None:
 
 
 def test_words_that_cannot_be_read_count_as_not_kept(tmp_path: Path) -> None:
-    plan = small(ANY, "| turns=1.. len=9000")
+    plan = small(ANY, "turn x3 | turns=2")
     open_folder(plan, tmp_path)
     (problem,) = work(plan, tmp_path)
-    assert problem.part.endswith("02-turns-1-len-9000")
+    assert problem.part.endswith("02-turn-x3-turns-2")
     keep_problems(tmp_path, [problem])
     text = write_study(tmp_path).with_name("report.md").read_text()
     assert "1 of 2 (50.0 %) roads keep every word" in text
@@ -295,7 +295,7 @@ def test_one_prompt_with_roads_is_not_compared_with_none() -> None:
 
 
 def test_words_that_cannot_be_read_weigh_as_much_as_others(tmp_path: Path) -> None:
-    plan = small(ANY, "| turns=1.. len=9000", roads=3)
+    plan = small(ANY, "turn x3 | turns=2", roads=3)
     open_folder(plan, tmp_path)
     keep_problems(tmp_path, work(plan, tmp_path))
     assert "3 of 6 (50.0 %) roads keep every word" in write_study(tmp_path).with_name("report.md").read_text()
