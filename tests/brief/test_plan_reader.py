@@ -100,9 +100,7 @@ def test_what_is_no_single_road_is_asked_about(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("roadgpt.brief.reader_of", lambda name, chat: OfARoundabout())
     with pytest.raises(NotBuiltError) as refusal:
         read("a turn, then a roundabout, in the rain", "model")
-    assert str(refusal.value).startswith(
-        "a roundabout cannot be built yet; the road without it is made by --plan"
-    )
+    assert str(refusal.value).startswith("a roundabout cannot be built yet; the road without it: --plan")
     assert refusal.value.plan == "turn | beside(rain)"
     assert read(refusal.value.plan, "plan").beside == ("roundabout", "rain")  # a plan is built as it stands
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from roadgpt.brief import Brief, ContradictionError, NotBuiltError
+from roadgpt.brief import AnotherRoadError, Brief, ContradictionError, NotBuiltError
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign import single_test
 from roadgpt.cli import app
@@ -59,7 +59,7 @@ def test_help_is_given_at_either_question_and_is_no_description(word: str) -> No
 
 def test_of_two_readings_the_person_chooses(monkeypatch: pytest.MonkeyPatch) -> None:
     doubtful = read_plan("turn x2 left").model_copy(update={"confidence": 0.3, "other": "turn x2 right"})
-    monkeypatch.setattr("roadgpt.brief.read", lambda words: doubtful)
+    monkeypatch.setattr("roadgpt.brief.read", lambda words, **_: doubtful)
     result = say("two bends", "2", "1", "", "two bends", "", "exit")
     assert result.exit_code == 0
     assert "1  a road with 2 left turns" in result.stdout
@@ -69,28 +69,23 @@ def test_of_two_readings_the_person_chooses(monkeypatch: pytest.MonkeyPatch) -> 
     assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 
 
-def test_a_road_without_the_junction_is_offered(monkeypatch: pytest.MonkeyPatch) -> None:
-    def no_junction(words: str) -> Brief:
-        raise NotBuiltError("a junction", "turn x2 left", read_plan("turn x2 left"))
+@pytest.mark.parametrize("kind", [NotBuiltError, ContradictionError])
+def test_another_road_is_offered(kind: type[AnotherRoadError], monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(words: str, **_: object) -> Brief:
+        raise kind("this cannot be; the road without it", "turn x2 left", read_plan("turn x2 left"))
 
-    monkeypatch.setattr("roadgpt.brief.read", no_junction)
+    monkeypatch.setattr("roadgpt.brief.read", refused)
     result = say("two lefts and a junction", "", "two lefts and a junction", "1", "1", "", "exit")
     assert result.exit_code == 0
-    assert "a junction cannot be built yet; without it: a road with 2 left turns" in result.stdout
+    assert "this cannot be; the road without it: a road with 2 left turns" in result.stdout
     assert "1 of 1 roads" in result.stdout
     assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 
 
-def test_of_a_contradiction_the_likeliest_road_is_offered(monkeypatch: pytest.MonkeyPatch) -> None:
-    def clash(words: str) -> Brief:
-        raise ContradictionError("the sides clash", "turn x2 left", read_plan("turn x2 left"))
-
-    monkeypatch.setattr("roadgpt.brief.read", clash)
-    result = say("all left, then left", "", "all left, then left", "1", "1", "", "exit")
-    assert result.exit_code == 0
-    assert "the sides clash; or is this meant: a road with 2 left turns" in result.stdout
+def test_the_map_grows_in_a_conversation_too() -> None:
+    result = say("700 m straight", "1", "", "exit")
+    assert "the map is 550 m wide" in result.stdout
     assert "1 of 1 roads" in result.stdout
-    assert len([*Path("roadgpt-runs").iterdir()]) == 1  # an empty answer makes nothing
 
 
 def test_a_wrong_answer_is_asked_again() -> None:

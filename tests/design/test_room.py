@@ -1,5 +1,6 @@
 """A map that nobody gave grows with the road that is asked for; one that was given is kept."""
 
+import json
 import re
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt.brief.plan import read_plan
+from roadgpt.cli import app
 from roadgpt.cli.commands.run import command
 from roadgpt.design import draft
 from roadgpt.design.room import map_remark, world_for
@@ -69,6 +71,20 @@ def test_the_reader_refuses_only_what_a_given_map_cannot_hold() -> None:
     assert brief_of("straight len=700", World(), PLAN).clauses
     with pytest.raises(RoadGPTError, match="does not fit"):
         brief_of("straight len=700", World(site=Site(map_size=250)), PLAN)
+
+
+def test_a_campaign_and_read_say_it_too(tmp_path: Path) -> None:
+    words = ["turn right gentle | len=700", "--reader", "plan"]
+    searched = CliRunner().invoke(
+        app, ["campaign", *words, "-n", "1", "--no-drive", "--out", str(tmp_path / "c")]
+    )
+    assert searched.exit_code == 0, searched.output
+    told = CliRunner().invoke(app, ["read", *words, "--json"])
+    size = json.loads(told.output)["map_size"]
+    assert size > 250
+    sentence = f"so the map is {size:g} m wide; --map-size sets it"
+    assert sentence in searched.output
+    assert sentence in json.loads(told.output)["remarks"][-1]
 
 
 def test_the_command_says_how_large_the_map_is_and_resumes(tmp_path: Path) -> None:

@@ -36,7 +36,13 @@ from roadgpt.brief.motorway import says_motorway
 from roadgpt.brief.normal import normal
 from roadgpt.brief.outline import Feature, Group, Outline, outline
 from roadgpt.brief.plan import plan
-from roadgpt.brief.refusal import ContradictionError, NoRoomError, NotBuiltError, TooMuchError
+from roadgpt.brief.refusal import (
+    AnotherRoadError,
+    ContradictionError,
+    NoRoomError,
+    NotBuiltError,
+    TooMuchError,
+)
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
@@ -45,6 +51,7 @@ from roadgpt.errors import PartError
 __all__ = [
     "SURE",
     "Amount",
+    "AnotherRoadError",
     "Brief",
     "Clause",
     "ContradictionError",
@@ -155,7 +162,7 @@ def read(
         check(brief, *limits)
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
-        raise NotBuiltError(missing, plan(rest), rest)
+        raise NotBuiltError(f"{missing} cannot be built yet; the road without it", plan(rest), rest)
     return brief.model_copy(update={"motorway": True}) if says_motorway(words) else brief
 
 

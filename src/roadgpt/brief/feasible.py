@@ -11,7 +11,9 @@ from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
 from roadgpt.brief.normal import BUMPS, SINGLE, STRAIGHT, clauses_turn, normal, total, turns_of
 from roadgpt.brief.words import (
     COUNTS,
+    FIGURE_WINS,
     KINDS,
+    LEAST_GRADE,
     LEAST_RADIUS,
     LEAST_STRAIGHT,
     LENGTH_SLACK,
@@ -29,11 +31,6 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
-FIGURE_WINS = 0.6
-"""If a description gives both a word and a number, such as a "wide" turn and its radius, the number takes
-precedence. It may lie outside the usual range of the word: down to this factor times the lower end, or up to
-the upper end divided by this factor."""
-LEAST_CLIMB = 1.0  # percent: less is level
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
 GRADES = {slope: meaning.grade or Range() for slope, meaning in SLOPES.items()}
@@ -322,7 +319,7 @@ def _slopes(brief: Brief, limits: _Limits) -> None:
         raise BriefError("a flat road cannot gain or lose that much height; leave out one of the two")
     if brief.slope and not brief.incline:
         usual = min(abs(GRADES[brief.slope].lo), abs(GRADES[brief.slope].hi))
-        least = FIGURE_WINS * usual if brief.slope.startswith("steeply") else LEAST_CLIMB
+        least = FIGURE_WINS * usual if brief.slope.startswith("steeply") else LEAST_GRADE
         if brief.slope not in LEVEL and steepest.hi < least:
             raise BriefError(
                 f"such a slope is {least:g} percent or more; allow the steepest place to be that steep"

@@ -15,7 +15,9 @@ from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
 from roadgpt.brief.words import (
     FEATURE,
+    FIGURE_WINS,
     KINDS,
+    LEAST_GRADE,
     MOTORWAY_GRADE,
     MOTORWAY_RADIUS,
     ROAD,
@@ -33,9 +35,7 @@ SMALLEST_OF_MOST = 0.6  # "turns of at most 20 degrees" have at least this share
 LARGEST_TURN = 270.0  # degrees, if only a lower bound was given
 USUALLY_WIDEST = 300.0  # metres: a wider bend is not a turn, unless such turns are asked for
 ROOMY = 150.0  # metres: a map of this side holds a sweeping turn of 60 m radius with its straights
-LEAST_GRADE = 1.0  # percent: a road that climbs less is level
 EASIER = 0.75  # the usual grades of a word are kept if the least of them is at most this share of a limit
-STILL_STEEP = 0.6  # share of the usual grade of a steep slope: a limit below it contradicts the word
 WIDER = 1.5  # times the least radius asked for: a wider bend is not a turn
 NO_LIMIT = Range()
 OF_SEVERAL = frozenset(kind.names[0] for kind in KINDS.values() if kind.turns and kind.turns.lo > 1)
@@ -204,7 +204,7 @@ def _within(said: Sloped, most: float) -> Sloped:
     if said.slope is None or usual is None or 0 in usual:
         return said
     least = min(abs(usual.lo), abs(usual.hi))
-    if least <= EASIER * most or (said.slope.startswith("steeply") and most < STILL_STEEP * least):
+    if least <= EASIER * most or (said.slope.startswith("steeply") and most < FIGURE_WINS * least):
         return said
     return said.model_copy(update={"incline": Amount(lo=max(most / 2, LEAST_GRADE), hi=most)})
 
@@ -286,7 +286,7 @@ def _grade(slope: Slope | None, incline: Amount | None) -> Range | None:
     if incline is None:
         return SLOPES[slope].grade if slope else None
     size = _near(incline, FEATURE["grade"]) or NO_LIMIT
-    low, high = max(size.lo, 1.0), min(size.hi, STEEPEST)
+    low, high = max(size.lo, LEAST_GRADE), min(size.hi, STEEPEST)
     return Range(-high, -low) if slope and slope.endswith("down") else Range(low, high)
 
 

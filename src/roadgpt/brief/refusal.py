@@ -1,7 +1,7 @@
 """Defines errors and messages for refused descriptions, and the greatest length of a description.
 
 ``TooMuchError`` and ``NoRoomError`` contain the Brief, because a larger map may hold the road.
-``NotBuiltError`` contains the Brief of the road that can be built.
+``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
 """
 
 from roadgpt.brief.beside import NOT_BUILT, SAID_OTHERWISE
@@ -96,32 +96,29 @@ class TooMuchError(BriefError):
         self.brief = brief
 
 
-class NotBuiltError(BriefError):
-    """Raised if a description asks for something that is not a single road, such as a roundabout.
+class AnotherRoadError(BriefError):
+    """Raised if a description cannot be built as it is, but another road may be what is meant.
 
     Attributes:
-        missing: what cannot be built, in words.
-        plan: the plan of the road without what is missing.
-        brief: the requirements for the road without what is missing.
-    """
-
-    def __init__(self, missing: str, plan: str, brief: Brief) -> None:
-        super().__init__(f'{missing} cannot be built yet; the road without it is made by --plan "{plan}"')
-        self.missing, self.plan, self.brief = missing, plan, brief
-
-
-class ContradictionError(BriefError):
-    """Raised if a description contradicts itself, although a plan that does not could be meant.
-
-    Attributes:
-        clash: a sentence that says what contradicts what.
-        plan: the likeliest plan that does not contradict itself.
+        offer: why the description cannot be built, and what is offered instead; a plan or a road can follow
+            behind a colon.
+        plan: the plan of the road that is offered.
         brief: the requirements of this plan.
     """
 
-    def __init__(self, clash: str, plan: str, brief: Brief) -> None:
-        super().__init__(f'{clash}; or is this meant: --plan "{plan}"')
-        self.clash, self.plan, self.brief = clash, plan, brief
+    def __init__(self, offer: str, plan: str, brief: Brief) -> None:
+        super().__init__(f'{offer}: --plan "{plan}"')
+        self.offer, self.plan, self.brief = offer, plan, brief
+
+
+class NotBuiltError(AnotherRoadError):
+    """Raised if a description asks for something that is not a single road, such as a roundabout; the road
+    without it is offered.
+    """
+
+
+class ContradictionError(AnotherRoadError):
+    """Raised if a description contradicts itself; the likeliest plan that does not is offered."""
 
 
 class NoRoomError(BriefError):

@@ -132,6 +132,12 @@ SLOPES: Mapping[Slope, Meaning] = {
     "steeply_down": Meaning(("steeply downhill", "a steep descent"), grade=Range(-15, -8)),
 }
 
+LEAST_GRADE = 1.0  # percent: a road that climbs or falls less is level
+FIGURE_WINS = 0.6
+"""If a description gives both a word and a number, such as a "wide" turn and its radius, the number takes
+precedence. It may lie outside the usual range of the word: down to this factor times the lower end, or up to
+the upper end divided by this factor."""
+
 MOUNTAIN = Range(4, 15)
 """The grade of the steepest place of 'a mountain road' in percent, up or down."""
 HILLS = 3

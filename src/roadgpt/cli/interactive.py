@@ -81,18 +81,14 @@ def _understood(words: str) -> str | None:
     """Returns the plan to build instead of the words, "" if the words can be built as they are, and None if
     the user wants to say it in other words.
     """
-    from roadgpt.brief import ContradictionError, NotBuiltError, read
+    from roadgpt.brief import AnotherRoadError, read
 
     try:
-        return _meant(read(words))
-    except NotBuiltError as error:
-        click.echo(f"{error.missing} cannot be built yet; without it: {run.reading(error.brief)}")
-        plan = error.plan
-    except ContradictionError as error:
-        click.echo(f"{error.clash}; or is this meant: {run.reading(error.brief)}")
-        plan = error.plan
-    answer = _asked("1 to build that, or an empty line to say it in other words> ")
-    return plan if answer == "1" else None
+        return _meant(read(words, is_map_fixed=False))
+    except AnotherRoadError as error:
+        click.echo(f"{error.offer}: {run.reading(error.brief)}")
+        answer = _asked("1 to build that, or an empty line to say it in other words> ")
+        return error.plan if answer == "1" else None
 
 
 def _meant(brief: "Brief") -> str | None:

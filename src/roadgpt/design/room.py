@@ -2,6 +2,7 @@
 that is large enough for such roads.
 """
 
+from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.design.designers.planner import sufficient_map
 from roadgpt.road import World
@@ -18,6 +19,12 @@ def world_for(brief: Brief | None, world: World) -> World:
         return found
     size = sufficient_map(brief, found)
     return found if size is None else found.changed(map_size=size)
+
+
+def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
+    """Returns sentences that say what a Brief has changed about a World: its friction, and its map."""
+    said = (surface_remark(brief.beside, found.site.friction), map_remark(usual, found))
+    return tuple(remark for remark in said if remark)
 
 
 def map_remark(usual: World, found: World) -> str:

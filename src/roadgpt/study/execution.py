@@ -9,11 +9,10 @@ from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.brief.beside import surface_remark
 from roadgpt.campaign.folder_campaign import work_in
 from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.chat import ChatError, Meter, ReplyError
-from roadgpt.design.room import map_remark, world_for
+from roadgpt.design.room import world_for, world_remarks
 from roadgpt.errors import BriefError
 from roadgpt.run import Request, brief_of, check_parts
 from roadgpt.run.atomic import alone_in
@@ -98,9 +97,8 @@ class _Session:
                 continue
             world = world_for(brief, plan.world)
             check_parts(setup, world)
-            for said in (surface_remark(brief.beside, world.site.friction), map_remark(plan.world, world)):
-                if said:
-                    self.note(f"{part.name}: {said}")
+            for said in world_remarks(brief, plan.world, world):
+                self.note(f"{part.name}: {said}")
             request = Request(words=brief.words, seed=plan.seed, world=world, setup=setup)
             folders[part.name] = runs = RunFolder.opened(request, brief, plan.roads, self._place(part))
             if meter is not None:

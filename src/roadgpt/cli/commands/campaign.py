@@ -172,17 +172,18 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
 
 def _tell(out: Path, plan: "Plan", was_there: bool) -> None:
     """Prints how the description is read, how many cells there are, and the folder."""
-    from roadgpt.brief.beside import surface_remark
     from roadgpt.campaign.record import Record
     from roadgpt.cli.commands.run import understood
+    from roadgpt.design.room import world_remarks
 
     with Record.opened(out) as record:
         cells = record.cells()
     briefs = {cell.request.words: (cell.brief, cell.request.world) for cell in cells if cell.brief}
     for words, (brief, world) in briefs.items():
         if len(plan.prompts) == 1:
-            click.echo(understood(brief, world))
-        elif said := surface_remark(brief.beside, world.site.friction):
+            click.echo(understood(brief, world, plan.world))
+            continue
+        for said in world_remarks(brief, plan.world, world):
             click.echo(f"note: {words}: {said}")
     if len(cells) > 1:
         click.echo(f"{len(cells):,} cells, each with tests of its own")

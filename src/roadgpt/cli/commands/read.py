@@ -42,21 +42,18 @@ def command(words: tuple[str, ...], as_table: bool, as_json: bool, number: int, 
     roadgpt read "a road" --alternatives 3
     """
     from roadgpt.cli.commands.run import understood
-    from roadgpt.design.room import map_remark, world_for
+    from roadgpt.design.room import world_for
 
     world, reader = options.world_of(rest), options.reader_of(rest)
     briefs = _readings(" ".join(words), reader, world, number, options.chat_of(rest, reader))
     if as_json:
-        found = [_as_data(brief, world_for(brief, world)) for brief in briefs]
+        found = [_as_data(brief, world_for(brief, world), world) for brief in briefs]
         click.echo(json.dumps(found if number > 1 else found[0], indent=2, ensure_ascii=False))
         return
     if number > 1:
         click.echo("\n".join(_list(briefs, as_table)))
         return
-    its = world_for(briefs[0], world)
-    click.echo(understood(briefs[0], its))
-    if said := map_remark(world, its):
-        click.echo(f"note: {said}")
+    click.echo(understood(briefs[0], world_for(briefs[0], world), world))
     if as_table:
         click.echo(_table(briefs[0]))
 
@@ -73,14 +70,15 @@ def _readings(
     return alternatives(words, number, reader, world.site.map_size, TEMPERATURE)
 
 
-def _as_data(brief: "Brief", world: "World") -> dict[str, object]:
-    from roadgpt.brief import SURE, remarks, sentence
+def _as_data(brief: "Brief", world: "World", usual: "World") -> dict[str, object]:
+    from roadgpt.brief import SURE, sentence
     from roadgpt.brief.plan import plan
+    from roadgpt.cli.commands.run import all_remarks
 
     told = {"sentence": sentence(brief), "plan": plan(brief), "confidence": brief.confidence}
     told |= {"is_sure": brief.confidence >= SURE, "other": brief.other}
     map_size, friction = world.site.map_size, world.site.friction
-    told |= {"map_size": map_size, "friction": friction, "remarks": remarks(brief, map_size, friction)}
+    told |= {"map_size": map_size, "friction": friction, "remarks": all_remarks(brief, world, usual)}
     return {**told, "unused": brief.unused, "brief": brief.model_dump(exclude_defaults=True)}
 
 

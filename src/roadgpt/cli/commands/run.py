@@ -129,7 +129,6 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     """
     from roadgpt.campaign import campaign
     from roadgpt.chat import Meter
-    from roadgpt.design.room import map_remark
     from roadgpt.run import brief_of
 
     draw = beside(job.pictures, job.axes, job.formats)
@@ -142,9 +141,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
         from roadgpt.cli.junit import junit_writer
 
         screen.junit = junit_writer(job.junit, work.request)
-    screen.say(understood(brief, work.request.world))
-    if said := map_remark(job.world, work.request.world):
-        screen.say(f"note: {said}")
+    screen.say(understood(brief, work.request.world, job.world))
     screen.detail(brief.model_dump_json(exclude_defaults=True, indent=2))
     crashes_go_to(work.folder)
     screen.say(f"seed {seed}, into {work.folder}")
@@ -165,22 +162,39 @@ def _seed(job: RunJob) -> int:
     return secrets.randbelow(SEEDS) if there is None else there
 
 
-def understood(brief: "Brief", world: "World | None" = None) -> str:
+def understood(brief: "Brief", world: "World | None" = None, given: "World | None" = None) -> str:
     """Returns lines of text: how a description was read, a warning if that is uncertain, and remarks.
 
-    The remarks name what is not built. They also say if the World's friction does not match the surface in
-    the description, or if a motorway does not fit on the World's map. Without a World, neither is checked.
+    Args:
+        brief: What was read.
+        world: The World for the roads; see ``all_remarks``.
+        given: The World that the user gave.
     """
-    from roadgpt.brief import SURE, remarks
+    from roadgpt.brief import SURE
 
-    map_size, friction = (world.site.map_size, world.site.friction) if world is not None else (inf, None)
     told = f"I read this as: {reading(brief)}"
     if brief.confidence < SURE:
         sure = f"{100 * brief.confidence:.0f} % sure"
         told += f"; perhaps not understood as meant ({sure}), so check it or say it in other words"
     if brief.other:
         told += f"\nit could also mean: {other_reading(brief)}\n  (for that: --plan '{brief.other}')"
-    return "\n".join([told, *(f"note: {remark}" for remark in remarks(brief, map_size, friction))])
+    return "\n".join([told, *(f"note: {remark}" for remark in all_remarks(brief, world, given))])
+
+
+def all_remarks(brief: "Brief", world: "World | None", given: "World | None") -> tuple[str, ...]:
+    """Returns sentences that name what is not built, and how the World differs from what the user gave.
+
+    They also say if the World's friction does not match the surface in the description, or if a motorway does
+    not fit on the World's map. Without a World, neither is checked.
+    """
+    from roadgpt.brief import remarks
+    from roadgpt.design.room import map_remark
+
+    if world is None:
+        return remarks(brief, inf)
+    found = remarks(brief, world.site.map_size, world.site.friction)
+    grown = map_remark(given or world, world)
+    return (*found, grown) if grown else found
 
 
 def other_reading(brief: "Brief") -> str:

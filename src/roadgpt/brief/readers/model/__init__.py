@@ -216,7 +216,8 @@ class ModelReader:
             return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
         if why.startswith("!contradiction"):
             brief = self._without_refusal(words, text)
-            return ContradictionError(str(refused(why)), plan(brief), brief) if brief else refused(why)
+            if brief:
+                return ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
         return refused(why)
 
     def _without_refusal(self, words: str, text: SlottedText) -> Brief | None:
