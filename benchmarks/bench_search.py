@@ -114,6 +114,12 @@ SETTINGS = {
             ],
         },
     ),
+    "centring": Setting(
+        "a flat road",
+        AGAINST_THE_WALK,
+        driver="lane_centring",
+        truth={"turns": [1, None], "grade": "flat"},
+    ),
     "slopes": Setting("a road", ("walk", "quality_diversity"), truth={"turns": [1, None]}, borrows="flat"),
 }
 

@@ -151,8 +151,18 @@ def pedals(line: DrivingLine, speed: list[float], s: float, v: float) -> tuple[f
     here, there = speed[i], speed[i + 1]
     planned = here + share * (there - here)
     needed = planned * (there - here) / (line.step * line.stretch[i])
-    wanted = needed + GAIN * (planned - v)
-    wanted += GRAVITY * line.grade[i] + DRAG * v * v + ROLLING
+    return pedals_for(needed + GAIN * (planned - v), line.grade[i], v)
+
+
+def pedals_for(acceleration: float, grade: float, v: float) -> tuple[float, float]:
+    """Returns throttle and brake, 0..1 each, for an acceleration in m/s^2.
+
+    Args:
+        acceleration: acceleration along the road in m/s^2; negative to slow down.
+        grade: grade of the road as a ratio.
+        v: speed of the car, m/s.
+    """
+    wanted = acceleration + GRAVITY * grade + DRAG * v * v + ROLLING
     if wanted > 0.0:
         return min(wanted / min(FULL_THROTTLE, POWER / max(v, 1.0)), 1.0), 0.0
     return 0.0, min(max(-wanted - COAST, 0.0) / FULL_BRAKE, 1.0)

@@ -1,0 +1,147 @@
+"""A driver under test that steers as production lane centring does, and slows down for the bends that its
+camera sees.
+"""
+
+import math
+from collections import deque
+from typing import TYPE_CHECKING
+
+from roadgpt.drive.driving_line import line_along, pedals_for, stations
+from roadgpt.drive.view import Command, View
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+EVERY = 2  # control steps from one image to the next: 25 images a second
+SPACING = 2.0  # m between the places at which the lane is looked at
+SPEED_GAIN = 2.0  # 1/s, acceleration per speed error
+LEAST_AHEAD = 1.0  # m; nearer places say nothing about a crest
+STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
+TURN = 2 * math.pi
+
+
+class LaneCentring:
+    """Keeps to the middle of its lane with limited lateral acceleration; knows only what its camera sees.
+
+    It stands for the lane centring and the adaptive cruise control of production cars (SAE level 2). It
+    imitates no car in particular, and was compared with none. docs/explanation/drivers.md says where each
+    value comes from.
+
+    The camera sees the middle of the lane up to ``sight`` metres ahead, as far as it lies within ``aside``
+    metres to either side of the car's axis and in front of any crest. A tight bend leaves the image early,
+    so the car slows down for it late. It then needs more lateral acceleration than its steering gives, and
+    leaves its lane on the outside of the bend.
+
+    Args:
+        strength: largest lateral acceleration that the steering gives, in m/s^2.
+        jerk: fastest change of the lateral acceleration, in m/s^3.
+        aim: lateral acceleration to which the cruise control slows down for a bend that it sees, in m/s^2.
+        slowest: speed below which it does not slow down for bends, in m/s.
+        braking: deceleration with which it plans to slow down, in m/s^2.
+        hardest: largest deceleration, in m/s^2.
+        acceleration: largest acceleration, in m/s^2.
+        lag: time from the image to the steering, in seconds.
+        sight: how far ahead the camera sees the lane, in metres.
+        aside: how far to either side the camera sees the lane, in metres.
+        eye_height: height of the camera above the road, in metres.
+        headway: time in which an error is corrected, in seconds.
+        nearest: shortest distance in which an error is corrected, in metres.
+        drift: offset to the outside of a bend per curvature of the lane, in m^2.
+        wheelbase: wheelbase in metres.
+    """
+
+    name = "lane_centring"
+
+    def __init__(
+        self,
+        strength: float = 2.86,
+        jerk: float = 5.0,
+        aim: float = 1.9,
+        slowest: float = 20 / 3.6,
+        braking: float = 2.5,
+        hardest: float = 3.5,
+        acceleration: float = 2.0,
+        lag: float = 0.2,
+        sight: float = 40.0,
+        aside: float = 5.0,
+        eye_height: float = 1.3,
+        headway: float = 1.0,
+        nearest: float = 6.0,
+        drift: float = 5.0,
+        wheelbase: float = 2.83,
+    ) -> None:
+        self.strength, self.jerk, self.aim, self.slowest = strength, jerk, aim, slowest
+        self.braking, self.hardest, self.acceleration, self.lag = braking, hardest, acceleration, lag
+        self.sight, self.aside, self.eye_height = sight, aside, eye_height
+        self.headway, self.nearest, self.drift, self.wheelbase = headway, nearest, drift, wheelbase
+
+    def start(self, road: "Road", world: "World", seed: int) -> None:
+        """Computes the middle of the lane, and forgets the last road."""
+        del seed  # the same road is driven the same way every time
+        s = stations(road)
+        middle = world.profile_of(road).middle(s)
+        self._line = line_along(road, middle)
+        heights = road.at(s, middle)[:, 2].tolist()
+        self._heights = heights + heights[-1:] * (len(self._line.x) - len(heights))
+        self._speed_limit = world.limits.speed_limit
+        self._steps, self._bend, self._lateral, self._speed = 0, 0.0, 0.0, self._speed_limit
+        self._waiting: deque[float] = deque()
+
+    def steer(self, view: View) -> Command:
+        """Steers for an image of ``lag`` seconds ago, and drives as fast as the bends in sight allow."""
+        if self._steps % EVERY == 0:
+            self._look(view)
+        self._steps += 1
+        square = max(view.speed, self.slowest) ** 2
+        most = self.jerk * view.dt
+        change = min(max(self._bend * square - self._lateral, -most), most)
+        self._lateral = min(max(self._lateral + change, -self.strength), self.strength)
+        self._waiting.append(self._lateral / square)
+        has_waited = len(self._waiting) * view.dt > self.lag
+        bend = self._waiting.popleft() if has_waited else 0.0
+        wanted = min(max(SPEED_GAIN * (self._speed - view.speed), -self.hardest), self.acceleration)
+        here, _ = self._line.place(view.s)
+        return Command(
+            math.atan(self.wheelbase * bend), *pedals_for(wanted, self._line.grade[here], view.speed)
+        )
+
+    def _look(self, view: View) -> None:
+        """Looks along the lane, and sets the curvature to steer and the speed to drive.
+
+        Where the camera sees nothing of the lane, both stay as they were.
+        """
+        seen = self._speeds_in_sight(view)
+        if seen:
+            self._speed = min(self._speed_limit, *seen)
+            self._bend = self._curvature(view, max(self.headway * view.speed, self.nearest))
+
+    def _speeds_in_sight(self, view: View) -> list[float]:
+        """Returns the present speed that each place in sight allows, in m/s."""
+        line, cos, sin = self._line, math.cos(view.heading), math.sin(view.heading)
+        eye = self._heights[line.place(view.s)[0]] + self.eye_height
+        highest, distance, out = -math.inf, 0.0, list[float]()
+        while distance <= self.sight:
+            i, _ = line.place(view.s + distance)
+            dx, dy = line.x[i] - view.x, line.y[i] - view.y
+            ahead = dx * cos + dy * sin
+            if abs(dy * cos - dx * sin) > self.aside:
+                break
+            if ahead > LEAST_AHEAD:
+                slope = (self._heights[i] - eye) / ahead
+                if slope < highest:
+                    break  # behind a crest
+                highest = slope
+            there = max(self.aim / max(abs(line.curvature[i]), STRAIGHT), self.slowest**2)
+            out.append(math.sqrt(there + 2 * self.braking * distance))
+            distance += SPACING
+        return out
+
+    def _curvature(self, view: View, reach: float) -> float:
+        """Returns the curvature that takes the car back to its line within ``reach`` metres, in 1/m."""
+        line = self._line
+        i, share = line.place(view.s)
+        bend = line.curvature[i]
+        middle = line.offset[i] + share * (line.offset[i + 1] - line.offset[i])
+        heading = line.heading[i] + share * (line.heading[i + 1] - line.heading[i])
+        error = view.t - middle + self.drift * bend
+        return bend - 2 * (error + reach * math.remainder(view.heading - heading, TURN)) / reach**2

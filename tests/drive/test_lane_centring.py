@@ -1,0 +1,90 @@
+"""The driver ``lane_centring``: what limits it, what it sees, and on which side it leaves its lane."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from drive.slippery_bicycle import SlipperyBicycle
+from roadgpt.drive import Drive
+from roadgpt.drive.drivers.lane_centring import LaneCentring
+from roadgpt.road import Design, Limits, Road, Segment, World, build
+from roadgpt.verdict import judge
+
+MIDDLE = -2.0  # m, the middle of the right lane of a usual road
+
+
+def road_of(*parts: tuple[float, float, float]) -> Road:
+    """Parts of length in metres, degrees (left positive), grade in percent."""
+    segments = []
+    for length, degrees, grade in parts:
+        turn: Any = {"direction": "left" if degrees > 0 else "right", "turn_degrees": degrees}
+        way = turn if degrees else {"direction": "straight"}
+        segments.append(Segment(distance=length, incline=grade, **way))
+    return build(Design(starting_point=(50, 50, 0), theta=20, segments=tuple(segments)))
+
+
+def bend(radius: float, degrees: float, before: float = 40.0) -> Road:
+    """A straight, then bends of at most 60 degrees each with the same radius, then 40 m straight."""
+    pieces = math.ceil(abs(degrees) / 60)
+    part = (math.radians(abs(degrees)) * radius / pieces, degrees / pieces, 0.0)
+    return road_of((before, 0.0, 0.0), *[part] * pieces, (40.0, 0.0, 0.0))
+
+
+def driven(road: Road, driver: LaneCentring, speed_kmh: float = 70.0) -> Drive:
+    world = World(limits=Limits(speed_limit=speed_kmh / 3.6))
+    return SlipperyBicycle().simulate(road, world, driver, seed=7, keep_driving=True)
+
+
+def test_the_steering_gives_no_more_than_its_lateral_acceleration() -> None:
+    """By the yaw rate of the car, on a bend that it takes far too fast."""
+    drive = driven(bend(40.0, 100.0, before=90.0), LaneCentring(strength=2.0, aim=50.0))
+    lateral = np.abs(np.array(drive["yaw_rate"]) * np.array(drive["speed"]))
+    assert 1.8 < lateral.max() < 2.2
+    assert np.max(np.array(drive["speed"]) ** 2 / 40.0) > 4.0  # what the bend asks for
+
+
+@pytest.mark.parametrize("hand", [1, -1])
+def test_cruise_control_slows_down_to_the_lateral_acceleration_it_aims_at(hand: int) -> None:
+    """In a long bend v^2 / R is the aim, R being the radius of the lane, not of the road."""
+    drive = driven(bend(30.0, hand * 200.0), LaneCentring())
+    s, speed = np.array(drive["s"]), np.array(drive["speed"])
+    within = speed[(s > 90.0) & (s < 120.0)]
+    lane = 30.0 + 2.0 * hand  # a left bend is wider for the right lane
+    assert np.median(within) == pytest.approx(math.sqrt(1.9 * lane), rel=0.03)
+
+
+def test_what_is_beyond_its_sight_changes_nothing() -> None:
+    """Two roads that part at 100 m are driven alike until the car is 40 m away, and then not."""
+    one = driven(road_of((100.0, 0.0, 0.0), (30.0, 60.0, 0.0), (40.0, 0.0, 0.0)), LaneCentring())
+    other = driven(road_of((100.0, 0.0, 0.0), (70.0, 0.0, 0.0)), LaneCentring())
+    steps = int(np.searchsorted(one["s"], 57.0))
+    for name in ("s", "t", "speed", "steer"):
+        assert one[name][:steps].tolist() == other[name][:steps].tolist()
+    at = [float(np.interp(98.0, drive["s"], drive["speed"])) for drive in (one, other)]
+    assert at[0] < at[1] - 1.0
+
+
+def test_a_crest_hides_the_bend_behind_it() -> None:
+    """From 1.3 m the road ends behind the crest; from 30 m it does not. By the usual formula a crest of
+    56 m radius hides the road after sqrt(2 * 56 m * 1.3 m) = 12 m, instead of 40 m.
+    """
+    road = road_of((90.0, 0.0, 12.0), (15.0, 0.0, -12.0), (30.0, 60.0, -12.0), (40.0, 0.0, -12.0))
+    low, high = driven(road, LaneCentring()), driven(road, LaneCentring(eye_height=30.0))
+    fast, slow = (float(np.interp(105.0, drive["s"], drive["speed"])) for drive in (low, high))
+    assert fast > slow + 2.0
+
+
+@pytest.mark.parametrize(("hand", "side"), [(1, "right"), (-1, "left")])
+def test_it_leaves_its_lane_on_the_outside(hand: int, side: str) -> None:
+    road = bend(22.0, hand * 110.0, before=80.0)
+    drive = driven(road, LaneCentring(strength=1.0))
+    verdict = judge(road, drive, World())
+    assert (verdict.outcome, verdict.side) == ("FAIL", side)
+
+
+def test_it_keeps_its_lane_where_its_steering_is_strong_enough() -> None:
+    for hand in (1, -1):
+        drive = driven(bend(60.0, hand * 100.0), LaneCentring())
+        assert np.abs(np.array(drive["t"]) - MIDDLE).max() < 0.5
