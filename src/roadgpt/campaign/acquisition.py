@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.campaign.model import Goal
-from roadgpt.campaign.variation import Candidate
 from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
 
@@ -28,63 +27,54 @@ class Predictions(NamedTuple):
 
     margins: Array
     """Predicted margins, in metres; negative for a predicted failure."""
-    cells: NDArray[np.intp]
-    """Predicted cell numbers of the candidates on the feature map."""
+    cells: tuple[NDArray[np.intp], ...]
+    """Predicted cell numbers of the candidates, one array for each map."""
 
 
-def select(
-    goal: Goal,
-    n: int,
-    candidates: Sequence[Candidate],
-    expected: Predictions,
-    counts: Counter[int],
-    least: float,
-) -> list[Candidate]:
-    """Returns the candidates to drive, the most valuable first. Similar roads are skipped, see ``least``.
+def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[int]]) -> list[int]:
+    """Returns the indices of the n most valuable candidates, the most valuable first.
 
     Args:
         goal: what the search looks for.
         n: largest number of candidates to return.
-        candidates: the candidate roads to choose from.
         expected: the surrogate's predictions for the candidates.
-        counts: number of failures so far in each cell; for the goal "coverage", number of tests.
-        least: smallest allowed distance between the shapes of two chosen roads, metres RMS.
+        counts: for each map, the number of failures so far in each cell; for the goal "coverage", of tests.
     """
-    used, index = np.unique(expected.cells, return_inverse=True)
-    cells = index.reshape(expected.cells.shape)
-    known = np.array([float(counts[int(cell)]) for cell in used])
     weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
-    is_left = np.ones(len(candidates), bool)
-    out: list[Candidate] = []
+    maps = [_Map.of(cells, known) for cells, known in zip(expected.cells, counts, strict=True)]
+    is_left = np.ones(expected.margins.shape[1], bool)
+    out: list[int] = []
     while len(out) < n and is_left.any():
         if goal == "hardest":
             value = expected.margins.std(axis=0) - expected.margins.mean(axis=0)
         else:
             floor = 0.0 if goal == "coverage" else ANYWHERE
-            value = (weight * (floor + 1 / (1 + known[cells]))).mean(axis=0)
+            worth = sum(1 / (1 + one.known[one.cells]) ** 2 for one in maps) / len(maps)
+            value = (weight * (floor + worth)).mean(axis=0)
         best = int(np.argmax(np.where(is_left, value, -np.inf)))
-        out.append(candidates[best])
-        np.add.at(known, cells[:, best], weight[:, best] / len(weight))
+        out.append(best)
+        for one in maps:
+            np.add.at(one.known, one.cells[:, best], weight[:, best] / len(weight))
         is_left[best] = False
-        is_left &= far_from(candidates, candidates[best].shape, least)
     return out
 
 
-def far_from(candidates: Sequence[Candidate], shape: PlanShape, least: float) -> NDArray[np.bool_]:
-    """Returns a mask ``(n,)``: True for each candidate whose shape is at least ``least`` metres RMS away from
-    the given shape.
-    """
-    if not least or not candidates:
-        return np.ones(len(candidates), bool)
-    return np.asarray(apart(shape, stacked([one.shape for one in candidates])) >= least)
+class _Map(NamedTuple):
+    """The predicted cells of one map, numbered anew from 0, and what is known of each."""
+
+    cells: NDArray[np.intp]
+    known: Array
+
+    @classmethod
+    def of(cls, cells: NDArray[np.intp], counts: Counter[int]) -> "_Map":
+        """Numbers the cells anew, so that the counts are an array."""
+        used, index = np.unique(cells, return_inverse=True)
+        return cls(index.reshape(cells.shape), np.array([float(counts[int(cell)]) for cell in used]))
 
 
-def dissimilar(candidates: Sequence[Candidate], known: Sequence[PlanShape], least: float) -> list[Candidate]:
-    """Returns the candidates whose shape is at least ``least`` metres RMS away from every known shape."""
-    if not known or not least:
-        return list(candidates)
-    others = stacked(known)
-    return [one for one in candidates if apart(one.shape, others).min() >= least]
+def is_far(shape: PlanShape, known: Sequence[PlanShape], least: float) -> bool:
+    """Returns whether the shape is at least ``least`` metres RMS away from every known shape."""
+    return not known or not least or float(apart(shape, stacked(known)).min()) >= least
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
@@ -94,24 +84,24 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
     return PlanShape._make(np.stack(columns) for columns in zip(*shapes, strict=True))
 
 
-def spread_out(candidates: Sequence[Candidate], n: int, hazard: Array) -> list[Candidate]:
-    """Chooses candidates as long as the surrogate has too few drives to learn from.
+def spread_out(features: Sequence[Array], n: int, hazard: Array) -> list[int]:
+    """Chooses candidates as long as the surrogate has too few drives to learn from; returns their indices.
 
     The chosen roads are among the half of the candidates that looks hardest, and their features are diverse.
 
     Args:
-        candidates: the roads to choose from.
+        features: the surrogate's features of each candidate.
         n: number of candidates to choose.
         hazard: one number per candidate; the larger, the harder the road looks.
     """
-    order = np.argsort(-hazard, kind="stable")[: max(n, (len(candidates) + 1) // 2)]
-    signs = np.array([candidates[i].surrogate_features for i in order])
+    order = np.argsort(-hazard, kind="stable")[: max(n, (len(features) + 1) // 2)]
+    signs = np.array([features[i] for i in order])
     if len(order) <= n:
-        return [candidates[i] for i in order]
+        return [int(i) for i in order]
     signs = (signs - signs.mean(axis=0)) / np.maximum(signs.std(axis=0), 1e-9)
     chosen = [0]
     away = np.full(len(order), np.inf)
     while len(chosen) < n:
         away = np.minimum(away, ((signs - signs[chosen[-1]]) ** 2).sum(axis=1))
         chosen.append(int(away.argmax()))
-    return [candidates[order[i]] for i in chosen]
+    return [int(order[i]) for i in chosen]

@@ -25,7 +25,10 @@ from roadgpt.brief.outline import outline
 from roadgpt.check.measures import Measures, measure
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
+from roadgpt.run.features import features_of
 
+DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
+"""The features that a road has only after a drive."""
 DIRECTIONS = 36  # of 10 degrees each
 WIDEST = 1000.0  # m; larger radii count as this radius
 MOST_TURNS = 6  # that have features of their own
@@ -82,6 +85,23 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
         out[f"RADIUS_{number}"] = min(turn.radius, WIDEST)
         out[f"DEGREES_{number}"] = turn.degrees
     return {name: round(float(value), DECIMALS) for name, value in out.items()}
+
+
+def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
+    """Returns those features of ``axes`` that a road has without a drive, by name.
+
+    Args:
+        points: points of the road's centre line ``(n, 3)``, about one per metre.
+        axes: names of features.
+        brief: as for ``behaviour_of``.
+    """
+    found = features_of(points)
+    if not set(axes) <= {*found, *DRIVEN}:
+        step = np.diff(points[:, :2], axis=0)
+        heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+        widest = outline(brief or Brief()).widest
+        found |= behaviour_of_measures(measure(points, widest), heading, brief)
+    return {axis: found[axis] for axis in axes if axis in found}
 
 
 def turns_asked(brief: Brief | None) -> int:

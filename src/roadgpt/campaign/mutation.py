@@ -22,6 +22,7 @@ STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a t
 SWING = 22.0  # degrees, standard deviation
 SLOPE = 2.5  # percent, standard deviation
 MOST_ELEMENTS = 24  # of a road
+PACKED = (0.05, 0.8)  # share of their lengths that straights keep when all are shortened
 NEW_STRAIGHT = (3.0, 45.0)  # m, length of an inserted straight
 NEW_TURN = (20.0, 120.0)  # degrees, of an inserted turn
 NUMBERS = Element._fields.index("vertical_radius") + 1  # fields that are interpolated
@@ -145,6 +146,41 @@ def _removed(elements: Elements, rng: Rng, world: World) -> Elements:
     return elements[:at] + elements[at + 1 :] if len(elements) > 1 else elements
 
 
+def _cut_out(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Returns some successive elements only, at least one."""
+    first, last = sorted(int(n) for n in rng.integers(len(elements) + 1, size=2))
+    return elements[first:last] if last > first else elements
+
+
+def _packed(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Shortens all straights by the same factor."""
+    share = rng.uniform(*PACKED)
+    return tuple(
+        one if one.turn else one._replace(straight=max(one.straight * share, STRAIGHTS[0]))
+        for one in elements
+    )
+
+
+def _wound(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Returns the elements with two tight turns to opposite sides, without a straight between them."""
+    if len(elements) + 1 >= MOST_ELEMENTS:
+        return elements
+    at = int(rng.integers(len(elements) + 1))
+    incline = elements[min(at, len(elements) - 1)].incline
+    side = float(rng.choice((-1, 1)))
+    radius = min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.2))), WIDEST)
+    pair = tuple(
+        Element(
+            turn=hand * float(rng.uniform(*NEW_TURN)),
+            radius=radius,
+            transition=float(rng.uniform(*TRANSITIONS)),
+            incline=incline,
+        )
+        for hand in (side, -side)
+    )
+    return (*elements[:at], *pair, *elements[at:])
+
+
 def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
     """Reverses the direction of driving: left turns become right turns, and climbs become descents."""
     radii = [None, *(element.vertical_radius for element in reversed(elements[1:]))]
@@ -183,6 +219,9 @@ MUTATIONS: dict[str, Mutation] = {
     "swapped": Mutation(_swapped, 1.0, False),
     "inserted": Mutation(_inserted, 1.5, False),
     "removed": Mutation(_removed, 1.0, False),
+    "cut out": Mutation(_cut_out, 1.0, False),
+    "packed": Mutation(_packed, 1.0, True),
+    "wound": Mutation(_wound, 1.0, False),
     "mirrored": Mutation(lambda elements, rng, world: mirrored(elements), 0.5, False),
     "backwards": Mutation(_backwards, 0.5, False),
 }

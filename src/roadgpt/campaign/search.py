@@ -16,8 +16,6 @@ from roadgpt.errors import UsageError
 from roadgpt.run import seed_of
 
 MOST_AXES = 4
-DRIVEN = ("STD_SA", "MEAN_LP", "MAX_LP")
-"""The features that a road has only after a drive."""
 
 
 class SearchSettings(Frozen):
@@ -32,18 +30,22 @@ class SearchSettings(Frozen):
     """Number of tests in a batch."""
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = ("MAX_CURV", "STD_SA")
     """Names of the features that are the axes of the map."""
+    also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] = ("MAX_CURV", "DIR_COV")
+    """Names of the features that are the axes of a second map, on which failures in new cells count as much;
+    empty: there is none.
+    """
     archive: Literal["grid", "cvt"] = "grid"
     """Kind of map: "grid" has the cells of a grid, "cvt" the neighbourhoods of evenly spread centroids."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
     """Number of cells along each axis of a grid, or number of centroids."""
-    candidates: Annotated[int, Field(ge=1, le=100)] = 8
-    """Number of candidate roads for each road that is driven; the surrogate predicts the outcome on each."""
+    candidates: Annotated[int, Field(ge=1, le=1000)] = 40
+    """Number of sketches for each road that is driven; the surrogate predicts the outcome on each."""
     apart: Annotated[float, Field(ge=0, le=1000)] = 5.5
     """Smallest allowed distance between the shape of a candidate and that of every tested road, metres RMS
     after the best shift, rotation and reflection.
     """
 
-    @field_validator("axes")
+    @field_validator("axes", "also")
     @classmethod
     def _known(cls, axes: tuple[str, ...]) -> tuple[str, ...]:
         for axis in axes:
@@ -80,7 +82,9 @@ def settings_of(cell: Cell) -> SearchSettings:
 
 def context_of(cell: Cell) -> VariationContext:
     """Returns the requirements, world and rules that all candidates of a cell share."""
-    return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules)
+    wanted = settings_of(cell)
+    axes = tuple(dict.fromkeys((*wanted.axes, *wanted.also)))
+    return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
 
 
 def batch_rng(cell: Cell, batch: int) -> np.random.Generator:

@@ -6,7 +6,7 @@ RoadGPT's own drives it separated failures from passes after 50 tests (AUC 0.99)
 features and their squares needed several hundred; see docs/explanation/search.md.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -20,30 +20,48 @@ FAILED = (
     -0.3
 )  # m, learnt for every failure: a drive ends where it fails, so its margin says nothing of how badly
 MOST = 1500  # roads to learn from, the latest ones
+LEAST_SQUARE = 1e-9  # of a guess, so that nothing is divided by 0
 
 
 class Surrogate:
     """Predicts the outcomes of drives on roads that have not been driven yet."""
 
-    def __init__(self, features: Sequence[Array], outcomes: Sequence[Sequence[float]]) -> None:
+    def __init__(
+        self,
+        features: Sequence[Array],
+        outcomes: Sequence[Sequence[float]],
+        guesses: Mapping[int, Sequence[int]] | None = None,
+    ) -> None:
         """Learns from the last ``MOST`` roads.
 
         Args:
             features: the features of each road, ``(n, features)``, as returned by ``surrogate_features_of``.
             outcomes: the values to predict for each road, ``(n, k)``: the margin in metres, as returned by
                 ``target_of``, and features of the drive.
+            guesses: for outcomes that are nearly proportional to one of some features, the columns of these
+                features by the column of the outcome. The trees then learn the difference from the feature
+                that fits best, so that values beyond all known ones can be predicted.
         """
-        known = np.asarray(outcomes[-MOST:], float)
+        known, looks = np.asarray(outcomes[-MOST:], float), np.asarray(features[-MOST:], float)
+        self._factors: dict[int, tuple[int, float]] = {}
+        for outcome, columns in (guesses or {}).items():
+            feature, factor = _best_guess(looks, columns, known[:, outcome])
+            self._factors[outcome] = (feature, factor)
+            known[:, outcome] -= factor * looks[:, feature]
         self._mean, scale = known.mean(axis=0), known.std(axis=0)
         self._scale = np.where(scale > 0, scale, 1.0)
         targets = (known - self._mean) / self._scale
-        self._forest = grow(np.asarray(features[-MOST:], float), targets, TREES, LEAF, seed=0)
+        self._forest = grow(looks, targets, TREES, LEAF, seed=0)
 
     def opinions(self, features: Sequence[Array]) -> Array:
         """Returns the predictions of each tree for n roads and k outcomes, ``(TREES, n, k)``, in the units of
         the outcomes.
         """
-        return np.asarray(self._forest.predict(np.asarray(features, float)) * self._scale + self._mean)
+        looks = np.asarray(features, float)
+        found = np.asarray(self._forest.predict(looks) * self._scale + self._mean)
+        for outcome, (feature, factor) in self._factors.items():
+            found[..., outcome] += factor * looks[:, feature]
+        return found
 
 
 def target_of(margin: float, failed: bool) -> float:
@@ -52,3 +70,16 @@ def target_of(margin: float, failed: bool) -> float:
     All failures get the same negative margin.
     """
     return FAILED if failed else margin
+
+
+def _best_guess(looks: Array, columns: Sequence[int], values: Array) -> tuple[int, float]:
+    """Returns the column to which the values are most nearly proportional, and the factor."""
+    factors = [
+        float(looks[:, one] @ values / max(looks[:, one] @ looks[:, one], LEAST_SQUARE)) for one in columns
+    ]
+    errors = [
+        float(((values - factor * looks[:, one]) ** 2).sum())
+        for one, factor in zip(columns, factors, strict=True)
+    ]
+    best = int(np.argmin(errors))
+    return columns[best], factors[best]

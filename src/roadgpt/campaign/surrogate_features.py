@@ -6,9 +6,13 @@ left out, since the car starts from rest, and the last 8 m, since the test ends 
 road. The features include the largest averages of this curvature in left and in right bends over windows of
 several lengths, how fast the curvature changes, the length of the straight before the tightest bend, slopes,
 and crests.
+
+A drive ends where the car leaves its lane, so the standard deviation of its steering (STD_SA) depends on how
+far it came. It is therefore estimated for the whole road and as far as some places where the car may fail.
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +28,11 @@ STRAIGHT = 0.01  # 1/m: less is straight enough to gain speed
 SHORTEST = 5  # m; a shorter stretch does not count as a straight
 LONGEST = 120.0  # m; on a longer straight the car gains no more speed
 AROUND = 10  # samples to either side of the tightest place, whose slopes and crests count
+NEARLY = 0.9  # share of the largest curvature, at which a place may be the one where the car fails
+LATERAL = 6.3  # m/s^2, rough limits of a car, from which its speed is estimated
+SPEEDING_UP, GENTLY = 5.0, 2.0  # m/s^2, of a keen and of a gentle driver
+ENTERING = 10  # samples before a place, where the speed at which a car enters a bend is taken
+WHEELBASE = 2.83  # m
 
 NAMES = (
     *(f"left_{window}" for window in WINDOWS),
@@ -38,23 +47,56 @@ NAMES = (
     "crest",
     "fall",
     "length",
+    "steering",
+    "steering_to_left",
+    "steering_to_right",
+    "steering_to_first",
+    "steering_to_rush_left",
+    "steering_to_rush_right",
+    "first",
+    "rush_left",
+    "rush_right",
 )
+STEERING = tuple(NAMES.index(name) for name in NAMES if name.startswith("steering"))
+"""Features of which one is nearly proportional to STD_SA, depending on where the car leaves its lane."""
+
+
+class RoadSamples(NamedTuple):
+    """A road as equally spaced samples, about 1 m apart; arrays ``(n,)``."""
+
+    s: Array
+    """Stations in metres."""
+    curvature: Array
+    """Curvature of the centre line in 1/m."""
+    grade: Array
+    """Grade as a ratio."""
+    middle: Array
+    """Offset of the middle of the driven lane in metres, positive to the left."""
 
 
 def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
     """Returns the features of a road, ``(len(NAMES),)``, each scaled to a magnitude of about 1."""
-    samples = road.sample()
-    kept = (samples.s >= STARTING) & (samples.s <= road.length - ENDING)
+    found = road.sample()
+    middle = world.profile_of(road).middle(found.s)
+    return features_of_samples(RoadSamples(found.s, found.curvature, found.grade, middle), world)
+
+
+def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float64]:
+    """Returns the features of a road's samples, as ``surrogate_features_of`` does."""
+    length = float(samples.s[-1])
+    kept = (samples.s >= STARTING) & (samples.s <= length - ENDING)
     if np.count_nonzero(kept) < 2:
         kept = np.ones(len(samples.s), bool)
-    bend, grade = samples.curvature[kept], samples.grade[kept]
-    middle = world.profile_of(road).middle(samples.s[kept])
-    lane = bend / np.maximum(1 - middle * bend, TIGHTEST)
+    all_of_lane = samples.curvature / np.maximum(1 - samples.middle * samples.curvature, TIGHTEST)
+    lane, grade = all_of_lane[kept], samples.grade[kept]
     means = [_mean(lane, window) for window in WINDOWS]
     crest = -np.gradient(_mean(grade, WINDOWS[1]))
     tight = int(np.abs(means[1]).argmax())
     there = slice(max(tight - AROUND, 0), tight + AROUND)
     size = np.abs(means[1])
+    steering = _steering(samples.s, all_of_lane, world)
+    rush = _rush(samples.s, all_of_lane, world)[kept]
+    places = [int(np.flatnonzero(kept)[i]) for i in (*_places(means[2]), rush.argmax(), rush.argmin())]
     return np.array(
         [
             *(max(float(mean.max()), 0.0) / 0.06 for mean in means),
@@ -68,9 +110,51 @@ def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
             float(crest[there].max()) / 0.005,
             float(crest.max()) / 0.005,
             float(-grade.min()) / 0.1,
-            road.length / 200,
+            length / 200,
+            *(float(steering[place]) / 0.1 for place in (-1, *places)),
+            float(samples.s[places[2]]) / 200,
+            max(float(rush.max()), 0.0) / 10,
+            max(float(-rush.min()), 0.0) / 10,
         ]
     )
+
+
+def _places(lane: Array) -> tuple[int, int, int]:
+    """Returns where a car may leave its lane: the tightest place to the left and to the right, and the first
+    that is nearly as tight as the tightest.
+    """
+    size = np.abs(lane)
+    return int(lane.argmax()), int(lane.argmin()), int((size >= NEARLY * size.max()).argmax())
+
+
+def _steering(s: Array, lane: Array, world: World) -> Array:
+    """Returns the standard deviation over time of the wheels' angle from the start to each sample, in
+    radians.
+    """
+    speed = np.sqrt(np.maximum(_squared_speed(s, lane, world, SPEEDING_UP), 1.0))
+    angle = np.arctan(WHEELBASE * lane)
+    time = np.cumsum(1 / speed)
+    mean, square = np.cumsum(angle / speed) / time, np.cumsum(angle**2 / speed) / time
+    return np.sqrt(np.maximum(square - mean**2, 0.0))
+
+
+def _rush(s: Array, lane: Array, world: World) -> Array:
+    """Returns the lateral acceleration in m/s^2, positive to the left, of a car that accelerates gently and
+    does not brake before a bend.
+    """
+    square = _squared_speed(s, lane, world, GENTLY)
+    entering = np.concatenate([np.zeros(min(ENTERING, len(s))), square[:-ENTERING]])
+    return entering * _mean(lane, WINDOWS[1])
+
+
+def _squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> Array:
+    """Returns the square of the speed in m^2/s^2 of a car that starts from rest, accelerates as far as the
+    bend at each place allows, and brakes at once.
+    """
+    most = np.minimum(world.limits.speed_limit**2, LATERAL / np.maximum(np.abs(lane), 1e-6))
+    most[0] = 0.0
+    gained = 2 * acceleration * s
+    return np.asarray(gained + np.minimum.accumulate(most - gained))
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
@@ -86,7 +170,8 @@ def _mean(values: Array, window: int) -> Array:
     """Returns the moving average over ``window`` values; the first and last values are repeated beyond the
     ends."""
     half = window // 2
-    total = np.concatenate([[0.0], np.cumsum(np.pad(values, half, mode="edge"))])
+    ends = np.full(half, values[0]), np.full(half, values[-1])
+    total = np.concatenate([[0.0], np.cumsum(np.concatenate([ends[0], values, ends[1]]))])
     return np.asarray((total[window:] - total[:-window]) / window)
 
 

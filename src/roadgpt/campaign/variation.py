@@ -47,6 +47,8 @@ class VariationContext(NamedTuple):
     """The map, and the limits that the rules apply."""
     rules: Literal["strict", "sbft"] = "strict"
     """With "sbft", a road must also pass the validator of the competition."""
+    axes: tuple[str, ...] = ()
+    """Names of the features that a sketch needs."""
 
 
 class VariationTask(NamedTuple):
@@ -89,7 +91,7 @@ def make_candidate(task: VariationTask) -> Candidate | None:
     if task.kind == "between":
         found = _between(task)
     elif task.kind in ("draft", "wild"):
-        found = _drafted(setting, rng)
+        found = drafted(setting, rng)
         for _ in range(ROUNDS if found and task.kind == "wild" else 0):
             found = found and (_changed((elements_of(found[0].segments),), setting, rng) or found)
     else:
@@ -111,7 +113,7 @@ def _changed(
     return None
 
 
-def _drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
+def drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
     """Returns a draft of the planner; None if no valid road could be designed."""
     try:
         design = draft(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))

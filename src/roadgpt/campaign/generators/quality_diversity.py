@@ -9,18 +9,18 @@ are valuable. Batches 0 and 1 are requested before any result is known; they con
 look hard.
 """
 
-from collections import Counter
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.acquisition import Predictions, dissimilar, select, spread_out
+from roadgpt.campaign.acquisition import Predictions, is_far, select, spread_out
 from roadgpt.campaign.archive import Archive
+from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import (
-    DRIVEN,
     batch_rng,
     context_of,
     is_usable,
@@ -28,14 +28,18 @@ from roadgpt.campaign.search import (
     proposals_of,
     settings_of,
 )
+from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
-from roadgpt.campaign.surrogate_features import hazard_of
-from roadgpt.campaign.variation import Candidate, Kind, VariationTask, describe_known
+from roadgpt.campaign.surrogate_features import STEERING, hazard_of
+from roadgpt.campaign.variation import Candidate, Kind, VariationTask
 from roadgpt.design.elements import elements_of
+from roadgpt.design.variety import PlanShape
+from roadgpt.geometry.curve import Array
 from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
-OFTEN = (0.6, 0.2, 0.2)  # share of candidates of each kind
+OFTEN = (0.7, 0.27, 0.03)  # share of sketches of each kind, once there are results
+SPARE = 3  # sketches that are kept for each road to drive, since some violate a requirement or a rule
 FAILED_PARENTS = 0.5  # share of parents drawn from failed elites; the others are drawn from all elites
 BISECTED = 0.6  # share of a batch that lies between two tests, if the goal is the boundary
 SHARES = (0.5, 0.3, 0.7)  # position between the roads of a pair; changes by batch, so that roads do too
@@ -57,41 +61,63 @@ class QualityDiversity:
         self._wanted = settings_of(cell)
         self._goal: Goal = cell.goal or "failures"
         self.batch_size = self._wanted.batch
-        self._archive = Archive(self._wanted.axes, self._wanted.cells, self._wanted.archive)
-        self._driven = [axis for axis in self._wanted.axes if axis in DRIVEN]
+        self._maps = [
+            Archive(axes, self._wanted.cells, self._wanted.archive)
+            for axes in dict.fromkeys((self._wanted.axes, self._wanted.also))
+            if axes
+        ]
+        self._driven = [axis for axis in self._setting.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
-        self._looks: dict[int, Candidate] = {}
+        self._looks: dict[int, Sketch] = {}
+        self._shapes: dict[int, PlanShape] = {}
         self._roads: dict[int, Elements] = {}
         self._elites: list[int] = []
 
     def tell(self, results: Sequence[Result]) -> None:
-        """Adds results to the map; everything else is computed in ``ask``."""
+        """Adds results to the maps; everything else is computed in ``ask``."""
         for result in results:
             if is_usable(result):
                 assert result.margin is not None
                 self._results[result.number] = result
-                self._archive.add(result.number, result.features, -result.margin, result.failed)
+                for each in self._maps:
+                    each.add(result.number, result.features, -result.margin, result.failed)
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
         """Proposes the candidates that are most valuable for the goal."""
         rng = batch_rng(self._cell, batch)
         self._look(pool)
-        self._elites = self._archive.elites() or list(self._results)
+        elites = dict.fromkeys(number for each in self._maps for number in each.elites())
+        self._elites = [*elites] or list(self._results)
         found = self._bisected(batch, n, pool) if self._goal == "boundary" else []
         missing = n - len(found)
         tasks = [self._task(rng) for _ in range(missing * self._wanted.candidates)]
-        fresh = make_candidates(tasks, pool)
-        fresh = dissimilar(fresh, [one.shape for one in self._looks.values()], self._wanted.apart) or fresh
-        return proposals_of(self._cell, first, n, [*found, *self._chosen(fresh, missing)])
+        sketches = [one for one in pool.map(sketch, tasks) if one is not None]
+        found += self._built(self._chosen(sketches, SPARE * missing), missing, pool)
+        return proposals_of(self._cell, first, n, found)
 
     def _look(self, pool: Pool) -> None:
-        """Computes features and shapes of roads added since the last call; keeps those of the last 1500."""
+        """Sketches the roads added since the last call; keeps those of the last 1500."""
         known = list(self._results)[-MOST:]
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         new = [number for number in known if number not in self._looks]
         designs = [self._results[number].design for number in new]
-        looks = pool.map(describe_known, [(design, self._setting) for design in designs if design])
-        self._looks |= dict(zip(new, looks, strict=True))
+        found = pool.map(sketch_of, [(design, self._setting) for design in designs if design])
+        for number, (look, shape) in zip(new, found, strict=True):
+            self._looks[number], self._shapes[number] = look, shape
+
+    def _built(self, sketches: Sequence[Sketch], n: int, pool: Pool) -> list[Candidate]:
+        """Returns the first n sketches that keep every requirement and rule and resemble no tested road."""
+        found: list[Candidate] = []
+        shapes = [self._shapes[number] for number in self._looks]
+        at = 0
+        while len(found) < n and at < len(sketches):
+            some = sketches[at : at + n - len(found)]
+            at += len(some)
+            for one in pool.map(candidate_of, [(each, self._setting) for each in some]):
+                if one is not None and is_far(one.shape, shapes, self._wanted.apart):
+                    found.append(one)
+                    shapes.append(one.shape)
+        return found
 
     def _task(self, rng: np.random.Generator) -> VariationTask:
         """Draws the task to make one candidate: a variation of one elite, a crossover of two, or a new road.
@@ -111,30 +137,35 @@ class QualityDiversity:
             elites = failed
         return elites[int(rng.integers(len(elites)))]
 
-    def _chosen(self, candidates: list[Candidate], n: int) -> list[Candidate]:
-        if len(self._looks) < FEWEST or not candidates:
-            return (
-                spread_out(candidates, n, hazard_of([one.surrogate_features for one in candidates]))
-                if candidates
-                else []
-            )
-        counts: Counter[int] = self._archive.tests if self._goal == "coverage" else self._archive.failures
-        expected = self._expected(candidates)
-        return select(self._goal, n, candidates, expected, counts, self._wanted.apart)
+    def _chosen(self, sketches: Sequence[Sketch], n: int) -> list[Sketch]:
+        """Returns up to n sketches, the most valuable first."""
+        if not sketches:
+            return []
+        features = [one.surrogate_features for one in sketches]
+        if len(self._looks) < FEWEST:
+            return [sketches[i] for i in spread_out(features, n, hazard_of(features))]
+        is_coverage = self._goal == "coverage"
+        counts = [each.tests if is_coverage else each.failures for each in self._maps]
+        return [sketches[i] for i in select(self._goal, n, self._expected(sketches), counts)]
 
-    def _expected(self, candidates: Sequence[Candidate]) -> Predictions:
-        """Returns the predictions of the surrogate's trees for candidates."""
+    def _expected(self, sketches: Sequence[Sketch]) -> Predictions:
+        """Returns the predictions of the surrogate's trees for sketches."""
         outcomes = [self._outcome(self._results[number]) for number in self._looks]
-        model = Surrogate([one.surrogate_features for one in self._looks.values()], outcomes)
-        opinions = model.opinions([one.surrogate_features for one in candidates])
-        places = np.zeros((TREES, len(candidates), len(self._wanted.axes)))
-        for column, axis in enumerate(self._wanted.axes):
+        guesses = {1 + self._driven.index("STD_SA"): STEERING} if "STD_SA" in self._driven else {}
+        model = Surrogate([one.surrogate_features for one in self._looks.values()], outcomes, guesses)
+        opinions = model.opinions([one.surrogate_features for one in sketches])
+        cells = tuple(self._cells(each, opinions, sketches) for each in self._maps)
+        return Predictions(opinions[..., 0], cells)
+
+    def _cells(self, archive: Archive, opinions: Array, sketches: Sequence[Sketch]) -> NDArray[np.intp]:
+        """Returns the cells ``(trees, n)`` of a map that the trees predict for n sketches."""
+        places = np.zeros((TREES, len(sketches), len(archive.axes)))
+        for column, axis in enumerate(archive.axes):
             if axis in self._driven:
                 places[..., column] = opinions[..., 1 + self._driven.index(axis)]
             else:
-                places[..., column] = [one.features.get(axis, 0.0) for one in candidates]
-        cells = self._archive.cells(places.reshape(-1, places.shape[-1])).reshape(places.shape[:2])
-        return Predictions(opinions[..., 0], cells)
+                places[..., column] = [one.features.get(axis, 0.0) for one in sketches]
+        return archive.cells(places.reshape(-1, places.shape[-1])).reshape(places.shape[:2])
 
     def _outcome(self, result: Result) -> list[float]:
         assert result.margin is not None
