@@ -13,9 +13,9 @@ from ribs.archives import CVTArchive, GridArchive
 from roadgpt.brief.element import Element
 from roadgpt.campaign.acquisition import (
     ANYWHERE,
+    NOVELTY,
     Predictions,
-    dissimilar,
-    far_from,
+    is_far,
     select,
     spread_out,
     stacked,
@@ -23,9 +23,7 @@ from roadgpt.campaign.acquisition import (
 from roadgpt.campaign.archive import SAMPLES, Archive
 from roadgpt.campaign.behaviour import bounds_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, paired
-from roadgpt.campaign.variation import Candidate
 from roadgpt.design.variety import PlanShape, apart, shape_of
-from roadgpt.road import Design, Segment
 
 AXES = ("MAX_CURV", "STD_SA")
 TESTS = st.lists(
@@ -126,18 +124,10 @@ def test_what_has_no_place_is_left_out() -> None:
     assert not archive.failures
 
 
-DESIGN = Design(starting_point=(0, 0, 0), theta=0, segments=(Segment(distance=50, direction="straight"),))
-
-
 def line(bend: float) -> PlanShape:
     """A road of 100 m with that curvature."""
     s = np.linspace(0.0, 100.0, 101)
     return shape_of(s, np.concatenate([[0j], np.cumsum(np.exp(1j * bend * s[:-1]))]))
-
-
-def some(n: int, seed: int) -> list[Candidate]:
-    rng = np.random.default_rng(seed)
-    return [Candidate(DESIGN, str(i), {}, rng.random(4), line(rng.uniform(0, 0.05))) for i in range(n)]
 
 
 @settings(max_examples=25)
@@ -145,12 +135,11 @@ def some(n: int, seed: int) -> list[Candidate]:
 def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, seed: int, goal: str) -> None:
     rng = np.random.default_rng(seed)
     trees = 5
-    expected = Predictions(rng.normal(0.2, 0.5, (trees, n)), rng.integers(0, 4, (trees, n)))
-    counts = Counter({0: 3, 1: 1})
-    candidates = some(n, seed)
-    found = select(goal, wanted, candidates, expected, Counter(counts), 2.0)  # type: ignore[arg-type]
-    origins = [one.origin for one in found]
-    known = {cell: float(counts[cell]) for cell in range(4)}
+    cells = rng.integers(0, 4, (trees, n)), rng.integers(0, 3, (trees, n))
+    expected = Predictions(rng.normal(0.2, 0.5, (trees, n)), cells)
+    counts = Counter({0: 3, 1: 1}), Counter({2: 2})
+    found = select(goal, wanted, expected, [Counter(one) for one in counts])  # type: ignore[arg-type]
+    known = [{cell: float(one[cell]) for cell in range(4)} for one in counts]
     left, slow = list(range(n)), []
     while len(slow) < wanted and left:
 
@@ -159,46 +148,47 @@ def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, s
             for tree in range(trees):
                 weight = 1.0 if goal == "coverage" else float(expected.margins[tree, i] <= 0)
                 floor = 0.0 if goal == "coverage" else ANYWHERE
-                total += weight * (floor + 1 / (1 + known[int(expected.cells[tree, i])]))
+                new = [
+                    1 / (1 + its[int(own[tree, i])]) ** NOVELTY for its, own in zip(known, cells, strict=True)
+                ]
+                total += weight * (floor + sum(new) / 2)
             return round(total / trees, 12)
 
         # of equal worth either may come first, as rounding has it
-        best = max(left, key=lambda i: (worth(i), origins[len(slow) :][:1] == [str(i)], -i))
+        best = max(left, key=lambda i: (worth(i), found[len(slow) :][:1] == [i], -i))
         slow.append(best)
         for tree in range(trees):
             weight = 1.0 if goal == "coverage" else float(expected.margins[tree, best] <= 0)
-            known[int(expected.cells[tree, best])] += weight / trees
-        shape = candidates[best].shape
-        left = [i for i in left if i != best and apart(shape, stacked([candidates[i].shape]))[0] >= 2.0]
-    assert [int(origin) for origin in origins] == slow
+            for its, own in zip(known, cells, strict=True):
+                its[int(own[tree, best])] += weight / trees
+        left = [i for i in left if i != best]
+    assert found == slow
 
 
 def test_the_hardest_is_the_smallest_margin_that_is_likely() -> None:
     margins = np.array([[0.5, 0.1, 1.0], [0.5, 0.3, 0.0]])
-    expected = Predictions(margins, np.zeros((2, 3), int))
-    found = select("hardest", 3, some(3, 1), expected, Counter(), 0.0)
-    assert [one.origin for one in found] == ["2", "1", "0"]
+    expected = Predictions(margins, (np.zeros((2, 3), int),))
+    assert select("hardest", 3, expected, [Counter()]) == [2, 1, 0]
 
 
-def test_roads_like_known_ones_are_left_out() -> None:
-    candidates = some(20, 4)
-    known = [candidates[3].shape, candidates[11].shape]
-    kept = dissimilar(candidates, known, 1.0)
-    for one in candidates:
-        near = min(float(apart(one.shape, stacked([shape]))[0]) for shape in known)
-        assert (one in kept) == (near >= 1.0)
-    assert dissimilar(candidates, [], 1.0) == candidates
-    assert far_from(candidates, candidates[0].shape, 0.0).all()
+@given(st.integers(0, 20), st.floats(0.1, 4))
+def test_roads_like_known_ones_are_told_from_others(seed: int, least: float) -> None:
+    rng = np.random.default_rng(seed)
+    one, *known = (line(rng.uniform(0, 0.05)) for _ in range(6))
+    near = min(float(apart(one, stacked([shape]))[0]) for shape in known)
+    assert is_far(one, known, least) == (near >= least)
+    assert is_far(one, [], least)
+    assert is_far(one, [one], 0.0)
 
 
 @given(st.integers(1, 15), st.integers(1, 20), st.integers(0, 50))
 def test_what_is_spread_comes_from_the_harder_half(n: int, wanted: int, seed: int) -> None:
-    candidates = some(n, seed)
-    hazard = np.random.default_rng(seed).random(n)
-    found = spread_out(candidates, wanted, hazard)
+    rng = np.random.default_rng(seed)
+    hazard = rng.random(n)
+    found = spread_out([*rng.random((n, 4))], wanted, hazard)
     assert len(found) == min(n, wanted)
-    assert len({one.origin for one in found}) == len(found)
-    ranks = [int((hazard > hazard[int(one.origin)]).sum()) for one in found]
+    assert len(set(found)) == len(found)
+    ranks = [int((hazard > hazard[i]).sum()) for i in found]
     assert max(ranks) < max(wanted, math.ceil(n / 2))
     assert min(ranks) == 0
 

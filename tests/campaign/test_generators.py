@@ -239,7 +239,7 @@ def test_being_told_is_quick() -> None:
         ({"axes": ["HEIGHT"]}, "no feature 'HEIGHT'"),
         ({"cells": 1}, "cells"),
         ({"batch": 0}, "batch"),
-        ({"axis": ["MAX_CURV"]}, "is unknown; there are batch, axes, archive"),
+        ({"axis": ["MAX_CURV"]}, "is unknown; there are batch, axes, also, archive"),
         ({"archive": "heap"}, "archive"),
     ],
 )

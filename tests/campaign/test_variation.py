@@ -18,7 +18,6 @@ from roadgpt.campaign.variation import (
     Kind,
     VariationContext,
     VariationTask,
-    describe_known,
     make_candidate,
 )
 from roadgpt.check import sbft_verdict
@@ -125,13 +124,6 @@ def test_parents_are_left_as_they_are() -> None:
     assert [one.design.model_dump_json() for one in drafts(PLANS[0])] == before
 
 
-def test_a_road_is_seen_again_as_it_was_seen_first() -> None:
-    for one in drafts(PLANS[3]):
-        again = describe_known((one.design, setting(PLANS[3])))
-        assert again.features == one.features
-        assert np.array_equal(again.surrogate_features, one.surrogate_features)
-
-
 @settings(max_examples=30)
 @given(st.integers(0, 4), st.sampled_from(PLANS))
 def test_elements_give_the_road_back(number: int, line: str) -> None:
@@ -185,7 +177,8 @@ def test_changes_stay_within_what_roads_may_be(elements: Elements, seed: int, na
         assert (0 < element.straight <= 150) if not element.turn else (14 < element.radius <= 120)
     if MUTATIONS[name].is_numeric:
         assert [np.sign(element.turn) for element in after] == [np.sign(element.turn) for element in elements]
-        assert sum(a != b for a, b in zip(elements, after, strict=True)) <= 1
+        changed = sum(a != b for a, b in zip(elements, after, strict=True))
+        assert changed <= (len(elements) if name == "packed" else 1)
     again = MUTATIONS[name].make(elements, np.random.default_rng(seed), WORLD)
     assert again == after
 

@@ -6,6 +6,7 @@ failures   the higher its predicted probability of failing, the more valuable; c
            far have a higher weight
 coverage   the fewer tests its predicted cell has, the more valuable
 hardest    the smaller the mean of the predicted margins minus their spread, the more valuable
+boundary   as for failures, but most valuable where failing is as likely as not
 """
 
 from collections import Counter
@@ -19,7 +20,8 @@ from roadgpt.campaign.model import Goal
 from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
 
-ANYWHERE = 0.05  # weight of a failure in a cell with many failures; a first failure weighs about 1
+ANYWHERE = 0.03  # weight of a failure in a cell with many failures; a first failure weighs about 1
+NOVELTY = 3  # where there are k failures, one more is worth 1 / (1 + k) to this power
 
 
 class Predictions(NamedTuple):
@@ -41,7 +43,7 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
         counts: for each map, the number of failures so far in each cell; for the goal "coverage", of tests.
     """
     weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
-    maps = [_Map.of(cells, known) for cells, known in zip(expected.cells, counts, strict=True)]
+    maps = [CountedCells.of(cells, known) for cells, known in zip(expected.cells, counts, strict=True)]
     is_left = np.ones(expected.margins.shape[1], bool)
     out: list[int] = []
     while len(out) < n and is_left.any():
@@ -49,8 +51,10 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
             value = expected.margins.std(axis=0) - expected.margins.mean(axis=0)
         else:
             floor = 0.0 if goal == "coverage" else ANYWHERE
-            worth = sum(1 / (1 + one.known[one.cells]) ** 2 for one in maps) / len(maps)
+            worth = sum(1 / (1 + one.known[one.cells]) ** NOVELTY for one in maps) / len(maps)
             value = (weight * (floor + worth)).mean(axis=0)
+            if goal == "boundary":
+                value *= 1 - weight.mean(axis=0)
         best = int(np.argmax(np.where(is_left, value, -np.inf)))
         out.append(best)
         for one in maps:
@@ -59,14 +63,14 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
     return out
 
 
-class _Map(NamedTuple):
+class CountedCells(NamedTuple):
     """The predicted cells of one map, numbered anew from 0, and what is known of each."""
 
     cells: NDArray[np.intp]
     known: Array
 
     @classmethod
-    def of(cls, cells: NDArray[np.intp], counts: Counter[int]) -> "_Map":
+    def of(cls, cells: NDArray[np.intp], counts: Counter[int]) -> "CountedCells":
         """Numbers the cells anew, so that the counts are an array."""
         used, index = np.unique(cells, return_inverse=True)
         return cls(index.reshape(cells.shape), np.array([float(counts[int(cell)]) for cell in used]))

@@ -17,7 +17,6 @@ from roadgpt.campaign.mutation import crossed_over, mutated
 from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
 from roadgpt.campaign.variation import (
     CHANGED_TOO,
-    NUMERIC,
     ROUNDS,
     Candidate,
     VariationContext,
@@ -99,7 +98,7 @@ def _varied(task: VariationTask, parents: Sequence[Elements], rng: np.random.Gen
     if len(parents) > 1 and rng.random() >= CHANGED_TOO:
         return elements
     for _ in range(ROUNDS if task.kind == "wild" else 1):
-        elements = mutated(elements, rng, task.setting.world, NUMERIC[0])
+        elements = mutated(elements, rng, task.setting.world, task.numeric)
     return elements
 
 

@@ -74,12 +74,8 @@ def target_of(margin: float, failed: bool) -> float:
 
 def _best_guess(looks: Array, columns: Sequence[int], values: Array) -> tuple[int, float]:
     """Returns the column to which the values are most nearly proportional, and the factor."""
-    factors = [
-        float(looks[:, one] @ values / max(looks[:, one] @ looks[:, one], LEAST_SQUARE)) for one in columns
-    ]
-    errors = [
-        float(((values - factor * looks[:, one]) ** 2).sum())
-        for one, factor in zip(columns, factors, strict=True)
-    ]
+    guesses = looks[:, list(columns)]
+    factors = values @ guesses / np.maximum((guesses**2).sum(axis=0), LEAST_SQUARE)
+    errors = ((values[:, None] - factors * guesses) ** 2).sum(axis=0)
     best = int(np.argmin(errors))
-    return columns[best], factors[best]
+    return columns[best], float(factors[best])

@@ -66,6 +66,8 @@ class VariationTask(NamedTuple):
     setting: VariationContext
     share: float = 0.5
     """Position of a road between its two parents: 0 gives the first parent, 1 the second."""
+    numeric: float = NUMERIC[0]
+    """Probability, 0 to 1, that a sketch keeps the sequence of turns and straights of its parent."""
 
 
 class Candidate(NamedTuple):
@@ -172,16 +174,6 @@ def described(design: Design, road: Road, origin: str, setting: VariationContext
     features = features_of(samples.points) | behaviour_of(road, setting.brief)
     shape = shape_of(samples.s, samples.x + 1j * samples.y)
     return Candidate(design, origin, features, surrogate_features_of(road, setting.world), shape)
-
-
-def describe_known(known: tuple[Design, VariationContext]) -> Candidate:
-    """Returns the Candidate of a design that has already been driven, with the features of its road.
-
-    Args:
-        known: the design, and the requirements, world and rules of its cell.
-    """
-    design, setting = known
-    return described(design, setting.world.lay(build(design)), "", setting)
 
 
 def _place_between(one: Design, other: Design, share: float) -> MapPose:

@@ -31,7 +31,7 @@ from roadgpt.campaign.search import (
 from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
 from roadgpt.campaign.surrogate_features import STEERING, hazard_of
-from roadgpt.campaign.variation import Candidate, Kind, VariationTask
+from roadgpt.campaign.variation import NUMERIC, Candidate, Kind, VariationTask
 from roadgpt.design.elements import elements_of
 from roadgpt.design.variety import PlanShape
 from roadgpt.geometry.curve import Array
@@ -39,6 +39,7 @@ from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
 OFTEN = (0.7, 0.27, 0.03)  # share of sketches of each kind, once there are results
+OFTEN_AT_BOUNDARY = (0.97, 0.0, 0.03)  # a cross has hardly any relatives
 SPARE = 3  # sketches that are kept for each road to drive, since some violate a requirement or a rule
 FAILED_PARENTS = 0.5  # share of parents drawn from failed elites; the others are drawn from all elites
 BISECTED = 0.6  # share of a batch that lies between two tests, if the goal is the boundary
@@ -122,13 +123,16 @@ class QualityDiversity:
     def _task(self, rng: np.random.Generator) -> VariationTask:
         """Draws the task to make one candidate: a variation of one elite, a crossover of two, or a new road.
         Elites that failed are preferred, unless the goal is coverage."""
-        kind = KINDS[int(rng.choice(len(KINDS), p=OFTEN))] if self._results else "wild"
+        often = OFTEN_AT_BOUNDARY if self._goal == "boundary" else OFTEN
+        kind = KINDS[int(rng.choice(len(KINDS), p=often))] if self._results else "wild"
         seed = (int(rng.integers(2**53)),)
         if kind == "wild":
             return VariationTask(kind, (), "draft", seed, self._setting)
         numbers = [self._parent(rng) for _ in range(1 + (kind == "cross"))]
         parents = tuple(d for number in numbers if (d := self._results[number].design))
-        return VariationTask(kind, parents, f"{kind} {'+'.join(map(str, numbers))}", seed, self._setting)
+        origin = f"{kind} {'+'.join(map(str, numbers))}"
+        numeric = NUMERIC[self._goal == "boundary"]  # relatives have the same row of turns and straights
+        return VariationTask(kind, parents, origin, seed, self._setting, numeric=numeric)
 
     def _parent(self, rng: np.random.Generator) -> int:
         elites = self._elites

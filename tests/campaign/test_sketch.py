@@ -1,0 +1,123 @@
+"""Sketches say beforehand what is then measured on the road that is built."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from roadgpt import check
+from roadgpt.brief import read
+from roadgpt.campaign.behaviour import behaviour_of
+from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
+from roadgpt.campaign.surrogate_features import NAMES, STEERING, surrogate_features_of
+from roadgpt.campaign.variation import Kind, VariationContext, VariationTask
+from roadgpt.check import sbft_verdict
+from roadgpt.design import draft
+from roadgpt.road import Design, Road, Site, World, build
+from roadgpt.run import prove
+from roadgpt.run.features import features_of
+
+WORLD = World(site=Site(map_size=200.0, z_floor=0.0))
+PLANS = ("| flat turns=1..", "turn x3 | up", "serpentine")
+AXES = ("MAX_CURV", "STD_SA", "DIR_COV", "TURNED", "LENGTH")
+
+
+@cache
+def setting(line: str) -> VariationContext:
+    return VariationContext(read(line, reader="plan"), WORLD, "sbft", AXES)
+
+
+@cache
+def parents(line: str) -> tuple[Design, ...]:
+    brief = setting(line).brief
+    assert brief is not None
+    return tuple(draft(brief, WORLD, seed=seed) for seed in range(4))
+
+
+def sketched(line: str, kind: Kind, seed: int) -> Sketch | None:
+    own = parents(line)[: {"vary": 1, "cross": 2}.get(kind, 0)]
+    return sketch(VariationTask(kind, own, kind, (seed,), setting(line)))
+
+
+KINDS = st.sampled_from(["vary", "cross", "wild"])
+
+
+@settings(max_examples=25)
+@given(st.sampled_from(PLANS), KINDS, st.integers(0, 2**40))
+def test_what_is_built_keeps_the_brief_and_every_rule(line: str, kind: Kind, seed: int) -> None:
+    one = sketched(line, kind, seed)
+    made = candidate_of((one, setting(line))) if one else None
+    if made is None:
+        return
+    road = build(made.design)
+    assert not check.inspect(road, setting(line).brief, WORLD)
+    assert sbft_verdict(road.control_points(), WORLD.site.map_size)[0]
+
+
+@settings(max_examples=25)
+@given(KINDS, st.integers(0, 2**40))
+def test_a_sketch_says_what_the_built_road_has(kind: Kind, seed: int) -> None:
+    """The measures of the built road come from exact curves that are sampled anew."""
+    one = sketched(PLANS[0], kind, seed)
+    made = candidate_of((one, setting(PLANS[0]))) if one else None
+    if one is None or made is None:
+        return
+    road = build(made.design)
+    points = road.sample().points
+    measured = features_of(points) | behaviour_of(road, None)
+    assert set(one.features) == {"MAX_CURV", "DIR_COV", "TURNED", "LENGTH"}
+    assert one.features["MAX_CURV"] == pytest.approx(measured["MAX_CURV"], rel=0.03, abs=0.001)
+    assert one.features["DIR_COV"] == pytest.approx(measured["DIR_COV"], abs=1.5 / 26)
+    assert one.features["LENGTH"] == pytest.approx(measured["LENGTH"], abs=0.5)
+    assert one.features["TURNED"] == pytest.approx(measured["TURNED"], abs=8)
+    seen, real = one.surrogate_features, surrogate_features_of(road, WORLD)
+    curvatures = [i for i, name in enumerate(NAMES) if name.startswith(("left_", "right_", "mean", "root"))]
+    apart = np.abs(seen[curvatures] - real[curvatures])
+    assert (
+        np.sort(apart)[-3] < 0.06
+    )  # a bend that begins where the car is no longer slow counts whole or in part
+    assert apart.max() < 0.3
+    assert seen[STEERING[0]] == pytest.approx(real[STEERING[0]], rel=0.05, abs=0.02)
+
+
+def test_a_design_is_sketched_as_it_was() -> None:
+    for seed in range(8):
+        one = sketched(PLANS[1], "vary", seed)
+        made = candidate_of((one, setting(PLANS[1]))) if one else None
+        if one and made:
+            again, shape = sketch_of((made.design, setting(PLANS[1])))
+            assert again.features == pytest.approx(one.features, abs=0.04)
+            assert again.surrogate_features == pytest.approx(one.surrogate_features, abs=0.05)
+            assert np.allclose(shape.spread, made.shape.spread, atol=0.2)
+
+
+def test_the_same_task_gives_the_same_sketch_and_another_seed_another() -> None:
+    one, same, other = (sketched(PLANS[0], "vary", seed) for seed in (5, 5, 6))
+    assert one
+    assert same
+    assert other
+    assert one.elements == same.elements
+    assert one.place == same.place
+    assert one.elements != other.elements
+
+
+def test_the_steering_of_a_sketch_is_nearly_that_of_the_drive() -> None:
+    """In proportion, on roads that the car drives to their end: r above 0.9."""
+    found = []
+    for seed in range(24):
+        one = sketched(PLANS[0], "wild", seed)
+        made = candidate_of((one, setting(PLANS[0]))) if one else None
+        if one and made:
+            run = prove(build(made.design), 0, WORLD)
+            if run.outcome == "PASS":
+                found.append((one.surrogate_features[STEERING[0]], steering(run.road, run.drive)))
+    assert len(found) >= 8
+    assert np.corrcoef(np.array(found).T)[0, 1] > 0.9
+
+
+def steering(road: Road | None, drive: object) -> float:
+    """Standard deviation of the front wheels' angle, from the drive alone."""
+    assert road is not None
+    return float(np.std(np.array(drive["steer"])))  # type: ignore[index]
