@@ -367,6 +367,7 @@ def main() -> None:
     )
     parser.add_argument("--whole", action="store_true", help="all settings, 10 seeds of 200 tests")
     parser.add_argument("--seeds", type=int)
+    parser.add_argument("--first-seed", type=int, default=1)
     parser.add_argument("--tests", type=int)
     parser.add_argument("--settings", nargs="+", choices=list(SETTINGS))
     parser.add_argument("--methods", nargs="+", choices=["walk", *SEARCHES])
@@ -382,7 +383,7 @@ def main() -> None:
             (method == "walk" and SETTINGS[setting].borrows) or setting, method, seed, tests, asked.referee
         ): 0
         for setting in settings
-        for seed in range(1, seeds + 1)
+        for seed in range(asked.first_seed, asked.first_seed + seeds)
         for method in SETTINGS[setting].methods
         if not asked.methods or method in asked.methods
     }

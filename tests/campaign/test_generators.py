@@ -171,7 +171,7 @@ def best_fit(one: np.ndarray, other: np.ndarray) -> float:
 
 
 def test_the_boundary_is_closed_in_on() -> None:
-    cell = cell_for("quality_diversity", FLAT, goal="boundary", batch=8)
+    cell = cell_for("quality_diversity", FLAT, goal="boundary", batch=8, candidates=10)
     results, _ = searched(cell, 10)
     between = [result for result in results if result.proposal.origin.startswith("between")]
     assert between

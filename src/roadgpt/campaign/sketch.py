@@ -12,11 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.element import Elements
+from roadgpt.brief.outline import outline
 from roadgpt.campaign.behaviour import behaviour_of_line
 from roadgpt.campaign.mutation import crossed_over, mutated
 from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
 from roadgpt.campaign.variation import (
     CHANGED_TOO,
+    NOBODY,
+    NUMERIC,
     ROUNDS,
     Candidate,
     VariationContext,
@@ -31,7 +34,8 @@ from roadgpt.design.writing import design_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design
 
-TRIES = 4  # mutations that are tried for one sketch, until one has room on the map
+TRIES = 6  # mutations that are tried for one sketch, until one has room on the map
+BOLD = 2  # of these; later tries mostly change only numbers, which violates fewer requirements
 
 
 class Sketch(NamedTuple):
@@ -55,8 +59,11 @@ def sketch(task: VariationTask) -> Sketch | None:
         parents = [elements_of(found[0].segments)] if found else []
     else:
         parents = [elements_of(design.segments) for design in task.parents]
-    for _ in range(TRIES if parents else 0):
-        elements = _varied(task, parents, rng)
+    asked = outline(task.setting.brief or NOBODY).turns
+    for attempt in range(TRIES if parents else 0):
+        elements = _varied(task, parents, rng, task.numeric if attempt < BOLD else NUMERIC[1])
+        if not asked.lo <= sum(element.turn != 0 for element in elements) <= asked.hi:
+            continue
         line = walk([as_written(element) for element in elements])
         where = place(line, task.setting.world, rng)
         if where is not None and keeps_clear(line, task.setting.world, with_shoulders=False):
@@ -93,12 +100,14 @@ def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
     return Candidate(found[0], one.origin, one.features, one.surrogate_features, shape)
 
 
-def _varied(task: VariationTask, parents: Sequence[Elements], rng: np.random.Generator) -> Elements:
+def _varied(
+    task: VariationTask, parents: Sequence[Elements], rng: np.random.Generator, numeric: float
+) -> Elements:
     elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
     if len(parents) > 1 and rng.random() >= CHANGED_TOO:
         return elements
     for _ in range(ROUNDS if task.kind == "wild" else 1):
-        elements = mutated(elements, rng, task.setting.world, task.numeric)
+        elements = mutated(elements, rng, task.setting.world, numeric)
     return elements
 
 

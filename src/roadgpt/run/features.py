@@ -33,10 +33,25 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
     """
     plan = np.asarray(points, float)[:, :2]
     found = {"MAX_CURV": max_curvature(plan), "DIR_COV": direction_coverage(plan)}
-    if len(records) >= FEWEST_RECORDS:
-        found["STD_SA"] = float(np.std([record.steering for record in records]))
-        found["MEAN_LP"] = float(np.mean([record.oob_distance for record in records]))
-        found["MAX_LP"] = float(np.max([record.oob_distance for record in records]))
+    found = {name: round(value, 6) for name, value in found.items()}
+    steering = [record.steering for record in records]
+    return found | features_of_drive(steering, [record.oob_distance for record in records])
+
+
+def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> dict[str, float]:
+    """Returns the features of a drive, by name; with fewer than three records there are none.
+
+    Args:
+        steering: angle of the steering wheel in degrees at each record.
+        distances: ``oob_distance`` in metres at each record.
+    """
+    if len(steering) < FEWEST_RECORDS:
+        return {}
+    found = {
+        "STD_SA": float(np.std(steering)),
+        "MEAN_LP": float(np.mean(distances)),
+        "MAX_LP": float(np.max(distances)),
+    }
     return {name: round(value, 6) for name, value in found.items()}
 
 

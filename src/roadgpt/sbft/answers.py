@@ -86,7 +86,8 @@ def spread(segments: Any) -> tuple[float, float]:
     return found.mean, found.deviation
 
 
-_ROADS: list[Iterator[Any]] = []
+_ASKED: list[tuple[Any, Iterator[Any]]] = []
+"""The generator that was begun, and its roads."""
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
@@ -98,12 +99,13 @@ def begin(map_size: int | None = None, **asked: Any) -> None:
     """
     from roadgpt.sbft.generator import RoadGPTTestGenerator
 
-    if unknown := set(asked) - {"description", "seed", "designer", "reader"}:
+    if unknown := set(asked) - {"description", "seed", "designer", "reader", "search"}:
         raise UsageError(
             f"RoadGPT knows no {', '.join(sorted(unknown))}; are client and RoadGPT of one version?"
         )
     made = type("Asked", (RoadGPTTestGenerator,), asked)
-    _ROADS[:] = [made(None, map_size).roads()]
+    generator = made(None, map_size)
+    _ASKED[:] = [(generator, generator.roads())]
 
 
 def another() -> Points:
@@ -113,12 +115,18 @@ def another() -> Points:
         UsageError: ``begin`` was not called, or there are no more roads.
         BriefError, DesignError: as for RoadGPTTestGenerator.
     """
-    if not _ROADS:
+    if not _ASKED:
         raise UsageError("no description was given; begin with one")
-    road = next(_ROADS[0], None)
+    road = next(_ASKED[0][1], None)
     if road is None:
         raise UsageError("there are no more roads of this description; begin again")
     return [list(point) for point in road]
+
+
+def tell(outcome: str, steering: list[float], distances: list[float]) -> None:
+    """Reports the outcome of the last road that was asked for, with two columns of its execution data."""
+    if _ASKED:
+        _ASKED[0][0].tell_columns(outcome, steering, distances)
 
 
 def distance(one: Any, other: Any) -> float:
@@ -138,6 +146,7 @@ OPS: dict[Any, Callable[..., Any]] = {
     "spread": spread,
     "begin": begin,
     "next": another,
+    "tell": tell,
 }
 
 

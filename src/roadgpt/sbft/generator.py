@@ -1,9 +1,10 @@
-"""RoadGPT as a generator in the competition's own pipeline; it designs roads that meet a description.
+"""RoadGPT as a generator in the competition's own pipeline; it searches among the roads that meet a
+description for those on which the car fails.
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 
 The roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
-ROADGPT_READER) or by a subclass:
+ROADGPT_READER, ROADGPT_SEARCH) or by a subclass:
 
     class Hairpins(RoadGPTTestGenerator):
         description = "three hairpins"
@@ -13,19 +14,22 @@ ROADGPT_READER) or by a subclass:
 import logging
 import os
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from importlib import import_module
 from typing import Any
 
+from roadgpt.brief.model import Brief
 from roadgpt.chat import ReplyError
 from roadgpt.check import sbft_verdict
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.road import Design, Road, Site, World
 from roadgpt.run import Setup, brief_of, perform
+from roadgpt.sbft.search import RoadSearch
 
 log = logging.getLogger(__name__)
 
-USUAL = "a winding road with at least 3 turns"
+USUAL = "a flat road"
 MAP_SIZE = 200  # m, the competition's
 DECIMALS = 5
 DENSE = 2.0  # m, largest distance of road points at which the competition's spline keeps the radii
@@ -43,6 +47,9 @@ class RoadGPTTestGenerator:
     seed = 0
     designer = "planner"
     reader = "model"
+    search = True
+    """Whether outcomes steer the choice of roads. Without a search, or with another designer than
+    ``planner``, roads are drafted one after another."""
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
         """Takes the arguments that the competition passes. Environment variables take precedence over class
@@ -53,6 +60,8 @@ class RoadGPTTestGenerator:
         self.designer = os.environ.get("ROADGPT_DESIGNER", self.designer)
         self.reader = os.environ.get("ROADGPT_READER", self.reader)
         self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
+        self.search = os.environ.get("ROADGPT_SEARCH", "yes" if self.search else "no") != "no"
+        self._told: Callable[[str, Sequence[float], Sequence[float]], None] = _unheard
 
     def start(self) -> None:
         """Submits tests to the executor, one after another, until the budget is used up.
@@ -67,8 +76,23 @@ class RoadGPTTestGenerator:
         for points in self.roads():
             if self.executor.is_over():
                 return
-            outcome, said, _ = self.executor.execute_test(create(points))
+            outcome, said, records = self.executor.execute_test(create(points))
             log.info("%s: %s", outcome, said)
+            self.tell(outcome, records)
+
+    def tell(self, outcome: str, records: Sequence[Any]) -> None:
+        """Reports the outcome of the last road, so that the search learns from it.
+
+        Args:
+            outcome: "PASS", "FAIL" or another outcome of the competition.
+            records: the execution data of the drive; each record has ``steering`` and ``oob_distance``.
+        """
+        steering = [float(record.steering) for record in records]
+        self._told(outcome, steering, [float(record.oob_distance) for record in records])
+
+    def tell_columns(self, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+        """Reports the outcome of the last road as ``tell`` does; ``distances`` holds ``oob_distance``."""
+        self._told(outcome, steering, distances)
 
     def roads(self) -> Iterator[Points]:
         """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
@@ -82,6 +106,40 @@ class RoadGPTTestGenerator:
         brief = brief_of(self.description, world, setup)
         if brief.friction is not None:
             log.warning("the competition's simulator sets the friction; the surface in the words is not used")
+        searches = self.search and self.designer == "planner"
+        made = self._searched(brief, world, setup) if searches else self._drafted(brief, world, setup)
+        failures = 0
+        for road in made:
+            points = road_points(road) if road is not None else None
+            if points is not None and sbft_verdict(points, world.site.map_size)[0]:
+                failures = 0
+                yield points
+                continue
+            failures += 1
+            if failures >= GIVE_UP:
+                raise DesignError(
+                    f"{failures} roads in a row are not valid for the competition on a map of "
+                    f"{self.map_size} m; ask for shorter roads or gentler turns"
+                )
+
+    def _searched(self, brief: Brief, world: World, setup: Setup) -> Iterator[Road | None]:
+        """Yields the roads of a search, which learns from what ``tell`` reports."""
+        tolerance = getattr(self.executor, "oob_tolerance", None)
+        if isinstance(tolerance, int | float) and 0 < tolerance < 1:
+            world = world.changed(oob_tolerance=float(tolerance))
+        official = setup.model_copy(update={"rules": "sbft"})
+        search = RoadSearch(brief, self.description, self.seed, world, official)
+        while True:
+            number, _, road = search.ask()
+            self._told = partial(search.tell, number)
+            yield road
+
+    def _drafted(self, brief: Brief, world: World, setup: Setup) -> Iterator[Road | None]:
+        """Yields drafts; None where no road could be drafted, or where a rule is broken.
+
+        Raises:
+            DesignError, ReplyError: no road could be drafted, many times in a row.
+        """
         earlier: deque[Design] = deque(maxlen=REMEMBERED)
         index = failures = 0
         while True:
@@ -93,19 +151,10 @@ class RoadGPTTestGenerator:
                 if failures >= GIVE_UP:
                     raise
                 continue
+            failures = 0
             if run.design is not None:
                 earlier.append(run.design)
-            points = road_points(run.road) if run.road is not None and run.is_valid else None
-            if points is not None and sbft_verdict(points, world.site.map_size)[0]:
-                failures = 0
-                yield points
-                continue
-            failures += 1
-            if failures >= GIVE_UP:
-                raise DesignError(
-                    f"{failures} roads in a row are not valid for the competition on a map of "
-                    f"{self.map_size} m; ask for shorter roads or gentler turns"
-                )
+            yield run.road if run.is_valid else None
 
 
 def road_points(road: Road) -> Points | None:
@@ -132,3 +181,8 @@ def _chat(made: RoadGPTTestGenerator) -> Any:
 
     parts = (plugins.find("designers", made.designer), plugins.find("readers", made.reader))
     return configured({}) if any(map(asks_a_model, parts)) else None
+
+
+def _unheard(outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+    """Takes an outcome from which nobody learns."""
+    del outcome, steering, distances

@@ -40,7 +40,8 @@ from roadgpt.road import Design
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
 OFTEN = (0.7, 0.27, 0.03)  # share of sketches of each kind, once there are results
 OFTEN_AT_BOUNDARY = (0.97, 0.0, 0.03)  # a cross has hardly any relatives
-SPARE = 3  # sketches that are kept for each road to drive, since some violate a requirement or a rule
+UNTAUGHT = 12  # sketches for each road as long as there are no results: every one needs a draft
+SPARE = 6  # sketches that are kept for each road to drive, since some violate a requirement or a rule
 FAILED_PARENTS = 0.5  # share of parents drawn from failed elites; the others are drawn from all elites
 BISECTED = 0.6  # share of a batch that lies between two tests, if the goal is the boundary
 SHARES = (0.5, 0.3, 0.7)  # position between the roads of a pair; changes by batch, so that roads do too
@@ -91,7 +92,9 @@ class QualityDiversity:
         self._elites = [*elites] or list(self._results)
         found = self._bisected(batch, n, pool) if self._goal == "boundary" else []
         missing = n - len(found)
-        tasks = [self._task(rng) for _ in range(missing * self._wanted.candidates)]
+        usual = self._wanted.candidates
+        each = usual if self._results else min(usual, UNTAUGHT)
+        tasks = [self._task(rng) for _ in range(missing * each)]
         sketches = [one for one in pool.map(sketch, tasks) if one is not None]
         found += self._built(self._chosen(sketches, SPARE * missing), missing, pool)
         return proposals_of(self._cell, first, n, found)

@@ -8,8 +8,9 @@ requests roads from it.
     export ROADGPT_PYTHON=/path/to/roadgpt/environment/bin/python
     python competition.py --time-budget 3600 --module-name roadgpt_client --class-name RoadGPTTestGenerator
 
-The roads are controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER,
-ROADGPT_READER) or by a subclass:
+RoadGPT is told the outcome of every road, and searches for roads on which the car fails. The roads are
+controlled by environment variables (ROADGPT_DESCRIPTION, ROADGPT_SEED, ROADGPT_DESIGNER, ROADGPT_READER,
+ROADGPT_SEARCH) or by a subclass:
 
     from roadgpt_client import RoadGPTTestGenerator
 
@@ -160,6 +161,8 @@ class RoadGPTTestGenerator:
     seed = 0
     designer: Optional[str] = None
     reader: Optional[str] = None
+    search: Optional[bool] = None
+    """False: roads are drafted one after another, and outcomes change nothing."""
     python: Optional[str] = None
     """Path of the interpreter in which RoadGPT is installed; ROADGPT_PYTHON takes precedence."""
 
@@ -167,6 +170,7 @@ class RoadGPTTestGenerator:
         """Takes the arguments that the competition passes."""
         self.executor = executor
         self.map_size = map_size
+        self._roadgpt: Optional[RoadGPT] = None
 
     def start(self) -> None:
         """Submits tests to the executor, one after another, until the budget is used up.
@@ -178,8 +182,16 @@ class RoadGPTTestGenerator:
         for points in self.roads():
             if self.executor.is_over():
                 return
-            outcome, said, _ = self.executor.execute_test(factory.create_road_test(points))
+            outcome, said, records = self.executor.execute_test(factory.create_road_test(points))
             log.info("%s: %s", outcome, said)
+            self.tell(outcome, records)
+
+    def tell(self, outcome: str, records: Any) -> None:
+        """Reports the outcome of the last road and its execution data, so that the search learns from it."""
+        steering = [float(record.steering) for record in records or ()]
+        distances = [float(record.oob_distance) for record in records or ()]
+        if self._roadgpt is not None:
+            self._roadgpt.ask("tell", outcome=outcome, steering=steering, distances=distances)
 
     def roads(self) -> Iterator[Points]:
         """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
@@ -189,12 +201,14 @@ class RoadGPTTestGenerator:
             RoadGPTError: as for ``start``.
         """
         asked = {
-            name: getattr(self, name) for name in ("description", "seed", "designer", "reader", "map_size")
+            name: getattr(self, name)
+            for name in ("description", "seed", "designer", "reader", "search", "map_size")
         }
-        roadgpt = RoadGPT(os.environ.get(PYTHON) or self.python)
+        roadgpt = self._roadgpt = RoadGPT(os.environ.get(PYTHON) or self.python)
         try:
             roadgpt.ask("begin", **{name: value for name, value in asked.items() if value is not None})
             while True:
                 yield [(x, y) for x, y in roadgpt.ask("next")]
         finally:
+            self._roadgpt = None
             roadgpt.close()

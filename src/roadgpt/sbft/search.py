@@ -1,0 +1,111 @@
+"""The search of a campaign, asked for one road at a time; the outcomes may come from another simulator."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+from roadgpt.brief.model import Brief
+from roadgpt.campaign.behaviour import behaviour_of
+from roadgpt.campaign.generators.quality_diversity import QualityDiversity
+from roadgpt.campaign.model import Cell, Proposal, Result
+from roadgpt.design import draft
+from roadgpt.errors import DesignError
+from roadgpt.road import Design, Road, World, build
+from roadgpt.run import Request, Setup
+from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
+
+BATCH = 5  # roads that are chosen together; the outcomes of all earlier ones are known then
+CAR_WIDTH = 2.0  # m, of a usual car, from which the margin of a drive is estimated
+
+T = TypeVar("T")
+U = TypeVar("U")
+
+
+class HerePool:
+    """Runs everything in this process."""
+
+    def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
+        """Returns the results of ``function`` for all items."""
+        return [function(item) for item in items]
+
+
+class RoadSearch:
+    """Searches for roads on which a car fails: ``ask`` returns a road, and ``tell`` receives its outcome.
+
+    A road whose outcome is never told teaches nothing, and does no harm.
+    """
+
+    def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
+        """Begins a search inside a description.
+
+        Args:
+            brief: the requirements that every road keeps.
+            words: the description.
+            seed: seed of the search.
+            world: the map, and the tolerance with which a drive fails.
+            setup: the rules that every road keeps.
+        """
+        request = Request(words=words, seed=seed, world=world, setup=setup)
+        self._cell = Cell("c01", request, brief, "quality_diversity", "failures", {"batch": BATCH})
+        self._search = QualityDiversity(self._cell)
+        self._waiting: deque[Proposal] = deque()
+        self._asked: dict[int, tuple[Road, Result]] = {}
+        self._told: list[Result] = []
+        self._batch = self._number = 0
+
+    def ask(self) -> tuple[int, Design, Road]:
+        """Returns the number of a test, from 1, its design and its road.
+
+        Raises:
+            DesignError: no road can be designed.
+        """
+        while not self._waiting:
+            self._think()
+        proposal = self._waiting.popleft()
+        self._number += 1
+        world, brief = self._cell.request.world, self._cell.brief
+        assert brief is not None
+        design = proposal.design or draft(brief, world, seed=proposal.seed)
+        road = world.lay(build(design))
+        blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
+        self._asked[self._number] = road, blank
+        return self._number, design, road
+
+    def _think(self) -> None:
+        """Chooses the next batch from all that was told."""
+        self._search.tell(self._told)
+        self._told = []
+        found = self._search.ask(self._batch, self._number + 1, BATCH, HerePool())
+        self._batch += 1
+        if not found:
+            raise DesignError("no road was found that keeps the description; ask for less")
+        self._waiting.extend(found)
+
+    def tell(self, number: int, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+        """Receives the outcome of a test.
+
+        Args:
+            number: the number that ``ask`` returned; unknown numbers are ignored.
+            outcome: "PASS" or "FAIL"; after anything else the test teaches nothing.
+            steering: angle of the steering wheel in degrees at each record of the drive.
+            distances: distance in metres from the car's middle to the edge of its lane at each record,
+                negative outside (``oob_distance`` of the competition).
+        """
+        asked = self._asked.pop(number, None)
+        if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
+            return
+        road, blank = asked
+        tolerance = self._cell.request.world.limits.oob_tolerance
+        margin = min(distances) + (tolerance - 0.5) * CAR_WIDTH
+        features = features_of(road.sample().points) | behaviour_of(road, self._cell.brief)
+        features |= features_of_drive(steering, distances)
+        self._told.append(
+            replace(
+                blank,
+                outcome="FAIL" if outcome == "FAIL" else "PASS",
+                length=road.length,
+                margin=min(margin, -1e-3) if outcome == "FAIL" else max(margin, 1e-3),
+                features=features,
+            )
+        )

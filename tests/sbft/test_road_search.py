@@ -1,0 +1,125 @@
+"""The search that competes: it listens to outcomes, whoever tells them, and in another process too."""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from authorities.sbft_official_slow import verdict
+from roadgpt.brief import read
+from roadgpt.check.sbft import radii
+from roadgpt.geometry import interpolate
+from roadgpt.road import Site, World
+from roadgpt.run import Setup
+from roadgpt.sbft import RoadGPTTestGenerator
+from roadgpt.sbft.search import RoadSearch
+
+WORLD = World(site=Site(map_size=200.0))
+FLAT = "| flat turns=1.."
+JUDGED = 8  # roads of a campaign that the slow validator judges
+
+
+class Record(NamedTuple):
+    """What is read of one record of the competition's execution data."""
+
+    steering: float
+    oob_distance: float
+
+
+def tight_right(points: np.ndarray) -> float:
+    """The largest mean curvature over 10 m of a right bend, 1/m, by headings alone."""
+    step = np.diff(points[:, :2], axis=0)
+    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    turned = heading[10:] - heading[:-10]
+    return float(max(-turned.min() / 10, 0.0)) if len(turned) else 0.0
+
+
+def driven(points: np.ndarray) -> tuple[str, list[Record]]:
+    """A car that runs off where right bends are tighter than 17 m over 10 m."""
+    tight = tight_right(points)
+    steering = np.degrees(np.arctan(2.8 / np.maximum(radii(points), 1.0))) * 15
+    nearest = 2.0 - 34 * tight
+    return ("FAIL" if nearest < 0 else "PASS"), [Record(float(one), nearest) for one in steering[:40]]
+
+
+def campaign(
+    tests: int, seed: int, search: bool, heard: Callable[[str], str] = str
+) -> list[tuple[str, float]]:
+    generator = type("Mine", (RoadGPTTestGenerator,), {"seed": seed, "search": search})(None, 200)
+    out = []
+    for points in generator.roads():
+        nodes = np.array(interpolate(np.array(points)))
+        assert len(out) >= JUDGED or verdict(points, 200) == (True, "")
+        outcome, records = driven(nodes)
+        generator.tell(heard(outcome), records)
+        out.append((outcome, tight_right(nodes)))
+        if len(out) == tests:
+            return out
+    raise AssertionError("the roads ended")
+
+
+def test_outcomes_lead_it_to_failures() -> None:
+    """Of 40 roads; the search finds twice the failures of drafts of the same words."""
+    searched, drafted = campaign(40, 3, True), campaign(40, 3, False)
+    found, usual = (sum(outcome == "FAIL" for outcome, _ in some) for some in (searched, drafted))
+    assert found >= max(12, 2 * usual)
+
+
+def test_the_same_outcomes_give_the_same_roads_and_others_give_others() -> None:
+    one, same = campaign(15, 4, True), campaign(15, 4, True)
+    other = campaign(15, 4, True, heard=lambda outcome: "PASS" if outcome == "FAIL" else "FAIL")
+    assert one == same
+    assert one[:5] == other[:5]  # nothing is known yet
+    assert one[10:] != other[10:]
+
+
+def test_what_cannot_be_used_teaches_nothing() -> None:
+    def search() -> RoadSearch:
+        return RoadSearch(read(FLAT, reader="plan"), FLAT, 1, WORLD, Setup(rules="sbft"))
+
+    told, silent = search(), search()
+    for _ in range(12):
+        number, design, _ = told.ask()
+        told.tell(number, "ERROR", [1.0] * 20, [1.0] * 20)
+        told.tell(number, "FAIL", [1.0] * 20, [1.0] * 20)  # it is told of once
+        told.tell(number + 1000, "FAIL", [1.0] * 20, [1.0] * 20)
+        assert silent.ask()[1] == design
+    told.tell(number, "PASS", [], [])
+
+
+CLIENT = """
+import json, sys
+sys.path.insert(0, sys.argv[1])
+import roadgpt_client
+from collections import namedtuple
+Record = namedtuple("Record", "steering oob_distance")
+generator = roadgpt_client.RoadGPTTestGenerator(map_size=200)
+generator.seed = 4
+roads = []
+for points in generator.roads():
+    roads.append(points)
+    if len(roads) == 14:
+        break
+    fails = sys.argv[2] == "fails"
+    records = [Record(30.0 * (i % 7), -1.0 if fails else 0.5) for i in range(30)]
+    generator.tell("FAIL" if fails else "PASS", records)
+print(json.dumps(roads))
+"""
+
+
+def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
+    names = Path(sys.modules[RoadGPTTestGenerator.__module__].__file__ or "").parent / "names"
+    found = {}
+    for how in ("fails", "passes"):
+        words = [sys.executable, "-c", CLIENT, str(names), how]
+        env = {**os.environ, "ROADGPT_PYTHON": sys.executable}
+        done = subprocess.run(words, env=env, capture_output=True, text=True, check=False, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        found[how] = json.loads(done.stdout)
+    assert found["fails"][:5] == found["passes"][:5]
+    assert found["fails"][10:] != found["passes"][10:]
