@@ -176,9 +176,9 @@ def test_roads_like_known_ones_are_told_from_others(seed: int, least: float) -> 
     rng = np.random.default_rng(seed)
     one, *known = (line(rng.uniform(0, 0.05)) for _ in range(6))
     near = min(float(apart(one, stacked([shape]))[0]) for shape in known)
-    assert is_far(one, known, least) == (near >= least)
-    assert is_far(one, [], least)
-    assert is_far(one, [one], 0.0)
+    assert is_far(one, stacked(known), least) == (near >= least)
+    assert is_far(one, None, least)
+    assert is_far(one, stacked([one]), 0.0)
 
 
 @given(st.integers(1, 15), st.integers(1, 20), st.integers(0, 50))

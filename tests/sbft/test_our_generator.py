@@ -128,6 +128,12 @@ def test_the_environment_comes_first(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(UsageError, match="'four'"):
         RoadGPTTestGenerator()
     monkeypatch.setenv("ROADGPT_SEED", "4")
+    monkeypatch.setenv("ROADGPT_SEARCH", "perhaps")
+    with pytest.raises(UsageError, match="'perhaps'; say yes or no"):
+        RoadGPTTestGenerator()
+    monkeypatch.setenv("ROADGPT_SEARCH", "no")
+    assert not RoadGPTTestGenerator().search
+    monkeypatch.delenv("ROADGPT_SEARCH")
     monkeypatch.setenv("ROADGPT_DESCRIPTION", "a straight road of 5 km")
     with pytest.raises(BriefError):
         next(RoadGPTTestGenerator(map_size=200).roads())

@@ -76,9 +76,11 @@ class CountedCells(NamedTuple):
         return cls(index.reshape(cells.shape), np.array([float(counts[int(cell)]) for cell in used]))
 
 
-def is_far(shape: PlanShape, known: Sequence[PlanShape], least: float) -> bool:
-    """Returns whether the shape is at least ``least`` metres RMS away from every known shape."""
-    return not known or not least or float(apart(shape, stacked(known)).min()) >= least
+def is_far(shape: PlanShape, known: PlanShape | None, least: float) -> bool:
+    """Returns whether the shape is at least ``least`` metres RMS away from every one of the stacked shapes;
+    True if there are none.
+    """
+    return known is None or not least or float(apart(shape, known).min()) >= least
 
 
 def stacked(shapes: Sequence[PlanShape]) -> PlanShape:

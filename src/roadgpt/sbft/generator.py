@@ -60,7 +60,7 @@ class RoadGPTTestGenerator:
         self.designer = os.environ.get("ROADGPT_DESIGNER", self.designer)
         self.reader = os.environ.get("ROADGPT_READER", self.reader)
         self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
-        self.search = os.environ.get("ROADGPT_SEARCH", "yes" if self.search else "no") != "no"
+        self.search = _yes_or_no(os.environ.get("ROADGPT_SEARCH"), self.search)
         self._told: Callable[[str, Sequence[float], Sequence[float]], None] = _unheard
 
     def start(self) -> None:
@@ -80,15 +80,15 @@ class RoadGPTTestGenerator:
             log.info("%s: %s", outcome, said)
             self.tell(outcome, records)
 
-    def tell(self, outcome: str, records: Sequence[Any]) -> None:
+    def tell(self, outcome: str, records: Sequence[Any] | None) -> None:
         """Reports the outcome of the last road, so that the search learns from it.
 
         Args:
             outcome: "PASS", "FAIL" or another outcome of the competition.
             records: the execution data of the drive; each record has ``steering`` and ``oob_distance``.
         """
-        steering = [float(record.steering) for record in records]
-        self._told(outcome, steering, [float(record.oob_distance) for record in records])
+        steering = [float(record.steering) for record in records or ()]
+        self._told(outcome, steering, [float(record.oob_distance) for record in records or ()])
 
     def tell_columns(self, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
         """Reports the outcome of the last road as ``tell`` does; ``distances`` holds ``oob_distance``."""
@@ -129,8 +129,16 @@ class RoadGPTTestGenerator:
             world = world.changed(oob_tolerance=float(tolerance))
         official = setup.model_copy(update={"rules": "sbft"})
         search = RoadSearch(brief, self.description, self.seed, world, official)
+        failures = 0
         while True:
-            number, _, road = search.ask()
+            try:
+                number, _, road = search.ask()
+            except DesignError:
+                failures += 1
+                if failures >= GIVE_UP:
+                    raise
+                continue
+            failures = 0
             self._told = partial(search.tell, number)
             yield road
 
@@ -172,6 +180,12 @@ def _whole(text: str | None, usual: int) -> int:
     if not text.isdecimal():
         raise UsageError(f"ROADGPT_SEED is '{text}'; give a whole number from 0 up")
     return int(text)
+
+
+def _yes_or_no(text: str | None, usual: bool) -> bool:
+    if text not in (None, "yes", "no"):
+        raise UsageError(f"ROADGPT_SEARCH is '{text}'; say yes or no")
+    return usual if text is None else text == "yes"
 
 
 def _chat(made: RoadGPTTestGenerator) -> Any:

@@ -16,6 +16,7 @@ from roadgpt.run import Request, Setup
 from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
 
 BATCH = 5  # roads that are chosen together; the outcomes of all earlier ones are known then
+KEPT = 100  # tests whose outcomes are waited for
 CAR_WIDTH = 2.0  # m, of a usual car, from which the margin of a drive is estimated
 
 T = TypeVar("T")
@@ -70,6 +71,7 @@ class RoadSearch:
         road = world.lay(build(design))
         blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
         self._asked[self._number] = road, blank
+        self._asked.pop(self._number - KEPT, None)
         return self._number, design, road
 
     def _think(self) -> None:

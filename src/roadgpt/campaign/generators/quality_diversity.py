@@ -1,12 +1,12 @@
 """The test generator ``quality_diversity``: searches for diverse roads that satisfy the Brief and make the
 car fail.
 
-    elites of the map --mutate--> 8 candidates for each test --surrogate--> the most valuable are driven
+    elites of the maps --mutate--> 40 sketches for each test --surrogate--> the best are built and driven
 
 MAP-Elites (Mouret, Clune 2015) with a surrogate (Gaier, Asteroth, Mouret 2018): a drive takes far longer than
-making a candidate, so the outcomes of most candidates are only predicted. The goal decides which candidates
-are valuable. Batches 0 and 1 are requested before any result is known; they consist of diverse roads that
-look hard.
+sketching a road, so the outcomes on most sketches are only predicted. The goal decides which sketches are
+valuable. Batches 0 and 1 are requested before any result is known; they consist of diverse roads that look
+hard.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from roadgpt.brief.element import Elements
-from roadgpt.campaign.acquisition import Predictions, is_far, select, spread_out
+from roadgpt.campaign.acquisition import Predictions, is_far, select, spread_out, stacked
 from roadgpt.campaign.archive import Archive
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
@@ -103,6 +103,7 @@ class QualityDiversity:
         """Sketches the roads added since the last call; keeps those of the last 1500."""
         known = list(self._results)[-MOST:]
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
+        self._shapes = {number: self._shapes[number] for number in self._looks}
         new = [number for number in known if number not in self._looks]
         designs = [self._results[number].design for number in new]
         found = pool.map(sketch_of, [(design, self._setting) for design in designs if design])
@@ -112,15 +113,17 @@ class QualityDiversity:
     def _built(self, sketches: Sequence[Sketch], n: int, pool: Pool) -> list[Candidate]:
         """Returns the first n sketches that keep every requirement and rule and resemble no tested road."""
         found: list[Candidate] = []
-        shapes = [self._shapes[number] for number in self._looks]
+        tested = stacked([*self._shapes.values()]) if self._shapes else None
         at = 0
         while len(found) < n and at < len(sketches):
             some = sketches[at : at + n - len(found)]
             at += len(some)
             for one in pool.map(candidate_of, [(each, self._setting) for each in some]):
-                if one is not None and is_far(one.shape, shapes, self._wanted.apart):
+                if one is None or not is_far(one.shape, tested, self._wanted.apart):
+                    continue
+                own = stacked([other.shape for other in found]) if found else None
+                if is_far(one.shape, own, self._wanted.apart):
                     found.append(one)
-                    shapes.append(one.shape)
         return found
 
     def _task(self, rng: np.random.Generator) -> VariationTask:
