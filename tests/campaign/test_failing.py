@@ -51,10 +51,11 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def many(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A campaign with more failures than faults."""
+    """A campaign with more failures than faults; a genetic algorithm finds the same again and again."""
     folder = tmp_path_factory.mktemp("many") / "c"
-    words = ["| flat turns=1..", "--goal", "failures", "-n", 40, "--seed", 7, "--reader", "plan", "-q"]
-    roadgpt("campaign", *words, "--map-size", 200, "--oob-tolerance", 0.5, "--out", folder)
+    words = ["| flat turns=1..", "--goal", "failures", "-n", 80, "--seed", 7, "--reader", "plan", "-q"]
+    genetic = ["--generator", "genetic", "--map-size", 200, "--oob-tolerance", 0.5]
+    roadgpt("campaign", *words, *genetic, "--out", folder)
     return folder
 
 
