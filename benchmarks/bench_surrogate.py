@@ -20,9 +20,10 @@ from scipy.stats import rankdata, spearmanr
 from sklearn.linear_model import RidgeCV
 from sklearn.preprocessing import StandardScaler
 
+from roadgpt.campaign.sketch import candidate_of, sketch
 from roadgpt.campaign.surrogate import Surrogate, target_of
 from roadgpt.campaign.surrogate_features import hazard_of
-from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
+from roadgpt.campaign.variation import VariationContext, VariationTask
 from roadgpt.road import Limits, Site, World
 from roadgpt.run import Setup, brief_of, prove
 
@@ -35,13 +36,15 @@ Predict = Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]
 def driven(seed: int, wet: bool) -> tuple[np.ndarray, float, bool] | None:
     """Features of a road, its margin in metres, and whether the car failed."""
     brief = brief_of("| flat turns=1..", WORLD, Setup(reader="plan"))
-    road = make_candidate(VariationTask("wild", (), "", (seed,), VariationContext(brief, WORLD, "sbft")))
-    if road is None:
+    setting = VariationContext(brief, WORLD, "sbft")
+    one = sketch(VariationTask("wild", (), "", (seed,), setting))
+    road = candidate_of((one, setting)) if one else None
+    if one is None or road is None:
         return None
     world = WORLD.changed(friction=0.572) if wet else WORLD
     driver = f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry" if wet else "beamng_like"
     run = prove(road.design, 0, world, Setup(driver=driver))
-    return (road.surrogate_features, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
+    return (one.surrogate_features, run.verdict.margin, run.outcome == "FAIL") if run.verdict else None
 
 
 def curvature(known: np.ndarray, targets: np.ndarray, fresh: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign import Budget, Cell, Goal, Proposal, Result
 from roadgpt.campaign.behaviour import behaviour_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, pairs_of
+from roadgpt.campaign.search import SearchSettings
 from roadgpt.design import draft
 from roadgpt.design.elements import elements_of
 from roadgpt.errors import UsageError
@@ -200,6 +201,15 @@ def test_other_axes_and_niches_can_be_asked_for() -> None:
     results, asked = searched(cell, 4)
     assert len(asked[3]) == 5
     assert all(axis in result.features for axis in axes for result in results)
+
+
+def test_a_second_map_counts_beside_the_usual_axes_only() -> None:
+    own = ("LENGTH", "GRADE")
+    assert SearchSettings().maps == (("MAX_CURV", "STD_SA"), ("MAX_CURV", "DIR_COV"))
+    assert SearchSettings(axes=own).maps == (own,)
+    assert SearchSettings(axes=own, also=("RADIUS",)).maps == (own, ("RADIUS",))
+    assert SearchSettings(also=()).maps == (("MAX_CURV", "STD_SA"),)
+    assert SearchSettings(axes=own, also=own).maps == (own,)
 
 
 def test_tests_without_words_are_searched_too() -> None:

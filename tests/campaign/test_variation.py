@@ -74,7 +74,7 @@ def slopes(road: Road) -> np.ndarray:
 
 
 @settings(max_examples=20)
-@given(SEEDS, st.sampled_from(PLANS), st.sampled_from(["vary", "cross", "wild"]))
+@given(SEEDS, st.sampled_from(PLANS), st.sampled_from(["vary", "cross"]))
 def test_every_variation_keeps_the_brief_and_every_rule(seed: int, line: str, kind: Kind) -> None:
     one = child(line, kind, seed)
     if one is None:
@@ -106,15 +106,14 @@ def test_nearly_every_variation_comes_to_something() -> None:
 
 
 def test_the_same_task_makes_the_same_road_and_another_seed_another() -> None:
-    for kind in ("draft", "wild", "vary", "cross"):
+    for kind in ("draft", "vary", "cross"):
         one, again, other = (child(PLANS[1], kind, seed) for seed in (5, 5, 6))  # type: ignore[arg-type]
         assert (one is None) == (again is None)
         if one is None or again is None:
             assert kind == "cross"  # what takes after two need not keep what both were asked for
             continue
         assert one.design == again.design
-        assert one.features == again.features
-        assert np.array_equal(one.surrogate_features, again.surrogate_features)
+        assert np.array_equal(one.shape.metres, again.shape.metres)
         assert other is None or other.design != one.design
 
 

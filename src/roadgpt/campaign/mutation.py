@@ -3,7 +3,7 @@
 A mutation may violate the road's requirements; ``variation`` checks every mutated road afterwards.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import exp
 from typing import Any, Literal, NamedTuple
 
@@ -21,6 +21,7 @@ WIDEST = 120.0  # m, of a radius
 STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a transition
 SWING = 22.0  # degrees, standard deviation
 SLOPE = 2.5  # percent, standard deviation
+CHANGED_TOO = 0.5  # probability that a crossover of two roads is mutated, too
 MOST_ELEMENTS = 24  # of a road
 PACKED = (0.05, 0.8)  # share of their lengths that straights keep when all are shortened
 NEW_STRAIGHT = (3.0, 45.0)  # m, length of an inserted straight
@@ -89,6 +90,24 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
         *numbers, radius = (between(a, b) for a, b in list(zip(*pair, strict=True))[:NUMBERS])
         out.append(Element._make((*numbers, radius or None, None, None)))
     return tuple(out)
+
+
+def varied(parents: Sequence[Elements], rng: Rng, world: World, numeric: float, rounds: int = 1) -> Elements:
+    """Returns a mutation of one parent, or a crossover of two, half of which are mutated too.
+
+    Args:
+        parents: the elements of one road, or of two.
+        rng: the random generator.
+        world: determines the limits of radii and grades.
+        numeric: as for ``mutated``.
+        rounds: how often the elements are mutated.
+    """
+    elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
+    if len(parents) > 1 and rng.random() >= CHANGED_TOO:
+        return elements
+    for _ in range(rounds):
+        elements = mutated(elements, rng, world, numeric)
+    return elements
 
 
 def mirrored(elements: Elements) -> Elements:

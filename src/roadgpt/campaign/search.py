@@ -18,6 +18,9 @@ from roadgpt.run import seed_of
 MOST_AXES = 4
 
 
+USUAL_AXES, USUAL_ALSO = ("MAX_CURV", "STD_SA"), ("MAX_CURV", "DIR_COV")
+
+
 class SearchSettings(Frozen):
     """Settings of the generators that search.
 
@@ -28,11 +31,12 @@ class SearchSettings(Frozen):
 
     batch: Annotated[int, Field(ge=1, le=1000)] = 10
     """Number of tests in a batch."""
-    axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = ("MAX_CURV", "STD_SA")
+    axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = USUAL_AXES
     """Names of the features that are the axes of the map."""
-    also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] = ("MAX_CURV", "DIR_COV")
+    also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] | None = None
     """Names of the features that are the axes of a second map, on which failures in new cells count as much;
-    empty: there is none.
+    empty: there is no second map. None: MAX_CURV and DIR_COV beside the usual axes, and no second map beside
+    others.
     """
     archive: Literal["grid", "cvt"] = "grid"
     """Kind of map: "grid" has the cells of a grid, "cvt" the neighbourhoods of evenly spread centroids."""
@@ -47,8 +51,8 @@ class SearchSettings(Frozen):
 
     @field_validator("axes", "also")
     @classmethod
-    def _known(cls, axes: tuple[str, ...]) -> tuple[str, ...]:
-        for axis in axes:
+    def _known(cls, axes: tuple[str, ...] | None) -> tuple[str, ...] | None:
+        for axis in axes or ():
             try:
                 bounds_of(axis)
             except KeyError:
@@ -57,6 +61,13 @@ class SearchSettings(Frozen):
                     f"there is no feature '{axis}'; there are {known}, and RADIUS_1, DEGREES_1 and so on"
                 ) from None
         return axes
+
+    @property
+    def maps(self) -> tuple[tuple[str, ...], ...]:
+        """The axes of each map."""
+        usual = USUAL_ALSO if self.axes == USUAL_AXES else ()
+        also = usual if self.also is None else self.also
+        return tuple(axes for axes in dict.fromkeys((self.axes, also)) if axes)
 
 
 def settings_of(cell: Cell) -> SearchSettings:
@@ -82,8 +93,7 @@ def settings_of(cell: Cell) -> SearchSettings:
 
 def context_of(cell: Cell) -> VariationContext:
     """Returns the requirements, world and rules that all candidates of a cell share."""
-    wanted = settings_of(cell)
-    axes = tuple(dict.fromkeys((*wanted.axes, *wanted.also)))
+    axes = tuple(dict.fromkeys(axis for each in settings_of(cell).maps for axis in each))
     return VariationContext(cell.brief, cell.request.world, cell.request.setup.rules, axes)
 
 

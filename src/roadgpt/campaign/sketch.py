@@ -6,7 +6,6 @@ A sketch takes about a tenth of the time of a candidate, because no road is buil
 a search can look at many, and build only those that it wants to drive.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,27 +13,28 @@ import numpy as np
 from roadgpt.brief.element import Elements
 from roadgpt.brief.outline import outline
 from roadgpt.campaign.behaviour import behaviour_of_line
-from roadgpt.campaign.mutation import crossed_over, mutated
+from roadgpt.campaign.mutation import varied
 from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
 from roadgpt.campaign.variation import (
-    CHANGED_TOO,
     NOBODY,
     NUMERIC,
-    ROUNDS,
     Candidate,
     VariationContext,
     VariationTask,
+    candidate,
     drafted,
+    room_for,
     validated,
 )
 from roadgpt.design.elements import as_written, elements_of
-from roadgpt.design.layout import MapPose, PlanLine, bends_of, keeps_clear, place, walk
+from roadgpt.design.layout import MapPose, PlacedPlan, bends_of, walk
 from roadgpt.design.variety import PlanShape, shape_of
 from roadgpt.design.writing import design_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design
 
 TRIES = 6  # mutations that are tried for one sketch, until one has room on the map
+ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
 BOLD = 2  # of these; later tries mostly change only numbers, which violates fewer requirements
 
 
@@ -61,13 +61,13 @@ def sketch(task: VariationTask) -> Sketch | None:
         parents = [elements_of(design.segments) for design in task.parents]
     asked = outline(task.setting.brief or NOBODY).turns
     for attempt in range(TRIES if parents else 0):
-        elements = _varied(task, parents, rng, task.numeric if attempt < BOLD else NUMERIC[1])
+        numeric = task.numeric if attempt < BOLD else NUMERIC[1]
+        elements = varied(parents, rng, task.setting.world, numeric, ROUNDS if task.kind == "wild" else 1)
         if not asked.lo <= sum(element.turn != 0 for element in elements) <= asked.hi:
             continue
-        line = walk([as_written(element) for element in elements])
-        where = place(line, task.setting.world, rng)
-        if where is not None and keeps_clear(line, task.setting.world, with_shoulders=False):
-            return _sketched(elements, line, where, task.origin, task.setting)
+        room = room_for(elements, task.setting, rng)
+        if room is not None:
+            return _sketched(elements, room, task.origin, task.setting)
     return None
 
 
@@ -81,8 +81,10 @@ def sketch_of(known: tuple[Design, VariationContext]) -> tuple[Sketch, PlanShape
     design, setting = known
     elements = elements_of(design.segments)
     x, y, _ = design.starting_point
-    line = walk([as_written(element) for element in elements])
-    return _sketched(elements, line, MapPose(x, y, design.theta), "", setting), shape_of(line.s, line.z)
+    written = [as_written(element) for element in elements]
+    line = walk(written)
+    room = PlacedPlan(written, line, MapPose(x, y, design.theta))
+    return _sketched(elements, room, "", setting), shape_of(line.s, line.z)
 
 
 def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
@@ -93,28 +95,12 @@ def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
     """
     one, setting = work
     found = validated(design_of(one.elements, one.place, setting.world), setting)
-    if found is None:
-        return None
-    samples = found[1].sample()
-    shape = shape_of(samples.s, samples.x + 1j * samples.y)
-    return Candidate(found[0], one.origin, one.features, one.surrogate_features, shape)
+    return candidate(*found, one.origin) if found else None
 
 
-def _varied(
-    task: VariationTask, parents: Sequence[Elements], rng: np.random.Generator, numeric: float
-) -> Elements:
-    elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
-    if len(parents) > 1 and rng.random() >= CHANGED_TOO:
-        return elements
-    for _ in range(ROUNDS if task.kind == "wild" else 1):
-        elements = mutated(elements, rng, task.setting.world, numeric)
-    return elements
-
-
-def _sketched(
-    elements: Elements, line: PlanLine, where: MapPose, origin: str, setting: VariationContext
-) -> Sketch:
-    knots, bends, length = bends_of([as_written(element) for element in elements])
+def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: VariationContext) -> Sketch:
+    line, where = room.line, room.place
+    knots, bends, length = bends_of(room.elements)
     ends = np.cumsum([element.length for element in elements])
     inclines = np.array([element.incline for element in elements])
     grade = inclines[np.minimum(np.searchsorted(ends, line.s), len(elements) - 1)] / 100

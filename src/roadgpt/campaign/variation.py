@@ -15,24 +15,18 @@ import numpy as np
 from roadgpt import check
 from roadgpt.brief.element import Elements
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.behaviour import behaviour_of
-from roadgpt.campaign.mutation import crossed_over, interpolated, mutated
-from roadgpt.campaign.surrogate_features import surrogate_features_of
+from roadgpt.campaign.mutation import interpolated, varied
 from roadgpt.design import draft
 from roadgpt.design.elements import as_written, elements_of
-from roadgpt.design.layout import MapPose, keeps_clear, place, walk
+from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, walk
 from roadgpt.design.variety import PlanShape, shape_of
 from roadgpt.design.writing import design_of
 from roadgpt.errors import DesignError, RoadGPTError
-from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Road, World, build
-from roadgpt.run.features import features_of
 
 TRIES = 8  # mutations that are tried for one candidate, at most
 BOLD = 3  # of these; later tries mostly change only numbers, which violates fewer requirements
-ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
 NUMERIC = (0.4, 0.9)  # probability that only numbers change: in the bold tries, and in the others
-CHANGED_TOO = 0.5  # probability that a crossover of two roads is mutated, too
 NOBODY = Brief()
 
 Kind = Literal["draft", "wild", "vary", "cross", "between"]
@@ -55,8 +49,9 @@ class VariationTask(NamedTuple):
     """Describes one candidate to make, so that any worker can make it."""
 
     kind: Kind
-    """What to make: a new draft ("draft"), a draft after three rounds of mutations ("wild"), a mutated parent
-    ("vary"), a crossover of two parents ("cross"), or a road between two parents ("between")."""
+    """What to make: a new draft ("draft"), a mutated parent ("vary"), a crossover of two parents ("cross"), a
+    road between two parents ("between"), or, only as a sketch, a draft after three rounds of mutations
+    ("wild")."""
     parents: tuple[Design, ...]
     """The parent roads: none for a draft, one for a mutation, two for a crossover or an interpolation."""
     origin: str
@@ -71,15 +66,11 @@ class VariationTask(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A road that satisfies all requirements and rules, and its features."""
+    """A road that satisfies all requirements and rules."""
 
     design: Design
     origin: str
     """Text that says where the road comes from, taken from its task."""
-    features: dict[str, float]
-    """Features of the road that are known without a drive, by name."""
-    surrogate_features: Array
-    """Input features of the surrogate model, ``(n,)``."""
     shape: PlanShape
     """Shape of the road seen from above; the distance between two candidates is computed from their
     shapes.
@@ -92,13 +83,11 @@ def make_candidate(task: VariationTask) -> Candidate | None:
     setting = task.setting
     if task.kind == "between":
         found = _between(task)
-    elif task.kind in ("draft", "wild"):
+    elif task.kind == "draft":
         found = drafted(setting, rng)
-        for _ in range(ROUNDS if found and task.kind == "wild" else 0):
-            found = found and (_changed((elements_of(found[0].segments),), setting, rng) or found)
     else:
         found = _changed([elements_of(design.segments) for design in task.parents], setting, rng)
-    return described(*found, task.origin, setting) if found else None
+    return candidate(*found, task.origin) if found else None
 
 
 def _changed(
@@ -106,10 +95,9 @@ def _changed(
 ) -> tuple[Design, Road] | None:
     """Returns a mutation of one parent, or a crossover of two; None if no valid road was found."""
     for attempt in range(TRIES):
-        elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
-        if len(parents) == 1 or rng.random() < CHANGED_TOO:
-            elements = mutated(elements, rng, setting.world, NUMERIC[attempt >= BOLD])
-        found = placed(elements, setting, rng)
+        elements = varied(parents, rng, setting.world, NUMERIC[attempt >= BOLD])
+        room = room_for(elements, setting, rng)
+        found = room and validated(design_of(elements, room.place, setting.world), setting)
         if found:
             return found
     return None
@@ -136,18 +124,17 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
     )
 
 
-def placed(
-    elements: Elements, setting: VariationContext, rng: np.random.Generator
-) -> tuple[Design, Road] | None:
-    """Places a road with these elements at random on the map, and returns its design and the road.
+def room_for(elements: Elements, setting: VariationContext, rng: np.random.Generator) -> PlacedPlan | None:
+    """Places a road with these elements at random on the map.
 
-    Returns None if the road does not fit on the map or violates a requirement or a rule.
+    Returns None if the road does not fit on the map, or meets itself.
     """
-    line = walk([as_written(element) for element in elements])
+    written = [as_written(element) for element in elements]
+    line = walk(written)
     where = place(line, setting.world, rng)
     if where is None or not keeps_clear(line, setting.world, with_shoulders=False):
         return None
-    return validated(design_of(elements, where, setting.world), setting)
+    return PlacedPlan(written, line, where)
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
@@ -168,12 +155,10 @@ def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] 
     return design, road
 
 
-def described(design: Design, road: Road, origin: str, setting: VariationContext) -> Candidate:
-    """Returns the Candidate of a road that satisfies all rules, with the road's features."""
+def candidate(design: Design, road: Road, origin: str) -> Candidate:
+    """Returns the Candidate of a road that satisfies all rules."""
     samples = road.sample()
-    features = features_of(samples.points) | behaviour_of(road, setting.brief)
-    shape = shape_of(samples.s, samples.x + 1j * samples.y)
-    return Candidate(design, origin, features, surrogate_features_of(road, setting.world), shape)
+    return Candidate(design, origin, shape_of(samples.s, samples.x + 1j * samples.y))
 
 
 def _place_between(one: Design, other: Design, share: float) -> MapPose:

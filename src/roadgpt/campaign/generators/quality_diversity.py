@@ -63,11 +63,7 @@ class QualityDiversity:
         self._wanted = settings_of(cell)
         self._goal: Goal = cell.goal or "failures"
         self.batch_size = self._wanted.batch
-        self._maps = [
-            Archive(axes, self._wanted.cells, self._wanted.archive)
-            for axes in dict.fromkeys((self._wanted.axes, self._wanted.also))
-            if axes
-        ]
+        self._maps = [Archive(axes, self._wanted.cells, self._wanted.archive) for axes in self._wanted.maps]
         self._driven = [axis for axis in self._setting.axes if axis in DRIVEN]
         self._results: dict[int, Result] = {}
         self._looks: dict[int, Sketch] = {}
