@@ -6,6 +6,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -90,6 +91,13 @@ def test_what_cannot_be_used_teaches_nothing() -> None:
         told.tell(number + 1000, "FAIL", [1.0] * 20, [1.0] * 20)
         assert silent.ask()[1] == design
     told.tell(number, "PASS", [], [])
+
+
+def test_the_tolerance_is_that_of_the_executor() -> None:
+    assert RoadGPTTestGenerator(SimpleNamespace(oob_tolerance=0.5)).oob_tolerance == 0.5
+    assert RoadGPTTestGenerator(SimpleNamespace()).oob_tolerance is None
+    own = type("Mine", (RoadGPTTestGenerator,), {"oob_tolerance": 0.7})
+    assert own(SimpleNamespace(oob_tolerance=0.5)).oob_tolerance == 0.7
 
 
 CLIENT = """

@@ -99,7 +99,7 @@ def begin(map_size: int | None = None, **asked: Any) -> None:
     """
     from roadgpt.sbft.generator import RoadGPTTestGenerator
 
-    if unknown := set(asked) - {"description", "seed", "designer", "reader", "search"}:
+    if unknown := set(asked) - {"description", "seed", "designer", "reader", "search", "oob_tolerance"}:
         raise UsageError(
             f"RoadGPT knows no {', '.join(sorted(unknown))}; are client and RoadGPT of one version?"
         )

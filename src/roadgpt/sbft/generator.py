@@ -17,6 +17,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from importlib import import_module
+from itertools import count
 from typing import Any
 
 from roadgpt.brief.model import Brief
@@ -50,6 +51,8 @@ class RoadGPTTestGenerator:
     search = True
     """Whether outcomes steer the choice of roads. Without a search, or with another designer than
     ``planner``, roads are drafted one after another."""
+    oob_tolerance: float | None = None
+    """Share of the car, 0 to 1, that may be outside its lane; None: that of the executor, if it tells it."""
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
         """Takes the arguments that the competition passes. Environment variables take precedence over class
@@ -61,6 +64,8 @@ class RoadGPTTestGenerator:
         self.reader = os.environ.get("ROADGPT_READER", self.reader)
         self.seed = _whole(os.environ.get("ROADGPT_SEED"), self.seed)
         self.search = _yes_or_no(os.environ.get("ROADGPT_SEARCH"), self.search)
+        if self.oob_tolerance is None:
+            self.oob_tolerance = getattr(executor, "oob_tolerance", None)
         self._told: Callable[[str, Sequence[float], Sequence[float]], None] = _unheard
 
     def start(self) -> None:
@@ -88,7 +93,7 @@ class RoadGPTTestGenerator:
             records: the execution data of the drive; each record has ``steering`` and ``oob_distance``.
         """
         steering = [float(record.steering) for record in records or ()]
-        self._told(outcome, steering, [float(record.oob_distance) for record in records or ()])
+        self.tell_columns(outcome, steering, [float(record.oob_distance) for record in records or ()])
 
     def tell_columns(self, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
         """Reports the outcome of the last road as ``tell`` does; ``distances`` holds ``oob_distance``."""
@@ -107,9 +112,16 @@ class RoadGPTTestGenerator:
         if brief.friction is not None:
             log.warning("the competition's simulator sets the friction; the surface in the words is not used")
         searches = self.search and self.designer == "planner"
-        made = self._searched(brief, world, setup) if searches else self._drafted(brief, world, setup)
+        another = self._searching(brief, world, setup) if searches else self._drafting(brief, world, setup)
         failures = 0
-        for road in made:
+        while True:
+            try:
+                road = another()
+            except (DesignError, ReplyError):
+                failures += 1
+                if failures >= GIVE_UP:
+                    raise
+                continue
             points = road_points(road) if road is not None else None
             if points is not None and sbft_verdict(points, world.site.map_size)[0]:
                 failures = 0
@@ -122,47 +134,33 @@ class RoadGPTTestGenerator:
                     f"{self.map_size} m; ask for shorter roads or gentler turns"
                 )
 
-    def _searched(self, brief: Brief, world: World, setup: Setup) -> Iterator[Road | None]:
-        """Yields the roads of a search, which learns from what ``tell`` reports."""
-        tolerance = getattr(self.executor, "oob_tolerance", None)
+    def _searching(self, brief: Brief, world: World, setup: Setup) -> Callable[[], Road | None]:
+        """Returns a function that returns the next road of a search, which learns from ``tell``."""
+        tolerance = self.oob_tolerance
         if isinstance(tolerance, int | float) and 0 < tolerance < 1:
             world = world.changed(oob_tolerance=float(tolerance))
         official = setup.model_copy(update={"rules": "sbft"})
         search = RoadSearch(brief, self.description, self.seed, world, official)
-        failures = 0
-        while True:
-            try:
-                number, _, road = search.ask()
-            except DesignError:
-                failures += 1
-                if failures >= GIVE_UP:
-                    raise
-                continue
-            failures = 0
+
+        def another() -> Road:
+            number, _, road = search.ask()
             self._told = partial(search.tell, number)
-            yield road
+            return road
 
-    def _drafted(self, brief: Brief, world: World, setup: Setup) -> Iterator[Road | None]:
-        """Yields drafts; None where no road could be drafted, or where a rule is broken.
+        return another
 
-        Raises:
-            DesignError, ReplyError: no road could be drafted, many times in a row.
-        """
+    def _drafting(self, brief: Brief, world: World, setup: Setup) -> Callable[[], Road | None]:
+        """Returns a function that drafts the next road; the function returns None if a rule is broken."""
         earlier: deque[Design] = deque(maxlen=REMEMBERED)
-        index = failures = 0
-        while True:
-            index += 1
-            try:
-                run = perform(brief, self.seed, world, setup, index, [*earlier])
-            except (DesignError, ReplyError):
-                failures += 1
-                if failures >= GIVE_UP:
-                    raise
-                continue
-            failures = 0
+        numbers = count(1)
+
+        def another() -> Road | None:
+            run = perform(brief, self.seed, world, setup, next(numbers), [*earlier])
             if run.design is not None:
                 earlier.append(run.design)
-            yield run.road if run.is_valid else None
+            return run.road if run.is_valid else None
+
+        return another
 
 
 def road_points(road: Road) -> Points | None:

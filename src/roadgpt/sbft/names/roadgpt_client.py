@@ -204,6 +204,7 @@ class RoadGPTTestGenerator:
             name: getattr(self, name)
             for name in ("description", "seed", "designer", "reader", "search", "map_size")
         }
+        asked["oob_tolerance"] = getattr(self.executor, "oob_tolerance", None)
         roadgpt = self._roadgpt = RoadGPT(os.environ.get(PYTHON) or self.python)
         try:
             roadgpt.ask("begin", **{name: value for name, value in asked.items() if value is not None})
