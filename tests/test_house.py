@@ -15,7 +15,7 @@ from roadgpt import plugins
 
 ROOT = Path(__file__).resolve().parents[1]
 SOURCE = ROOT / "src" / "roadgpt"
-HALLWAY = {"errors", "plugins", "provenance", "reading", "children", "stopping"}
+HALLWAY = {"errors", "plugins", "plural", "provenance", "reading", "children", "stopping"}
 MOST_LINES = 400
 MOST_LINES_OF_A_FUNCTION = 60
 HEAVY = ("numpy", "scipy", "numba", "matplotlib", "mujoco", "pydantic", "shapely", "rich")

@@ -45,7 +45,7 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = roadgpt("campaign", *WORDS, "--out", folder, "--faults", "--repeat", 2, "--json")
     (line,) = done.stdout.splitlines()
     assert json.loads(line)["outcomes"] == {"FAIL": 2}
-    assert "distinct fault" in done.stderr
+    assert "2 failures in 2 groups of similar failures; no small change removes them" in done.stderr
     return folder
 
 
@@ -97,10 +97,13 @@ def test_only_a_typical_failure_of_each_fault_is_driven_again(
     monkeypatch.setattr(
         fault_log, "repeated", lambda run, times: driven.append(run.index) or repeated(run, times)
     )
-    found = faults_in(folder)
-    assert len(found.them) < found.failures / 2
+    groups = faults_in(folder)
+    assert len(groups.them) < groups.failures / 2
     assert not driven
     roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    found = faults_in(folder)
+    assert found.is_tested
+    assert len(found.them) <= len(groups.them)
     most = sum(min(len(fault.members), 3) for fault in found.them)
     assert len(found.them) <= len(driven) <= most < found.failures
     mates = [{each.name.number for each in fault.members} for fault in found.them]
@@ -154,12 +157,41 @@ def test_where_the_most_typical_failure_is_a_fluke_others_are_tried(
 def test_status_and_screen_count_faults_before_failures(many: Path) -> None:
     found = faults_in(many)
     for said in (roadgpt("status", many).output, roadgpt("show", many).output):
-        assert (
-            f"{len(found.them)} distinct faults in {found.failures} failures: the car cut the inside" in said
-        )
-        assert said.index("distinct faults") < said.index(f"{found.failures} FAIL")
+        groups = f"{found.failures} failures in {len(found.them)} groups of similar failures"
+        assert f"{groups}: the car cut the inside" in said
+        assert said.index(groups) < said.index(f"{found.failures} FAIL")
+        assert f"how many faults these are, why, how often again, and pictures: roadgpt faults {many}" in said
     told = json.loads(roadgpt("status", many, "--json").stdout)["distinct"]
-    assert told == {"faults": len(found.them), "failures": found.failures, "compared": found.failures}
+    count = found.failures
+    assert told == {"faults": None, "groups": len(found.them), "failures": count, "compared": count}
+
+
+def test_failures_that_one_small_change_removes_are_one_fault(many: Path, tmp_path: Path) -> None:
+    """The car cuts the inside of tight right bends, on all sorts of roads."""
+    folder = shutil.copytree(many, tmp_path / "c")
+    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    found = faults_in(folder)
+    (first,) = [fault for fault in found.them if fault.remedy]
+    assert str(first.remedy).split()[0] in ("wider", "eased"), "both make the bend less tight"
+    assert len(first.members) > found.failures / 2
+    said = roadgpt("show", folder).output
+    assert f"1 distinct fault in {found.failures} failures" in said
+    told = json.loads(roadgpt("show", folder, "--json").stdout)["distinct"]
+    assert (told["faults"], told["groups"]) == (1, len(found.them) - 1)
+    roadgpt("report", folder)
+    text = (folder / "report.md").read_text(encoding="utf-8")
+    assert "## Distinct faults" in text
+    assert f"Disappears with {first.removed_by}." in text
+    rows = table(folder / "faults" / "faults.csv")
+    assert [row["removed_by"] for row in rows] == [first.remedy] + [""] * (len(found.them) - 1)
+    faults = {row["fault"] for row in table(folder / "faults" / "failures.csv")}
+    assert faults == {str(fault.number) for fault in found.them}
+    spoilt = next((folder / "faults" / "remedies").rglob("*.json"))
+    spoilt.write_text('{"station": 1}', encoding="utf-8")
+    done = CliRunner().invoke(app, ["show", str(folder)])
+    assert done.exit_code == 2
+    assert f"{spoilt} cannot be read" in done.output
+    assert "remove it, and it is made again" in done.output
 
 
 def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:
@@ -167,7 +199,9 @@ def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:
     assert (len(every.known), every.every) == (every.every, some.every)
     assert len(some.known) == 9
     assert [each.name for each in some.known][::8] == [every.known[0].name, every.known[-1].name]
-    assert faults_in(many, 9).sentence.startswith("at least ")
+    found = faults_in(many, 9)
+    groups = f"at least {len(found.them)} groups of similar failures"
+    assert found.sentence == f"{every.every} failures in {groups} (9 of them compared)"
 
 
 def test_the_report_begins_with_the_faults(looked: Path, many: Path) -> None:
@@ -175,9 +209,9 @@ def test_the_report_begins_with_the_faults(looked: Path, many: Path) -> None:
         roadgpt("report", folder)
         found = faults_in(folder)
         text = (folder / "report.md").read_text(encoding="utf-8")
-        assert text.index("distinct fault") < text.index(" FAIL")
+        assert text.index("groups of similar failures") < text.index(" FAIL")
         heads = [line.removeprefix("## ") for line in text.splitlines() if line.startswith("## ")]
-        assert heads[0] == "Distinct faults"
+        assert heads[0] == "Groups of similar failures"
         assert heads[1:3] == ["Feature map", "Outcomes"] or heads[1] == "Outcomes"
         page = (folder / "report.html").read_text(encoding="utf-8")
         assert page.count("<article>") == min(len(found.them), 24)
@@ -310,7 +344,7 @@ def test_the_report_of_runs_tells_their_faults_as_well(tmp_path: Path) -> None:
     roadgpt("report", tmp_path / "runs")
     text = (tmp_path / "runs" / "report.md").read_text(encoding="utf-8")
     assert text.index(f"- {found.sentence[:1].upper()}{found.sentence[1:]}") < text.index("valid")
-    assert "## Distinct faults" in text
+    assert "## Groups of similar failures" in text
     for fault in found.them:
         assert f"`roadgpt view {tmp_path / 'runs'}/{fault.names[0]}`" in text
 

@@ -49,8 +49,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """Returns the distinct faults of a campaign, comparing at most ``COMPARED`` failures; None if no test
-    was driven.
+    """Returns the faults of a campaign, or its groups of similar failures, comparing at most ``COMPARED``
+    failures; None if no test was driven.
     """
     from roadgpt.campaign.faults.fault import faults_in
 
@@ -63,7 +63,12 @@ def as_line(status: "Status", found: "Faults | None") -> str:
     """Returns a campaign's status as one line of JSON."""
     import json
 
-    counts = found and {"faults": len(found.them), "failures": found.failures, "compared": found.compared}
+    counts = found and {
+        "faults": found.distinct if found.is_tested else None,
+        "groups": len(found.them) - found.distinct,
+        "failures": found.failures,
+        "compared": found.compared,
+    }
     return json.dumps({**status.to_json(), "distinct": counts})
 
 
@@ -82,7 +87,8 @@ def told(status: "Status", found: "Faults | None") -> Iterator[str]:
         yield f"  {found.headline}"
     yield f"  {outcomes_line(status.outcomes)}"
     if found is not None and found.them:
-        yield f"  why, how often again, and pictures: roadgpt faults {status.folder}"
+        first = "" if found.is_tested else "how many faults these are, "
+        yield f"  {first}why, how often again, and pictures: roadgpt faults {status.folder}"
     if status.tokens:
         yield f"  language model: {status.tokens:,} tokens, {status.cost_usd:.4f} USD"
     if not status.is_finished and not status.is_running:

@@ -9,6 +9,7 @@ from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.status import Status, status_of
 from roadgpt.campaign.store_check import reading_store
+from roadgpt.plural import plural
 from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, linked, write
 from roadgpt.report.page.forest import forest
@@ -23,7 +24,6 @@ from roadgpt.study.chapters.wording import (
     near_and_far,
     p_value,
     percent,
-    plural,
     row,
     share_cells,
     share_of,

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.errors import UsageError
+from roadgpt.plural import plural
 from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write
 from roadgpt.road import World
@@ -29,7 +30,7 @@ from roadgpt.study.chapters.validity import (
     valid_source,
     validity,
 )
-from roadgpt.study.chapters.wording import near_and_far, percent, plural, share_of
+from roadgpt.study.chapters.wording import near_and_far, percent, share_of
 from roadgpt.study.execution import Problem
 from roadgpt.study.plan import StudyPart, StudyPlan, read_plan
 from roadgpt.study.prompts import Prompt

@@ -1,9 +1,9 @@
-"""Groups failures into distinct faults by the similarity of the 60 m of road around each lane departure.
+"""Groups failures by the similarity of the 60 m of road around each lane departure.
 
 Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
 after it. The lanes are aligned at the departures; the comparison allows a shift of up to 8 m. Clusters grow
-by complete linkage, so any two failures of one cluster are alike; the number of clusters is the number of
-distinct faults.
+by complete linkage, so any two failures of one cluster are alike. Several clusters may be one fault, see
+``told_apart``.
 """
 
 from collections.abc import Sequence

@@ -25,6 +25,8 @@ class LocatedFailure:
 
     name: NumberedTest
     around: Surroundings
+    system: str
+    """Text that identifies driver, simulator and world; see ``system_of``."""
     manner: Manner
     station: float
     """Station of the failure, metres along the road."""
@@ -103,7 +105,7 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
                 around = surroundings(road, world, station, f"{its.cause} {its.side} {system}")
                 manner = manner_of(road, world, station, its.cause, its.side)
                 test = NumberedTest(name, its.number)
-                yield LocatedFailure(test, around, manner, station, its.max_oob, its.beyond)
+                yield LocatedFailure(test, around, system, manner, station, its.max_oob, its.beyond)
 
 
 def system_of(world: World, setup: Setup) -> str:

@@ -1,20 +1,33 @@
-"""Finds the distinct faults in a folder: groups of similar failures; no road is driven."""
+"""Finds the distinct faults in a folder; no road is driven.
+
+Failures are first grouped by the road around them. Once the typical failures of all groups were driven with
+small changes (``remedy_log``), the groups are joined into faults.
+"""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from roadgpt.campaign.faults.distinct import faults_of, typical
 from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.reason import Way
+from roadgpt.campaign.faults.remedy import REMEDIES
+from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
+from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
 from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.plural import plural
 
 DEFINED = (
-    "Two failures are one fault where the same driver, in the same world, left its lane for the same cause, "
-    "to the same side, and where the road bends and climbs alike from 30 m before the place to 30 m after it."
+    "A fault is a set of failures of one driver in one world that the same small change of the test removes, "
+    "while this change leaves the other faults as they are."
 )
+GROUPED = (
+    "A group holds failures of one driver in one world for the same cause, to the same side, where the road "
+    "bends and climbs alike from 30 m before the place to 30 m after it. Several groups may be one fault."
+)
+SENTENCES = {remedy.name: remedy.sentence for remedy in REMEDIES}
 MOST_WAYS = 3  # ways of failing that a headline names
-TRIED = 3  # typical failures of a fault that are driven again, until one fails in half of the drives
+TRIED = 3  # typical failures of a group or fault that are driven again
 WAYS: dict[Way, str] = {
     "wide": "ran wide of",
     "inside": "cut the inside of",
@@ -26,14 +39,24 @@ WAYS: dict[Way, str] = {
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """A group of similar failures."""
+    """A fault, or a group of similar failures that belongs to no fault or was not tested."""
 
     number: int
-    """Number of the fault, from 1; the fault with the most failures comes first."""
+    """Number, from 1; the faults come before the groups, and the one with the most failures first."""
     members: tuple[LocatedFailure, ...]
     """All failures of the fault, in the order of their tests."""
     typical: tuple[LocatedFailure, ...]
-    """A few typical failures of the fault, starting with the one that is nearest to all others."""
+    """A few typical failures of the fault, starting with the one that is nearest to all others of the largest
+    group."""
+    remedy: str | None = None
+    """Name of the small change that removes the failures; None if this is a group, not a fault."""
+
+    @property
+    def removed_by(self) -> str:
+        """The small change as text for users, such as 'a 15 % larger radius of the bend'; empty for a
+        group.
+        """
+        return SENTENCES[self.remedy] if self.remedy else ""
 
     @property
     def names(self) -> tuple[NumberedTest, ...]:
@@ -43,18 +66,26 @@ class Fault:
 
 @dataclass(frozen=True, eq=False)
 class Faults:
-    """The distinct faults of a folder."""
+    """The distinct faults of a folder, and the groups of failures that belong to none."""
 
     them: tuple[Fault, ...]
+    """First the faults, then the groups."""
+    is_tested: bool
+    """Whether small changes were tried on the typical failures of all groups; otherwise all are groups."""
     failures: int
     """Number of all failures in the folder, or in the cell that was chosen."""
     compared: int
-    """Number of failures that were compared; the others belong to no fault."""
+    """Number of failures that were compared; the others belong to no group."""
+
+    @property
+    def distinct(self) -> int:
+        """The number of distinct faults; 0 if the groups were not tested."""
+        return sum(each.remedy is not None for each in self.them)
 
     @property
     def headline(self) -> str:
-        """The number of faults and how the car failed: '3 distinct faults in 9 failures: the car ran wide
-        of ...'.
+        """The number of faults or groups and how the car failed: '3 distinct faults in 9 failures: the car
+        ran wide of ...'.
         """
         ways = "; it ".join(self.ways[:MOST_WAYS])
         more = len(self.ways) - MOST_WAYS
@@ -63,19 +94,23 @@ class Faults:
 
     @property
     def sentence(self) -> str:
-        """The number of faults and failures as text: '17 distinct faults in 170 failures'."""
-        count = len(self.them)
+        """The number of faults or groups, and of failures, as text: '2 distinct faults in 37 failures'."""
         if not self.failures:
             return "no road failed"
-        faults = f"{count:,} distinct fault{'s' * (count != 1)}"
-        failures = f"{self.failures:,} failure{'s' * (self.failures != 1)}"
-        if self.compared == self.failures:
-            return f"{faults} in {failures}"
+        failures = plural(self.failures, "failure")
         if not self.compared:
-            return (
-                f"{failures}; their roads are not known, so the number of distinct faults is not known either"
-            )
-        return f"at least {faults} in {failures} ({self.compared:,} of them compared)"
+            return f"{failures}; their roads are not known, so it is not known how many faults they are"
+        least, compared = "", ""
+        if self.compared < self.failures:
+            least, compared = "at least ", f" ({self.compared:,} of them compared)"
+        alone = [each for each in self.them if each.remedy is None]
+        groups = f"{plural(len(alone), 'group')} of similar failures"
+        if not self.distinct:
+            none = "; no small change removes them" if self.is_tested else ""
+            return f"{failures} in {least}{groups}{compared}{none}"
+        count = sum(len(each.members) for each in alone)
+        beside = f"; {plural(count, 'failure')} in {groups} are none of these" if alone else ""
+        return f"{least}{plural(self.distinct, 'distinct fault')} in {failures}{compared}{beside}"
 
     @property
     def ways(self) -> list[str]:
@@ -110,14 +145,60 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
     failures = failures_of(folder, most, cell)
-    return Faults(tuple(_grouped(failures.known)), failures.every, len(failures.known))
+    groups = _grouped(failures.known)
+    tried = [_tried(folder, group) for group in groups]
+    known = [each for each in tried if each is not None]
+    is_tested = bool(groups) and len(known) == len(groups)
+    found = _joined(groups, known) if is_tested else groups
+    return Faults(tuple(_numbered(found)), is_tested, failures.every, len(failures.known))
 
 
-def _grouped(known: Sequence[LocatedFailure]) -> Iterator[Fault]:
+def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
+    """Returns the groups of similar failures, the largest first."""
     members: dict[int, list[LocatedFailure]] = {}
     for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
-    ordered = sorted(members.values(), key=lambda its: (-len(its), its[0].name))
-    for number, its in enumerate(ordered, 1):
+    found = []
+    for its in members.values():
         some = typical([each.around for each in its])[:TRIED]
-        yield Fault(number, tuple(its), tuple(its[at] for at in some))
+        found.append(Fault(0, tuple(its), tuple(its[at] for at in some)))
+    return sorted(found, key=_order)
+
+
+def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
+    return fault.remedy is None, -len(fault.members), fault.members[0].name
+
+
+def _tried(folder: Path, group: Fault) -> TriedGroup | None:
+    """Returns which small changes remove the typical failures of a group; None if one was not tested."""
+    stored = [stored_remedies(task_of(folder, each)) for each in group.typical]
+    known = tuple(each for each in stored if each is not None)
+    return TriedGroup(len(group.members), known) if len(known) == len(stored) else None
+
+
+def _joined(groups: Sequence[Fault], tried: Sequence[TriedGroup]) -> list[Fault]:
+    """Joins groups into faults; failures of different drivers, simulators or worlds are never joined."""
+    systems: dict[str, list[int]] = {}
+    for at, group in enumerate(groups):
+        systems.setdefault(group.members[0].system, []).append(at)
+    found: list[Fault] = []
+    for those in systems.values():
+        joined: dict[str, list[Fault]] = {}
+        for at, remedy in zip(those, faults_by_remedy([tried[at] for at in those]), strict=True):
+            if remedy is None:
+                found.append(groups[at])
+            else:
+                joined.setdefault(remedy, []).append(groups[at])
+        found += [_fault(remedy, its) for remedy, its in joined.items()]
+    return sorted(found, key=_order)
+
+
+def _fault(remedy: str, groups: Sequence[Fault]) -> Fault:
+    members = sorted((each for group in groups for each in group.members), key=lambda each: each.name)
+    some = [each for group in groups for each in group.typical][:TRIED]
+    return Fault(0, tuple(members), tuple(some), remedy)
+
+
+def _numbered(found: Sequence[Fault]) -> Iterator[Fault]:
+    for number, each in enumerate(found, 1):
+        yield replace(each, number=number)

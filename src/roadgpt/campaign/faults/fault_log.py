@@ -6,7 +6,9 @@ DIR/faults/
                    if this file exists, the fault is not analysed again
   c01/0017.png     the failure, seen from above
   simplest/c01/    a folder of runs: the simplified road of each failure, under the failure's test number
-  faults.csv       one line per fault; the fault with the most failures comes first
+  faults.csv       one line per fault; the fault with the most failures comes first. A line without
+                   ``removed_by`` is a group of similar failures that belongs to no fault
+  remedies/        which small changes remove a failure (see ``remedy_log``)
   failures.csv     one line per failure, with the fault that it belongs to
 
 For a folder of runs, the level c01/ is left out.
@@ -21,21 +23,21 @@ from typing import Any, NamedTuple, Protocol
 from roadgpt.campaign.faults.fault import Fault
 from roadgpt.campaign.faults.minimise import simplest
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
+from roadgpt.campaign.faults.remedy_log import FOLDER, made_folder
 from roadgpt.campaign.faults.stability import Repeated, Stability, repeated
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.errors import RoadGPTError, UsageError, explained
+from roadgpt.errors import UsageError
 from roadgpt.reading import read_json, strictly
 from roadgpt.run import Run, write_run
-from roadgpt.run.atomic import csv_text, json_text, refuse_links, write_whole
+from roadgpt.run.atomic import csv_text, json_text, write_whole
 from roadgpt.run.folder import is_run, run_folder
 
-FOLDER = "faults"
 SIMPLEST = "simplest"
 TABLE, FAILURES = "faults.csv", "failures.csv"
 HEAD = (
     "fault", "failures", "test", "failed_again", "drives", "share", "way", "side", "radius_m",
-    "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest",
+    "entered_kmh", "needed_g", "grade", "station_m", "reason", "simplest", "removed_by",
 )  # fmt: skip
 HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "max_oob", "beyond_m")
 
@@ -108,7 +110,7 @@ def _repeated(task: AnalysisTask, name: NumberedTest) -> FailureAnalysis:
     run, path = kept_run(task.folder, *name), _page(task.folder, name)
     there = _read(path, run, name, task.times)
     found = there or FailureAnalysis(name, reason_of(run), repeated(run, task.times))
-    _made(path.parent)
+    made_folder(path.parent)
     for picture in (path.with_suffix(f".{kind}") for kind in task.formats):
         if task.draw is not None and (there is None or not picture.is_file()):
             task.draw(run, found.reason, found.stability.sentence, picture)
@@ -124,7 +126,7 @@ def _least(task: AnalysisTask, found: FailureAnalysis) -> FailureAnalysis:
         return found
     run = kept_run(task.folder, *found.name)
     least = simplest(run)
-    write_run(least.run, _made(place.parent.parent))
+    write_run(least.run, made_folder(place.parent.parent))
     found = replace(found, simplest=least.sentence)
     write_whole(_page(task.folder, found.name), json_text(_written(run, found)))
     return found
@@ -154,13 +156,6 @@ def _page(folder: Path, name: NumberedTest) -> Path:
     return folder / FOLDER / name.cell / f"{name.number:04d}.json"
 
 
-def _made(place: Path) -> Path:
-    refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
-    with explained(RoadGPTError, f"cannot make {place}", "make room there"):
-        place.mkdir(parents=True, exist_ok=True)
-    return place
-
-
 def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis], folder: Path) -> Path:
     """Writes ``faults.csv`` and ``failures.csv``; the same failures give the same bytes.
 
@@ -175,7 +170,7 @@ def write_tables(faults: Sequence[Fault], looked: Mapping[int, FailureAnalysis],
     Raises:
         RoadGPTError: a file cannot be written.
     """
-    place = _made(folder / FOLDER)
+    place = made_folder(folder / FOLDER)
     members = [(each, fault.number) for fault in faults for each in fault.members]
     of_failures = [
         [
@@ -195,7 +190,7 @@ def _line(fault: Fault, looked: FailureAnalysis) -> list[Any]:
         fault.number, len(fault.members), str(looked.name), its.failed, len(its.drives), f"{its.share:.3f}",
         reason.way, reason.side or "", _decimal(reason.radius, 1), f"{reason.entered * 3.6:.1f}",
         f"{reason.needed:.3f}", f"{reason.grade:.3f}", f"{reason.station:.1f}", reason.sentence,
-        looked.simplest,
+        looked.simplest, fault.remedy or "",
     ]  # fmt: skip
 
 

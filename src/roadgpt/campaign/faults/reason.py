@@ -13,6 +13,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.campaign.faults.alignment import STRAIGHT
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.road import Road, World
@@ -26,7 +27,6 @@ Way = Literal["wide", "inside", "off", "stopped", "late"]
 
 GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is looked for
-STRAIGHT = 1 / 250  # 1/m; a lane that bends less is called straight
 ENTRY = 0.5  # share of a bend's curvature at which it begins
 JUST_BEFORE = 25.0  # m; if a bend to the other side was this near, a sentence names both
 HILL = 0.02  # of gravity that a crest takes or a dip adds, below which it is not mentioned
@@ -93,7 +93,7 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
     return np.asarray(bend / np.maximum(1 - bend * middle, 0.2))
 
 
-def _bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
+def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
     """Returns stations around a departure, the largest curvature of the lane at these stations, and the
     station of this curvature."""
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
@@ -116,7 +116,7 @@ def manner_of(
     """
     if cause in ("stuck", "timeout"):
         return Manner("stopped" if cause == "stuck" else "late", None, None)
-    _, bend, place = _bend_at(road, world, station)
+    _, bend, place = bend_at(road, world, station)
     if abs(bend) < STRAIGHT:
         return Manner("off", None, None)
     side: Literal["left", "right"] = "left" if bend > 0 else "right"
@@ -134,7 +134,7 @@ def _standing(road: Road, drive: Drive, world: World, station: float, is_stuck: 
 
 
 def _departed(road: Road, drive: Drive, verdict: Verdict, world: World, station: float) -> FailureReason:
-    near, bend, place = _bend_at(road, world, station)
+    near, bend, place = bend_at(road, world, station)
     begin = _entry(road, world, place, bend)
     entered = _speed_at(drive, min(begin, station))
     speed = _speed_at(drive, min(place, station))

@@ -79,12 +79,9 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         UsageError: There are no roads, or a file cannot be read.
         RoadGPTError: A file cannot be written.
     """
-    from roadgpt.campaign.faults import fault_log
     from roadgpt.campaign.faults.failures import drivers_of
     from roadgpt.campaign.faults.fault import faults_in
-    from roadgpt.campaign.faults.fault_log import analyse, write_tables
-    from roadgpt.campaign.workers.unordered_map import unordered_map
-    from roadgpt.campaign.workers.worker_log import LOG
+    from roadgpt.campaign.faults.fault_log import FAILURES, write_tables
     from roadgpt.drive.permission import require_permission
 
     found = faults_in(place)
@@ -93,31 +90,62 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
         return
     for driver in sorted(drivers_of(place)):
         require_permission(driver)  # here, where the user can be asked, and not in each of the workers
-    look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
-    draw: FailureDrawing | None = None
-    if look.formats:
-        from roadgpt.report.fault import draw_fault as draw
-    tasks = [
-        fault_log.AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
-        for each in found.them
-    ]
-    steps = unordered_map(analyse, tasks, look.workers, place / LOG)
     try:
-        looked = dict(watched(steps, len(tasks), "faults", look.is_quiet))
+        found = _tested(place, found, look)
+        look.say(f"{found.sentence}; analysing a typical failure of each", is_news=True)
+        looked = _analysed(place, found, look)
     except KeyboardInterrupt:
         go_on = shlex.join(["roadgpt", "faults", str(place), *look.words])
         warn(f"stopped; finished work is kept; continue with: {go_on}")
         raise
     table = write_tables(found.them, looked, place)
     look.say("\n".join(_summary(place, found, looked)))
-    look.say(f"tables: {table} and {table.with_name(fault_log.FAILURES)}")
+    look.say(f"tables: {table} and {table.with_name(FAILURES)}")
     if look.formats:
         look.say(f"pictures: {_pictures(place, found, look.formats)}")
 
 
+def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
+    """Tries small changes on the typical failures of all groups; returns the faults into which this joins the
+    groups.
+    """
+    from roadgpt.campaign.faults.fault import faults_in
+    from roadgpt.campaign.faults.remedy_log import task_of, try_remedies
+    from roadgpt.campaign.workers.unordered_map import unordered_map
+    from roadgpt.campaign.workers.worker_log import LOG
+
+    if found.is_tested:
+        return found
+    tasks = [task_of(place, each) for group in found.them for each in group.typical]
+    look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
+    steps = unordered_map(try_remedies, tasks, look.workers, place / LOG)
+    for _ in watched(steps, len(tasks), "failures", look.is_quiet):
+        pass
+    return faults_in(place)
+
+
+def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
+    """Analyses a typical failure of each fault or group; returns the analyses by number."""
+    from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
+    from roadgpt.campaign.workers.unordered_map import unordered_map
+    from roadgpt.campaign.workers.worker_log import LOG
+
+    draw: FailureDrawing | None = None
+    if look.formats:
+        from roadgpt.report.fault import draw_fault as draw
+    tasks = [
+        AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
+        for each in found.them
+    ]
+    steps = unordered_map(analyse, tasks, look.workers, place / LOG)
+    return dict(watched(steps, len(tasks), "faults", look.is_quiet))
+
+
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
-    """Yields a row for each fault: its failures, how often it fails again, and why a typical test failed."""
-    from roadgpt.study.chapters.wording import plural
+    """Yields two rows for each fault: its failures, how often it fails again, why a typical test failed, and
+    the small change that removes the failures.
+    """
+    from roadgpt.plural import plural
 
     wide = max([len("test"), *(len(str(its.name)) for its in looked.values())])
     yield f"{'fault':>5} {'failures':>8} {'again':>7}  {'test':<{wide}}  why"
@@ -126,17 +154,20 @@ def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis
         again = f"{its.stability.failed}/{len(its.stability.drives)}"
         name = f"{its.name!s:<{wide}}"
         yield f"{fault.number:>5} {len(fault.members):>8,} {again:>7}  {name}  {its.reason.sentence}"
+        removed = f"disappears with {fault.removed_by}" if fault.remedy else "a group; it belongs to no fault"
+        yield f"{'':>{wide + 26}}{removed}"
         if its.simplest:
             yield f"{'':>{wide + 26}}simplest: {its.simplest}"
     stable = sum(its.stability.is_stable for its in looked.values())
     yield found.headline
-    yield f"{stable:,} of {plural(len(found.them), 'fault')} fail again in at least half of the drives"
+    what = plural(len(found.them), "fault" if found.distinct == len(found.them) else "fault or group")
+    yield f"{stable:,} of {what} fail again in at least half of the drives"
     if looked:
         yield f"look at one: {shlex.join(['roadgpt', 'view', f'{place}/{looked[1].name}'])}"
 
 
 def _pictures(place: Path, found: "Faults", formats: tuple[str, ...]) -> str:
-    from roadgpt.campaign.faults.fault_log import FOLDER
+    from roadgpt.campaign.faults.remedy_log import FOLDER
 
     cells = sorted({fault.typical[0].name.cell for fault in found.them})
     return ", ".join(f"{place / FOLDER / cell}/*.{kind}" for cell in cells for kind in formats)
@@ -159,11 +190,12 @@ def command(
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
-    Two failures belong to the same fault if the 60 m of road around the lane departure are alike. The most
-    typical failure of each fault is driven again several times with slightly varied friction, start position
-    and perception delay; the share of drives that fail again is reported. DIR/faults gets a picture and a
-    sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per failure.
-    Finished work is not repeated, so Ctrl-C loses nothing.
+    Failures are grouped where the 60 m of road around the lane departure are alike. Typical failures of each
+    group are driven with small changes, such as a 15 % larger radius of the bend. Groups that the same change
+    removes are one fault. The most typical failure of each fault is driven again several times with
+    slightly varied friction, start position and perception delay; the share of drives that fail again is
+    reported. DIR/faults gets a picture and a sentence for each fault, faults.csv with a line per fault, and
+    failures.csv with a line per failure. Finished work is not repeated, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

@@ -88,9 +88,9 @@ def alignment(prompts: Path, drives: bool, **rest: Any) -> int:
 
 def _study(kind: "Kind", prompts: "Sequence[Prompt]", source: str, drives: bool, rest: dict[str, Any]) -> int:
     """Carries out a study, writes its report, prints the report's path, and returns the exit status."""
+    from roadgpt.plural import plural
     from roadgpt.run import check_parts
     from roadgpt.run.folder import finished
-    from roadgpt.study.chapters.wording import plural
     from roadgpt.study.execution import work
     from roadgpt.study.plan import open_folder
     from roadgpt.study.study_report import keep_problems, write_study

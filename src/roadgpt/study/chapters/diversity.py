@@ -6,9 +6,10 @@ from itertools import combinations
 
 import numpy as np
 
+from roadgpt.plural import plural
 from roadgpt.report.page import Block, Details, Figure, Section, Table, TableCell, cell, linked
 from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.study.chapters.wording import decimal, plural, row
+from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import StudyPartRecord
 from roadgpt.study.similarity import between
 

@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from roadgpt.campaign.faults.fault import DEFINED, Fault, Faults
-from roadgpt.campaign.faults.fault_log import FOLDER, TABLE, FailureAnalysis, kept_analysis
+from roadgpt.campaign.faults.fault import DEFINED, GROUPED, Fault, Faults
+from roadgpt.campaign.faults.fault_log import TABLE, FailureAnalysis, kept_analysis
 from roadgpt.campaign.faults.reason import FailureReason, reason_of
+from roadgpt.campaign.faults.remedy_log import FOLDER
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import UsageError
+from roadgpt.plural import plural
 from roadgpt.report.canvas import FORMATS
 from roadgpt.report.page import (
     Block,
@@ -28,7 +30,7 @@ from roadgpt.report.page import (
 )
 from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.run import Run
-from roadgpt.study.chapters.wording import percent, plural, row
+from roadgpt.study.chapters.wording import percent, row
 
 SHOWN = 24  # faults with a picture
 LISTED = 300  # faults of the table
@@ -92,8 +94,9 @@ def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
     sure = f"{sum(measured)} of {len(measured)} that were driven again" if measured else ""
+    what = "faults" if found.distinct == len(found.them) else "faults and groups"
     first = f"{found.headline[:1].upper()}{found.headline[1:]}."
-    return [first, *([f"Of the faults, {sure} fail every second time or oftener."] if sure else [])]
+    return [first, *([f"Of the {what}, {sure} fail every second time or oftener."] if sure else [])]
 
 
 def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
@@ -101,7 +104,7 @@ def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Se
     fault."""
     if not summaries:
         return None
-    blocks: list[Block] = [f"{DEFINED} {DRAWN}"]
+    blocks: list[Block] = [f"{DEFINED if found.distinct else GROUPED} {DRAWN}"]
     missing = [each for each in summaries if each.looked is None]
     if missing:
         what = "was not measured" if len(missing) == len(summaries) else f"was not measured of {len(missing)}"
@@ -109,13 +112,14 @@ def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Se
             [
                 f"How often they fail again {what}: ",
                 ShellCommand(shlex.join(["roadgpt", "faults", str(folder), "--minimise"])),
-                " drives a typical failure of each fault again and again, with friction, start and sensors "
-                "off a little, and looks for the simplest road that fails in the same way.",
+                " finds which groups are one fault, drives a typical failure of each fault again and again "
+                "with friction, start and sensors off a little, and looks for the simplest road that fails "
+                "in the same way.",
             ]
         )
     blocks.append(Cards([_card(folder, each, found) for each in summaries[:SHOWN]]))
     blocks.append(_all(folder, found, summaries))
-    return Section("Distinct faults", blocks)
+    return Section("Distinct faults" if found.distinct else "Groups of similar failures", blocks)
 
 
 def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
@@ -127,7 +131,7 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
         share,
     ]
     reason = f"{summary.reason[:1].upper()}{summary.reason[1:]}."
-    lines: list[Line] = [reason, _stable(summary)]
+    lines: list[Line] = [reason, *_removed(summary.fault, found), _stable(summary)]
     lines += _farthest(summary.fault)
     if summary.looked and summary.looked.simplest:
         lines.append(f"Simplest road that fails in the same way: {summary.looked.simplest}.")
@@ -136,6 +140,13 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
     station = summary.why.station if summary.why else summary.fault.typical[0].station
     picture = draw_site(site_of(summary.run.road, summary.run.world, summary.run.drive, station), reason)
     return FigureCard(title, picture, lines)
+
+
+def _removed(fault: Fault, found: Faults) -> list[Line]:
+    """Returns which small change removes the failures of a fault; nothing if the groups were not tested."""
+    if not found.is_tested:
+        return []
+    return [f"Disappears with {fault.removed_by}." if fault.remedy else "A group that belongs to no fault."]
 
 
 def _farthest(fault: Fault) -> list[Line]:
@@ -167,16 +178,18 @@ def _all(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Bloc
         its = each.looked.stability if each.looked else None
         name = cell(str(each.name), href=_picture(folder, each))
         failed = None if its is None else cell(its.share, f"{its.failed} of {len(its.drives)}")
-        rows.append(row(each.fault.number, len(each.fault.members), name, failed, each.reason))
-    heads = ["fault", "tests", "typical test", "failed again", "why"]
-    caption = f"All {plural(len(found.them), 'fault')}"
+        removed = each.fault.removed_by or None
+        rows.append(row(each.fault.number, len(each.fault.members), name, failed, removed, each.reason))
+    what = "fault" if found.distinct == len(found.them) else "fault or group"
+    heads = [what, "tests", "typical test", "failed again", "disappears with", "why"]
+    caption = f"All {len(found.them):,}"
     if len(summaries) < len(found.them):
-        caption = f"The first {len(summaries)} of {len(found.them):,} faults"
+        caption = f"The first {len(summaries)} of {len(found.them):,}"
     table = Table("faults", caption, heads, rows)
     beside: list[Block] = []
     if (folder / FOLDER / TABLE).is_file():
         beside.append(["As roadgpt faults last wrote them: ", linked(TABLE, f"{FOLDER}/{TABLE}"), "."])
-    return Details("All faults as a table", [table, *beside])
+    return Details("All as a table", [table, *beside])
 
 
 def what_to_try(steps: Steps) -> list[Section]:

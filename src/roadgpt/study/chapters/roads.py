@@ -6,10 +6,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.plural import plural
 from roadgpt.report.page import Block, Cards, Figure, FigureCard, Section, Table, TableCell, cell
 from roadgpt.report.page.gallery import Thumbnail, gallery
 from roadgpt.report.page.heat import AxisRange, heat, is_map
-from roadgpt.study.chapters.wording import decimal, plural, row
+from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 
 SHOWN = 3  # pictures of the first section

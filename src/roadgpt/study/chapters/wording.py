@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 
+from roadgpt.plural import plural
 from roadgpt.report.page import Block, Details, TableCell, cell
 from roadgpt.report.page.forest import Share
 from roadgpt.report.page.model import Raw
@@ -28,11 +29,6 @@ def percent(share: float, digits: int = 1) -> str:
 def share_of(k: int, n: int) -> str:
     """Returns a count and its share as text, such as '182 of 300 (60.7 %)'."""
     return f"{k} of {n}" + (f" ({percent(k / n)})" if n else "")
-
-
-def plural(n: int, word: str) -> str:
-    """Returns a count with its noun, such as '1 road' or '2 roads'."""
-    return f"{n:,} {word}{'' if n == 1 else 's'}"
 
 
 def row(*values: Raw | TableCell) -> list[TableCell]:

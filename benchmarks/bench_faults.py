@@ -1,0 +1,181 @@
+"""Whether distinct faults are distinct: failures of one fault disappear with one change, others do not.
+
+    python benchmarks/bench_faults.py                       the quick look that `make bench` takes
+    python benchmarks/bench_faults.py --whole -j 2          two drivers in five conditions, 200 tests each
+    python benchmarks/bench_faults.py --whole --folder FOLDER
+
+Each campaign searches for failures, and `roadgpt faults` joins them into faults by the small changes that
+remove their typical failures. Then other failures of each fault, drawn at random, which had no part in this
+are driven with the same changes. A pair of two failures of one fault has to disappear with the change that
+defines the fault; a pair of failures of two faults must not disappear with the change of either. Groups of
+failures that belong to no fault are counted and not paired. What was found is kept in FOLDER, so an
+interrupted run goes on.
+"""
+
+import argparse
+import itertools
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from roadgpt.campaign.faults.failures import LocatedFailure
+from roadgpt.campaign.faults.fault import Fault, faults_in
+from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of, try_remedies
+from roadgpt.campaign.workers.unordered_map import unordered_map
+
+DRIVERS = ("beamng_like", "lane_centring")
+CONDITIONS: dict[str, tuple[str, ...]] = {
+    "dry": ("a flat road",),
+    "friction 0.6": ("a flat road", "--friction", "0.6"),
+    "hills": ("a hilly road",),
+    "100 km/h": ("a flat road", "--speed-limit", "100"),
+    "winding": ("a winding road",),
+}
+USUAL = ("--goal", "failures", "--map-size", "200", "--oob-tolerance", "0.85", "--quiet")
+OTHERS = 6  # failures of each fault that are tested besides
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """How many pairs of failures disappear with one change."""
+
+    removed: int = 0
+    all: int = 0
+
+    def __add__(self, other: "Pairs") -> "Pairs":
+        return Pairs(self.removed + other.removed, self.all + other.all)
+
+    def __str__(self) -> str:
+        return f"{self.removed} of {self.all} ({self.removed / self.all:.0%})" if self.all else "-"
+
+
+@dataclass(frozen=True)
+class Row:
+    """What one campaign shows."""
+
+    driver: str
+    condition: str
+    failures: int
+    faults: tuple[Fault, ...]
+    alone: int
+    """Failures that belong to no fault."""
+    within: Pairs
+    across: Pairs
+
+
+Removed = Mapping[str, bool | None]
+"""By name of the change: whether a failure disappears with it."""
+
+
+def main() -> None:
+    """Runs the campaigns that the options name, and prints the table."""
+    options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    options.add_argument("--whole", action="store_true", help="all conditions, 200 tests each")
+    options.add_argument("--seed", type=int, default=41)
+    options.add_argument("-j", "--workers", type=int, default=1)
+    options.add_argument("--folder", type=Path)
+    given = options.parse_args()
+    conditions, tests = (CONDITIONS, 200) if given.whole else (["dry"], 60)
+    with tempfile.TemporaryDirectory() as spare:
+        folder = given.folder or Path(spare)
+        folder.mkdir(parents=True, exist_ok=True)
+        rows = []
+        for condition, driver in itertools.product(conditions, DRIVERS):
+            rows.append(measured(folder, driver, condition, tests, given.seed, given.workers))
+            print(f"{driver}, {condition}: done", file=sys.stderr, flush=True)
+    print("\n".join(table(rows)))
+
+
+def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, workers: int) -> Row:
+    """Searches, finds the faults, and tests further failures of each."""
+    place = folder / f"{driver} {condition} {tests} {seed}".replace(" ", "-").replace("/", "")
+    used = place / "used.json"
+    if not used.is_file():
+        words = [*CONDITIONS[condition], *USUAL, "-n", str(tests), "--seed", str(seed), "--driver", driver]
+        begun = (place / "campaign.sqlite").is_file()
+        first = ["resume", str(place), "--quiet"] if begun else ["campaign", *words, "--out", str(place)]
+        many = ["-j", str(workers)]
+        ours(*first, *many)
+        ours("faults", str(place), "--repeat", "1", "--no-plot", "--quiet", *many)
+        every = [each for fault in faults_in(place).them for each in fault.members]
+        tried = [str(each.name) for each in every if stored_remedies(task_of(place, each)) is not None]
+        used.write_text(json.dumps(tried), encoding="utf-8")
+    found = faults_in(place)
+    faults = tuple(each for each in found.them if each.remedy)
+    alone = sum(len(each.members) for each in found.them if not each.remedy)
+    removed = tested(place, faults, set(json.loads(used.read_text(encoding="utf-8"))), seed, workers)
+    return Row(driver, condition, found.failures, faults, alone, *pairs(faults, removed))
+
+
+def ours(*words: str) -> None:
+    """Runs a command of RoadGPT."""
+    subprocess.run([sys.executable, "-m", "roadgpt", *words], check=True)
+
+
+def tested(
+    place: Path, faults: Sequence[Fault], used: set[str], seed: int, workers: int
+) -> list[list[Removed]]:
+    """Tries the changes on failures of each fault that had no part in finding the faults."""
+    rng = np.random.default_rng(seed)
+    drawn: list[list[LocatedFailure]] = []
+    for fault in faults:
+        others = [each for each in fault.members if str(each.name) not in used]
+        some = sorted(rng.permutation(len(others))[:OTHERS])
+        drawn.append([others[at] for at in some])
+    tasks = [task_of(place, each) for some in drawn for each in some]
+    for _ in unordered_map(try_remedies, tasks, workers, place / "workers.log"):
+        pass
+    stored = [[stored_remedies(task_of(place, each)) for each in some] for some in drawn]
+    return [[each for each in some if each is not None] for some in stored]
+
+
+def pairs(faults: Sequence[Fault], removed: Sequence[Sequence[Removed]]) -> tuple[Pairs, Pairs]:
+    """Returns the pairs of failures of one fault, and those of two faults, that disappear with one change."""
+    within, across = Pairs(), Pairs()
+    for fault, some in zip(faults, removed, strict=True):
+        for one, other in itertools.combinations(some, 2):
+            within += Pairs(_both(one, other, fault), 1)
+    both = list(zip(faults, removed, strict=True))
+    for (fault, some), (second, others) in itertools.combinations(both, 2):
+        for one, other in itertools.product(some, others):
+            across += Pairs(_both(one, other, fault) or _both(one, other, second), 1)
+    return within, across
+
+
+def _both(one: Removed, other: Removed, fault: Fault) -> bool:
+    name = str(fault.remedy)
+    return bool(one[name]) and bool(other[name])
+
+
+def table(rows: Sequence[Row]) -> Iterator[str]:
+    """Yields the lines of the table."""
+    yield (
+        "| driver | condition | failures | distinct faults: failures, what removes them | no fault | "
+        "pairs within | pairs across |"
+    )
+    yield "|---|---|---|---|---|---|---|"
+    for row in rows:
+        faults = "; ".join(f"{len(each.members)}: {each.removed_by}" for each in row.faults)
+        yield (
+            f"| {row.driver} | {row.condition} | {row.failures} | {len(row.faults)} ({faults}) "
+            f"| {row.alone} | {row.within} | {row.across} |"
+        )
+    within, across = (
+        sum((one for one in column), Pairs())
+        for column in zip(*((row.within, row.across) for row in rows), strict=True)
+    )
+    count = sum(len(row.faults) for row in rows)
+    yield (
+        f"| all | | {sum(row.failures for row in rows)} | {count} | {sum(row.alone for row in rows)} | "
+        f"{within} | {across} |"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,116 @@
+"""Changes the curvature and the grade of a road piece by piece, and builds the changed road.
+
+A road is sampled every half metre. A change makes some samples longer or shorter and changes their curvature
+or grade; everything behind them moves along. The result is built for one drive: it may leave the map or meet
+itself.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry import GradeProfile, Piece, PieceCurve
+from roadgpt.road import Road
+
+Array = NDArray[np.float64]
+
+STEP = 0.5  # m, between samples
+STRAIGHT = 1 / 250  # 1/m; a road that bends less is called straight
+
+
+class Bend(NamedTuple):
+    """A bend: the indices of its first and last sample."""
+
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, eq=False)
+class Alignment:
+    """Curvature and grade of a road at its samples; all arrays have shape ``(n,)``."""
+
+    steps: Array
+    """Distance from each sample to the one before, metres; 0 for the first."""
+    curvature: Array
+    """1/m, positive to the left; it changes linearly between samples."""
+    grade: Array
+    """Grade as a ratio; it changes linearly between samples."""
+
+    @classmethod
+    def of(cls, road: Road) -> Self:
+        """Samples a road about every half metre."""
+        stations = np.linspace(0.0, road.length, int(np.ceil(road.length / STEP)) + 1)
+        return cls(np.diff(stations, prepend=0.0), road.curvature(stations), road.grade(stations))
+
+    @property
+    def stations(self) -> Array:
+        """Stations of the samples, metres."""
+        return np.cumsum(self.steps)
+
+    def bends(self) -> list[Bend]:
+        """Returns the bends in order: the longest pieces that bend to one side all along."""
+        side = np.where(np.abs(self.curvature) > STRAIGHT, np.sign(self.curvature), 0.0)
+        edges = [0, *(np.flatnonzero(np.diff(side)) + 1), len(side)]
+        pieces = pairwise(edges)
+        return [Bend(int(first), int(end) - 1) for first, end in pieces if side[first]]
+
+    def widened(self, bend: Bend, factor: float) -> Self:
+        """Multiplies the radius and the length of a bend, so that it turns as many degrees as before."""
+        within = slice(bend.first, bend.last + 1)
+        steps, curvature = self.steps.copy(), self.curvature.copy()
+        steps[bend.first + 1 : bend.last + 1] *= factor
+        curvature[within] /= factor
+        return replace(self, steps=steps, curvature=curvature)
+
+    def shortened(self, bend: Bend, factor: float) -> Self:
+        """Multiplies the length of a bend at the same radius, so that it turns fewer degrees."""
+        steps = self.steps.copy()
+        steps[bend.first + 1 : bend.last + 1] *= factor
+        return replace(self, steps=steps)
+
+    def eased(self, around: Bend, length: float) -> Self:
+        """Makes the curvature change more slowly around a bend: each value becomes the mean over ``length``
+        metres, from ``length`` before the bend to ``length`` behind it.
+        """
+        count = 2 * round(length / STEP / 2)
+        padded = np.pad(self.curvature, count // 2, mode="edge")
+        mean = np.convolve(padded, np.ones(count + 1) / (count + 1), "valid")
+        near = slice(max(0, around.first - count), around.last + count + 1)
+        curvature = self.curvature.copy()
+        curvature[near] = mean[near]
+        return replace(self, curvature=curvature)
+
+    def with_straight(self, bend: Bend, length: float) -> Self:
+        """Inserts a straight of ``length`` metres before a bend."""
+        count, at = round(length / STEP), bend.first
+        straight = self.curvature.copy()
+        straight[at] = 0.0
+        return replace(
+            self,
+            steps=np.insert(self.steps, at + 1, np.full(count, STEP)),
+            curvature=np.insert(straight, at, np.zeros(count)),
+            grade=np.insert(self.grade, at, np.full(count, self.grade[at])),
+        )
+
+    def levelled(self, factor: float) -> Self:
+        """Multiplies all grades."""
+        return replace(self, grade=self.grade * factor)
+
+    def road(self, like: Road) -> Road:
+        """Builds the road, beginning at the place, in the direction and at the height of another one."""
+        x, y = like.plan.at(np.array(0.0))
+        bends = self.curvature
+        plan = PieceCurve(
+            float(x),
+            float(y),
+            float(like.plan.heading(np.array(0.0))),
+            tuple(
+                Piece(float(length), float(k0), float(k1))
+                for length, k0, k1 in zip(self.steps[1:], bends[:-1], bends[1:], strict=True)
+            ),
+        )
+        height = float(like.elevation.height(np.array(0.0)))
+        return Road(plan, GradeProfile(height, tuple(self.stations), tuple(self.grade)))

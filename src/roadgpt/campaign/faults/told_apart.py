@@ -1,0 +1,86 @@
+"""Joins groups of similar failures into distinct faults by the small changes that make them disappear.
+
+A fault is a set of failures that one small change removes, where this change leaves the other faults as they
+are. So two failures of one fault disappear with the same change, and two failures of different faults do not.
+Groups that no such change sets apart from the others belong to no fault.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.campaign.faults.remedy import REMEDIES
+
+Array = NDArray[np.float64]
+
+WITHIN = 0.8  # share of pairs inside a fault that disappear with its change, at least
+ACROSS = 0.2  # share of pairs of two faults that disappear with the change of one of them, at most
+MOST = 4  # faults of one driver in one world
+EPS = 1e-9
+
+
+class TriedGroup(NamedTuple):
+    """A group of similar failures, of which some were tested."""
+
+    size: int
+    """Number of failures in the group."""
+    removed: tuple[Mapping[str, bool | None], ...]
+    """For each tested failure: by name of the change, whether the failure disappeared with it."""
+
+
+def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
+    """Returns for each group the name of the change that defines its fault; None if it belongs to no fault.
+
+    Of all sets of changes whose faults keep to ``WITHIN`` and ``ACROSS``, the one is taken whose faults have
+    the most failures; of equal ones, the one with the fewest and smallest changes. There are four at most.
+    """
+    shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
+    best: list[str | None] = [None] * len(groups)
+    most = 0
+    for chosen in _subsets(range(len(REMEDIES))):
+        found = _assigned(shares, chosen)
+        count = sum(group.size for group, at in zip(groups, found, strict=True) if at is not None)
+        if count > most and _is_apart(groups, shares, found):
+            best, most = [None if at is None else REMEDIES[at].name for at in found], count
+    return best
+
+
+def _subsets(numbers: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Yields all sets of one to four numbers, small sets first."""
+    for count in range(1, MOST + 1):
+        yield from combinations(numbers, count)
+
+
+def _share(group: TriedGroup, name: str) -> float:
+    """Returns the share of a group's tested failures that disappear with a change."""
+    return sum(bool(each[name]) for each in group.removed) / len(group.removed) if group.removed else 0.0
+
+
+def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
+    """Returns for each group the one of the chosen changes that removes most of it, at least half; None if
+    there is none."""
+    found: list[int | None] = []
+    for row in shares:
+        at = max(chosen, key=lambda one: (row[one], -one))
+        found.append(at if row[at] > 0.5 else None)
+    return found
+
+
+def _is_apart(groups: Sequence[TriedGroup], shares: Array, found: Sequence[int | None]) -> bool:
+    """Tells whether the faults keep to ``WITHIN`` and ``ACROSS``; each group counts by its size."""
+    members = {at: [i for i, own in enumerate(found) if own == at] for at in found if at is not None}
+    sizes = np.array([group.size for group in groups], float)
+
+    def removed(at: int, by: int) -> float:
+        return float(np.average(shares[members[at], by], weights=sizes[members[at]]))
+
+    if any(removed(at, at) ** 2 < WITHIN - EPS for at in members):
+        return False
+    # a pair disappears with the change of either fault
+    return all(
+        1 - (1 - removed(one, other)) * (1 - removed(other, one)) <= ACROSS + EPS
+        for one, other in combinations(members, 2)
+    )
