@@ -1,7 +1,7 @@
 """Whether distinct faults are distinct: failures of one fault disappear with one change, others do not.
 
     python benchmarks/bench_faults.py                       the quick look that `make bench` takes
-    python benchmarks/bench_faults.py --whole -j 2          two drivers in five conditions, 200 tests each
+    python benchmarks/bench_faults.py --whole -j 2          two drivers in four conditions, 200 tests each
     python benchmarks/bench_faults.py --whole --folder FOLDER
 
 Each campaign searches for failures, and `roadgpt faults` joins them into faults by the small changes that
@@ -35,7 +35,6 @@ CONDITIONS: dict[str, tuple[str, ...]] = {
     "friction 0.6": ("a flat road", "--friction", "0.6"),
     "hills": ("a hilly road",),
     "100 km/h": ("a flat road", "--speed-limit", "100"),
-    "winding": ("a winding road",),
 }
 USUAL = ("--goal", "failures", "--map-size", "200", "--oob-tolerance", "0.85", "--quiet")
 OTHERS = 6  # failures of each fault that are tested besides

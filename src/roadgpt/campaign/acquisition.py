@@ -20,7 +20,7 @@ from roadgpt.campaign.model import Goal
 from roadgpt.design.variety import PlanShape, apart
 from roadgpt.geometry.curve import Array
 
-ANYWHERE = 0.03  # weight of a failure in a cell with many failures; a first failure weighs about 1
+ANYWHERE = 0.008  # weight of a failure in a cell with many failures; a first failure weighs about 1
 NOVELTY = 3  # where there are k failures, one more is worth 1 / (1 + k) to this power
 
 

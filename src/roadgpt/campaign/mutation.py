@@ -15,7 +15,7 @@ from roadgpt.road.design import MAX_INCLINE
 
 STRAIGHTS = (1.0, 150.0)  # m
 TURNS = (12.0, 200.0)  # degrees
-TRANSITIONS = (2.0, 16.0)  # m
+TRANSITIONS = (0.1, 16.0)  # m; at 0.1 m the curvature changes at once
 OVER_LEAST_RADIUS = 1.03  # times the world's smallest radius: a spline through points 2 m apart is tighter
 WIDEST = 120.0  # m, of a radius
 STRETCH = 0.45  # standard deviation of the logarithm of a length, a radius, a transition
@@ -26,6 +26,10 @@ MOST_ELEMENTS = 24  # of a road
 PACKED = (0.05, 0.8)  # share of their lengths that straights keep when all are shortened
 NEW_STRAIGHT = (3.0, 45.0)  # m, length of an inserted straight
 NEW_TURN = (20.0, 120.0)  # degrees, of an inserted turn
+ENLARGED = 0.25  # standard deviation of the logarithm by which a whole plan is scaled
+REDRAWN = (0.1, 1.2)  # logarithm of the widest radius of redrawn turns over the smallest allowed one
+SPARED = 0.5  # largest share of straights that a road with redrawn turns keeps
+SHORT = 30.0  # m, longest of these straights
 NUMBERS = Element._fields.index("vertical_radius") + 1  # fields that are interpolated
 
 Rng = np.random.Generator
@@ -130,7 +134,7 @@ def _farther(element: Element, rng: Rng, world: World) -> Element:
 
 
 def _smoother(element: Element, rng: Rng, world: World) -> Element:
-    return element._replace(transition=_scaled(element.transition, TRANSITIONS, rng))
+    return element._replace(transition=_transition(rng))
 
 
 def _steeper(element: Element, rng: Rng, world: World) -> Element:
@@ -155,7 +159,7 @@ def _inserted(elements: Elements, rng: Rng, world: World) -> Elements:
     incline = elements[min(at, len(elements) - 1)].incline
     turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
     radius = min(world.limits.min_radius * OVER_LEAST_RADIUS * exp(float(rng.exponential(0.5))), WIDEST)
-    new = Element(turn=turn, radius=radius, transition=float(rng.uniform(*TRANSITIONS)), incline=incline)
+    new = Element(turn=turn, radius=radius, transition=_transition(rng), incline=incline)
     straight = Element(straight=float(rng.uniform(*NEW_STRAIGHT)), incline=incline)
     return (*elements[:at], new, straight, *elements[at:])
 
@@ -192,12 +196,39 @@ def _wound(elements: Elements, rng: Rng, world: World) -> Elements:
         Element(
             turn=hand * float(rng.uniform(*NEW_TURN)),
             radius=radius,
-            transition=float(rng.uniform(*TRANSITIONS)),
+            transition=_transition(rng),
             incline=incline,
         )
         for hand in (side, -side)
     )
     return (*elements[:at], *pair, *elements[at:])
+
+
+def _enlarged(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Scales the plan of the road: all straights and radii by the same factor."""
+    factor = exp(ENLARGED * float(rng.standard_normal()))
+    least = world.limits.min_radius * OVER_LEAST_RADIUS
+    return tuple(
+        one._replace(radius=float(np.clip(one.radius * factor, least, WIDEST)))
+        if one.turn
+        else one._replace(straight=float(np.clip(one.straight * factor, *STRAIGHTS)))
+        for one in elements
+    )
+
+
+def redrawn(elements: Elements, rng: Rng, world: World) -> Elements:
+    """Draws the sides and figures of all turns anew, leaves out most straights, and shortens the others."""
+    least = world.limits.min_radius * OVER_LEAST_RADIUS
+    most, spared = float(rng.uniform(*REDRAWN)), rng.uniform(0.0, SPARED)
+    out = []
+    for one in elements:
+        if one.turn:
+            turn = float(rng.choice((-1, 1)) * rng.uniform(*NEW_TURN))
+            radius = least * exp(float(rng.uniform(0.0, most)))
+            out.append(one._replace(turn=turn, radius=radius, transition=_transition(rng)))
+        elif rng.random() < spared:
+            out.append(one._replace(straight=float(rng.uniform(STRAIGHTS[0], SHORT))))
+    return tuple(out) or elements
 
 
 def _backwards(elements: Elements, rng: Rng, world: World) -> Elements:
@@ -241,9 +272,16 @@ MUTATIONS: dict[str, Mutation] = {
     "cut out": Mutation(_cut_out, 1.0, False),
     "packed": Mutation(_packed, 1.0, True),
     "wound": Mutation(_wound, 1.0, False),
+    "enlarged": Mutation(_enlarged, 1.5, True),
+    "redrawn": Mutation(redrawn, 0.5, False),
     "mirrored": Mutation(lambda elements, rng, world: mirrored(elements), 0.5, False),
     "backwards": Mutation(_backwards, 0.5, False),
 }
+
+
+def _transition(rng: Rng) -> float:
+    """Draws the length of a clothoid in metres; lengths of every order of magnitude are equally likely."""
+    return exp(float(rng.uniform(*np.log(TRANSITIONS))))
 
 
 def _scaled(value: float, limits: tuple[float, float], rng: Rng) -> float:

@@ -29,8 +29,8 @@ class SearchSettings(Frozen):
     ``quality_diversity`` uses the others.
     """
 
-    batch: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Number of tests in a batch."""
+    batch: Annotated[int, Field(ge=1, le=1000)] = 5
+    """Number of tests in a batch. At most two batches are driven at the same time."""
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = USUAL_AXES
     """Names of the features that are the axes of the map."""
     also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] | None = None

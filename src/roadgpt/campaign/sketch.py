@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.brief.element import Elements
 from roadgpt.brief.outline import outline
 from roadgpt.campaign.behaviour import behaviour_of_line
-from roadgpt.campaign.mutation import varied
+from roadgpt.campaign.mutation import redrawn, varied
 from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
 from roadgpt.campaign.variation import (
     NOBODY,
@@ -35,6 +35,7 @@ from roadgpt.road import Design
 
 TRIES = 6  # mutations that are tried for one sketch, until one has room on the map
 ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
+ANEW = 0.5  # probability that the turns of a draft are redrawn before these rounds
 BOLD = 2  # of these; later tries mostly change only numbers, which violates fewer requirements
 
 
@@ -57,6 +58,8 @@ def sketch(task: VariationTask) -> Sketch | None:
     if task.kind == "wild":
         found = drafted(task.setting, rng)
         parents = [elements_of(found[0].segments)] if found else []
+        if parents and rng.random() < ANEW:
+            parents = [redrawn(parents[0], rng, task.setting.world)]
     else:
         parents = [elements_of(design.segments) for design in task.parents]
     asked = outline(task.setting.brief or NOBODY).turns

@@ -15,7 +15,6 @@ from roadgpt.road import Design, Road, World, build
 from roadgpt.run import Request, Setup
 from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
 
-BATCH = 5  # roads that are chosen together; the outcomes of all earlier ones are known then
 KEPT = 100  # tests whose outcomes are waited for
 CAR_WIDTH = 2.0  # m, of a usual car, from which the margin of a drive is estimated
 
@@ -48,7 +47,7 @@ class RoadSearch:
             setup: the rules that every road keeps.
         """
         request = Request(words=words, seed=seed, world=world, setup=setup)
-        self._cell = Cell("c01", request, brief, "quality_diversity", "failures", {"batch": BATCH})
+        self._cell = Cell("c01", request, brief, "quality_diversity", "failures")
         self._search = QualityDiversity(self._cell)
         self._waiting: deque[Proposal] = deque()
         self._asked: dict[int, tuple[Road, Result]] = {}
@@ -78,7 +77,7 @@ class RoadSearch:
         """Chooses the next batch from all that was told."""
         self._search.tell(self._told)
         self._told = []
-        found = self._search.ask(self._batch, self._number + 1, BATCH, HerePool())
+        found = self._search.ask(self._batch, self._number + 1, self._search.batch_size, HerePool())
         self._batch += 1
         if not found:
             raise DesignError("no road was found that keeps the description; ask for less")
