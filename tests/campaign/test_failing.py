@@ -97,20 +97,18 @@ def test_only_a_typical_failure_of_each_fault_is_driven_again(
     monkeypatch.setattr(
         fault_log, "repeated", lambda run, times: driven.append(run.index) or repeated(run, times)
     )
-    groups = faults_in(folder)
-    assert len(groups.them) < groups.failures / 2
-    assert not driven
-    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
     found = faults_in(folder)
-    assert found.is_tested
-    assert len(found.them) <= len(groups.them)
+    assert len(found.them) < found.failures / 2
+    assert not driven
+    roadgpt("faults", folder, "--groups", "--repeat", 1, "--no-plot", "-q")
+    assert not (folder / "faults" / "remedies").exists()
     most = sum(min(len(fault.members), 3) for fault in found.them)
     assert len(found.them) <= len(driven) <= most < found.failures
     mates = [{each.name.number for each in fault.members} for fault in found.them]
     for row, its in zip(table(folder / "faults" / "faults.csv"), mates, strict=True):
         assert int(row["test"].removeprefix("c01/")) in its
     before = [*driven]
-    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    roadgpt("faults", folder, "--groups", "--repeat", 1, "--no-plot", "-q")
     assert driven == before, "what was done is not done again"
 
 
@@ -127,10 +125,10 @@ def test_what_is_done_is_kept_when_it_is_stopped(
         return repeated(run, times)
 
     monkeypatch.setattr(fault_log, "repeated", stopped)
-    done = CliRunner().invoke(app, ["faults", str(folder), "--repeat", "1", "--no-plot"])
+    done = CliRunner().invoke(app, ["faults", str(folder), "--groups", "--repeat", "1", "--no-plot"])
     assert done.exit_code == 130
-    assert f"continue with: roadgpt faults {folder} --repeat 1 --no-plot" in done.output
-    roadgpt("faults", folder, "--repeat", 1, "--no-plot", "-q")
+    assert f"continue with: roadgpt faults {folder} --repeat 1 --groups --no-plot" in done.output
+    roadgpt("faults", folder, "--groups", "--repeat", 1, "--no-plot", "-q")
     assert asked.count(asked[0]) == 1
     assert asked.count(asked[1]) == 2
 

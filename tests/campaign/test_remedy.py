@@ -1,6 +1,7 @@
 """Small changes that remove a failure, and the faults that follow from them."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from itertools import combinations, product
 from types import SimpleNamespace
 from typing import Literal
@@ -15,6 +16,7 @@ from roadgpt.campaign.faults import remedy
 from roadgpt.campaign.faults.alignment import Alignment
 from roadgpt.campaign.faults.remedy import REMEDIES, remedies_of
 from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
+from roadgpt.errors import GivenUpError
 from roadgpt.road import Design, Road, Segment, World, build
 from roadgpt.run import Request, Run, Setup
 from roadgpt.verdict import Verdict
@@ -40,6 +42,7 @@ def road_of(*segments: Segment) -> Road:
 
 BENDS = (bend(80, 30), bend(-90, 16), bend(60, 20))
 ROAD = road_of(straight(40), BENDS[0], straight(25), BENDS[1], straight(20), BENDS[2], straight(40))
+VERDICT = Verdict("FAIL", "out of lane", "", "", 0.9, -0.1, 1, at_s=60.0, side="left")
 TIGHT = 1  # the bend of 16 m among the bends of ROAD
 
 
@@ -110,11 +113,11 @@ def failing(
     def proved(tried: Road, seed: int, world: World, setup: Setup, index: int, **rest: object) -> object:
         assert (seed, index) == (7, 3)
         station = fails(tried, world)
-        return SimpleNamespace(verdict=SimpleNamespace(kept=station is None, at_s=station))
+        verdict = SimpleNamespace(kept=station is None, at_s=station)
+        return SimpleNamespace(verdict=verdict, outcome="PASS", is_lost=False)
 
     monkeypatch.setattr(remedy, "prove", proved)
-    verdict = Verdict("FAIL", "out of lane", "", "", 0.9, -0.1, 1, at_s=at_s, side="left")
-    run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=verdict)
+    run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=replace(VERDICT, at_s=at_s))
     return remedies_of(run)
 
 
@@ -172,6 +175,26 @@ def test_without_a_bend_nothing_about_bends_applies(monkeypatch: pytest.MonkeyPa
     road = road_of(straight(120))
     found = failing(road, 60.0, monkeypatch, lambda road, world: 60.0)
     assert {name for name, gone in found.items() if gone is not None} == {"slower 15", "slower 30"}
+
+
+def test_a_driver_that_breaks_down_does_not_pass_and_a_lost_drive_is_repeated(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    road = road_of(straight(120))
+    run = Run(Request(words="", world=WORLD), 3, 7, road=road, verdict=VERDICT)
+    broken = SimpleNamespace(
+        verdict=None, outcome="ERROR", is_lost=False, description="the driver broke down"
+    )
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: broken)
+    assert remedies_of(run)["slower 15"] is False
+    lost = SimpleNamespace(verdict=None, outcome="ERROR", is_lost=True, description="no answer")
+    passed = SimpleNamespace(verdict=SimpleNamespace(kept=True), outcome="PASS", is_lost=False)
+    answers = iter([lost, lost, passed])
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: next(answers))
+    assert remedies_of(run)["slower 15"] is True
+    monkeypatch.setattr(remedy, "prove", lambda *rest, **more: lost)
+    with pytest.raises(GivenUpError, match="no answer"):
+        remedies_of(run)
 
 
 NAMES = [each.name for each in REMEDIES]

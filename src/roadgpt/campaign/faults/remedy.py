@@ -13,7 +13,9 @@ import numpy as np
 from roadgpt.campaign.faults.alignment import Alignment, Bend
 from roadgpt.campaign.faults.distinct import AROUND
 from roadgpt.campaign.faults.reason import bend_at
+from roadgpt.road import Road, World
 from roadgpt.run import Run, prove
+from roadgpt.run.lost_drives import LostDrives
 
 NEAR = 40.0  # m; a bend farther from the failing one, or from the departure, is not changed
 HILLY = 0.01  # largest grade, as a ratio, from which a road counts as not level
@@ -120,6 +122,7 @@ def remedies_of(run: Run) -> Mapping[str, bool | None]:
 
     Raises:
         UsageError: the driver or the simulator cannot be loaded.
+        GivenUpError: the simulator failed three times in a row.
     """
     road, verdict = run.road, run.verdict
     assert road is not None
@@ -162,7 +165,20 @@ def _removes(run: Run, place: FailurePlace, remedy: Remedy) -> bool | None:
     passed = changed.stations[place.departure + longer * is_behind] + AROUND
     road = changed.road(run.road)
     world = run.world.changed(speed_limit=run.world.limits.speed_limit * remedy.limit)
-    tried = prove(road, run.seed, world, run.request.setup, run.index, despite_findings=True)
+    tried = _driven(run, road, world)
+    if tried.outcome == "ERROR":  # the driver broke down, which is no way to pass a place
+        return False
     if tried.verdict is None:
         return None
     return bool(tried.verdict.kept or (tried.verdict.at_s or 0.0) > passed)
+
+
+def _driven(run: Run, road: Road, world: World) -> Run:
+    """Drives a changed road; drives again where the simulator itself failed."""
+    losses: LostDrives[int] = LostDrives()
+    while True:
+        tried = prove(road, run.seed, world, run.request.setup, run.index, despite_findings=True)
+        if losses.count(run.index, tried.is_lost):
+            raise losses.given_up(tried.description, "fix it and run the same command again, which continues")
+        if not tried.is_lost:
+            return tried

@@ -41,6 +41,8 @@ class AnalysisOptions(NamedTuple):
     formats: tuple[str, ...] = ("png",)
     """Formats of the pictures; empty: no pictures are drawn."""
     is_quiet: bool = False
+    tests_groups: bool = True
+    """Whether to find out by small changes which groups of failures are one fault."""
     is_apart: bool = False
     """Whether text is printed on standard error, because standard output is reserved for JSON."""
 
@@ -49,6 +51,7 @@ class AnalysisOptions(NamedTuple):
         """The command-line options with which ``roadgpt faults`` would repeat this analysis."""
         asked = [] if self.repeat == REPEAT else ["--repeat", str(self.repeat)]
         asked += ["--minimise"] if self.minimise else []
+        asked += [] if self.tests_groups else ["--groups"]
         asked += ["-j", str(self.workers)] if self.workers > 1 else []
         if self.formats != ("png",):
             asked += ["--format", ",".join(self.formats)] if self.formats else ["--no-plot"]
@@ -114,7 +117,7 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     from roadgpt.campaign.workers.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
-    if found.is_tested:
+    if found.is_tested or not look.tests_groups:
         return found
     tasks = [task_of(place, each) for group in found.them for each in group.typical]
     look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
@@ -178,6 +181,8 @@ OPTIONS = (
     Option("--repeat", "Number of further drives for each fault, with small disturbances.",
            DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
+    Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
+           "up to 16 drives of up to three failures of each group.", bool),
     Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
@@ -186,7 +191,14 @@ OPTIONS = (
 
 @click.command(cls=GroupedCommand, params=[Argument("place", "DIR", kind=folder), *OPTIONS])
 def command(
-    place: Path, repeat: int, minimise: bool, workers: int, driver: str | None, quiet: bool, **rest: Any
+    place: Path,
+    repeat: int,
+    minimise: bool,
+    groups: bool,
+    workers: int,
+    driver: str | None,
+    quiet: bool,
+    **rest: Any,
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
@@ -206,4 +218,5 @@ def command(
 
     if driver is not None:
         check_named_driver(driver, drivers_of(place), place)
-    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, options.pictures_of(rest), quiet))
+    formats = options.pictures_of(rest)
+    analyse_failures(place, AnalysisOptions(repeat, minimise, workers, formats, quiet, not groups))
