@@ -1,7 +1,7 @@
 """Whether distinct faults are distinct: failures of one fault disappear with one change, others do not.
 
     python benchmarks/bench_faults.py                       the quick look that `make bench` takes
-    python benchmarks/bench_faults.py --whole -j 2          two drivers in four conditions, 200 tests each
+    python benchmarks/bench_faults.py --whole -j 2          two drivers in four conditions, 100 tests each
     python benchmarks/bench_faults.py --whole --folder FOLDER
 
 Each campaign searches for failures, and `roadgpt faults` joins them into faults by the small changes that
@@ -75,12 +75,12 @@ Removed = Mapping[str, bool | None]
 def main() -> None:
     """Runs the campaigns that the options name, and prints the table."""
     options = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    options.add_argument("--whole", action="store_true", help="all conditions, 200 tests each")
+    options.add_argument("--whole", action="store_true", help="all conditions, 100 tests each")
     options.add_argument("--seed", type=int, default=41)
     options.add_argument("-j", "--workers", type=int, default=1)
     options.add_argument("--folder", type=Path)
     given = options.parse_args()
-    conditions, tests = (CONDITIONS, 200) if given.whole else (["dry"], 60)
+    conditions, tests = (CONDITIONS, 100) if given.whole else (["dry"], 60)
     with tempfile.TemporaryDirectory() as spare:
         folder = given.folder or Path(spare)
         folder.mkdir(parents=True, exist_ok=True)

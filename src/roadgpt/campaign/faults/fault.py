@@ -59,6 +59,13 @@ class Fault:
         return SENTENCES[self.remedy] if self.remedy else ""
 
     @property
+    def to_test(self) -> tuple[LocatedFailure, ...]:
+        """The failures of a group that are driven with small changes: one, of 4 or more two, of 8 or more
+        three.
+        """
+        return self.typical[: 1 + len(self.members) // 4]
+
+    @property
     def names(self) -> tuple[NumberedTest, ...]:
         """Names of the tests with the typical failures."""
         return tuple(each.name for each in self.typical)
@@ -170,8 +177,8 @@ def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
 
 
 def _tried(folder: Path, group: Fault) -> TriedGroup | None:
-    """Returns which small changes remove the typical failures of a group; None if one was not tested."""
-    stored = [stored_remedies(task_of(folder, each)) for each in group.typical]
+    """Returns which small changes remove the failures of a group; None if they were not tested."""
+    stored = [stored_remedies(task_of(folder, each)) for each in group.to_test]
     known = tuple(each for each in stored if each is not None)
     return TriedGroup(len(group.members), known) if len(known) == len(stored) else None
 

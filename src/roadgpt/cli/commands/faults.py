@@ -119,7 +119,7 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
 
     if found.is_tested or not look.tests_groups:
         return found
-    tasks = [task_of(place, each) for group in found.them for each in group.typical]
+    tasks = [task_of(place, each) for group in found.them for each in group.to_test]
     look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
     steps = unordered_map(try_remedies, tasks, look.workers, place / LOG)
     for _ in watched(steps, len(tasks), "failures", look.is_quiet):
