@@ -5,6 +5,7 @@ are. So two failures of one fault disappear with the same change, and two failur
 Groups that no such change sets apart from the others belong to no fault.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
 from typing import NamedTuple
@@ -19,6 +20,9 @@ Array = NDArray[np.float64]
 WITHIN = 0.8  # share of pairs inside a fault that disappear with its change, at least
 ACROSS = 0.2  # share of pairs of two faults that disappear with the change of one of them, at most
 MOST = 4  # faults of one driver in one world
+FEWEST = 2  # failures of a fault, unless there is but one group: one alone shows nothing about pairs
+SMALL = len(REMEDIES) // 2  # index of the first of the larger changes
+LARGER = 0.8  # of a failure: small changes say more about the cause
 EPS = 1e-9
 
 
@@ -35,17 +39,23 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
     """Returns for each group the name of the change that defines its fault; None if it belongs to no fault.
 
     Of all sets of changes whose faults keep to ``WITHIN`` and ``ACROSS``, the one is taken whose faults have
-    the most failures; of equal ones, the one with the fewest and smallest changes. There are four at most.
+    the most failures, where a failure that needs a larger change counts 0.8; of equal ones, the one with the
+    fewest and smallest changes.
     """
     shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
-    best: list[str | None] = [None] * len(groups)
-    most = 0
+    best: list[int | None] = [None] * len(groups)
+    most = 0.0
     for chosen in _subsets(range(len(REMEDIES))):
         found = _assigned(shares, chosen)
-        count = sum(group.size for group, at in zip(groups, found, strict=True) if at is not None)
-        if count > most and _is_apart(groups, shares, found):
-            best, most = [None if at is None else REMEDIES[at].name for at in found], count
-    return best
+        sizes = Counter[int]()
+        for group, at in zip(groups, found, strict=True):
+            if at is not None:
+                sizes[at] += group.size
+        value = sum(size * (1.0 if at < SMALL else LARGER) for at, size in sizes.items())
+        is_seen_often = len(groups) == 1 or all(size >= FEWEST for size in sizes.values())
+        if value > most and is_seen_often and _is_apart(groups, shares, found):
+            best, most = found, value
+    return [None if at is None else REMEDIES[at].name for at in best]
 
 
 def _subsets(numbers: Sequence[int]) -> Iterator[tuple[int, ...]]:
