@@ -97,11 +97,15 @@ class Faults:
         ways = "; it ".join(self.ways[:MOST_WAYS])
         more = len(self.ways) - MOST_WAYS
         also = f"; and in {more} other way{'s' * (more > 1)}" if more > 0 else ""
-        return f"{self.sentence}: the car {ways}{also}" if ways else self.sentence
+        return f"{self._count}: the car {ways}{also}{self._alone}" if ways else self.sentence
 
     @property
     def sentence(self) -> str:
         """The number of faults or groups, and of failures, as text: '2 distinct faults in 37 failures'."""
+        return f"{self._count}{self._alone}"
+
+    @property
+    def _count(self) -> str:
         if not self.failures:
             return "no road failed"
         failures = plural(self.failures, "failure")
@@ -110,14 +114,21 @@ class Faults:
         least, compared = "", ""
         if self.compared < self.failures:
             least, compared = "at least ", f" ({self.compared:,} of them compared)"
-        alone = [each for each in self.them if each.remedy is None]
-        groups = f"{plural(len(alone), 'group')} of similar failures"
         if not self.distinct:
+            groups = f"{plural(len(self.them), 'group')} of similar failures"
             none = "; no small change removes them" if self.is_tested else ""
             return f"{failures} in {least}{groups}{compared}{none}"
+        return f"{least}{plural(self.distinct, 'distinct fault')} in {failures}{compared}"
+
+    @property
+    def _alone(self) -> str:
+        """Says how many failures belong to no fault; empty if there are none, or no faults."""
+        alone = [each for each in self.them if each.remedy is None]
+        if not alone or not self.distinct:
+            return ""
         count = sum(len(each.members) for each in alone)
-        beside = f"; {plural(count, 'failure')} in {groups} are none of these" if alone else ""
-        return f"{least}{plural(self.distinct, 'distinct fault')} in {failures}{compared}{beside}"
+        belong = "belong" if count > 1 else "belongs"
+        return f"; {count:,} of the failures, in {plural(len(alone), 'group')}, {belong} to no fault"
 
     @property
     def ways(self) -> list[str]:

@@ -70,7 +70,7 @@ def _share(group: TriedGroup, name: str) -> float:
 
 
 def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
-    """Returns for each group the one of the chosen changes that removes most of it, at least half; None if
+    """Returns for each group the one of the chosen changes that removes most of it, more than half; None if
     there is none."""
     found: list[int | None] = []
     for row in shares:
