@@ -177,9 +177,33 @@ def test_changes_stay_within_what_roads_may_be(elements: Elements, seed: int, na
     if MUTATIONS[name].is_numeric:
         assert [np.sign(element.turn) for element in after] == [np.sign(element.turn) for element in elements]
         changed = sum(a != b for a, b in zip(elements, after, strict=True))
-        assert changed <= (len(elements) if name == "packed" else 1)
+        assert changed <= (len(elements) if name in ("packed", "enlarged") else 1)
     again = MUTATIONS[name].make(elements, np.random.default_rng(seed), WORLD)
     assert again == after
+
+
+@given(ROWS, SEEDS)
+def test_a_plan_is_scaled_by_one_factor(elements: Elements, seed: int) -> None:
+    """Within the limits of straights and radii; angles and clothoids stay."""
+    after = MUTATIONS["enlarged"].make(elements, np.random.default_rng(seed), WORLD)
+    sizes = [
+        (a.radius, b.radius) if a.turn else (a.straight, b.straight)
+        for a, b in zip(elements, after, strict=True)
+    ]
+    limits = (1.0, 150.0, 120.0, min(b.radius for b in after))
+    factors = [new / old for old, new in sizes if not any(np.isclose(new, limits))]
+    assert np.ptp(factors or [1.0]) < 1e-9
+    assert [(a.turn, a.transition) for a in elements] == [(b.turn, b.transition) for b in after]
+
+
+@given(ROWS, SEEDS)
+def test_turns_are_drawn_anew_and_straights_are_left_out(elements: Elements, seed: int) -> None:
+    after = MUTATIONS["redrawn"].make(elements, np.random.default_rng(seed), WORLD)
+    turns = [each for each in after if each.turn]
+    assert len(turns) == sum(each.turn != 0 for each in elements)
+    assert all(20 <= abs(each.turn) <= 120 and 0.1 <= each.transition <= 16 for each in turns)
+    if turns:
+        assert all(each.straight <= 30 for each in after if not each.turn)
 
 
 @given(ROWS, SEEDS)
