@@ -30,11 +30,13 @@ Finite = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
 
 
-class _Frozen(BaseModel):
+class FrozenFields(BaseModel):
+    """A value whose fields cannot be changed, and that has no other fields."""
+
     model_config = ConfigDict(frozen=True, extra="forbid")
 
 
-class Segment(_Frozen):
+class Segment(FrozenFields):
     """One segment of a road: its length, the side and angle of its turn, and its grade."""
 
     distance: Length
@@ -54,7 +56,7 @@ class Segment(_Frozen):
     """
 
 
-class Design(_Frozen):
+class Design(FrozenFields):
     """Where a road starts, its heading there, and its segments in driving order."""
 
     starting_point: tuple[Finite, Finite, Finite]
@@ -74,17 +76,18 @@ class Design(_Frozen):
         Whole numbers become integers, as in the answers of the language models in the thesis.
         """
         out: dict[str, Any] = {
-            "starting_point": [_plain(v) for v in self.starting_point],
-            "theta": _plain(self.theta),
+            "starting_point": [as_written(v) for v in self.starting_point],
+            "theta": as_written(self.theta),
         }
         for number, segment in enumerate(self.segments, 1):
             out[f"road_segment{number}"] = {
-                key: _plain(value) for key, value in segment.model_dump(exclude_none=True).items()
+                key: as_written(value) for key, value in segment.model_dump(exclude_none=True).items()
             }
         return out
 
 
-def _plain(value: Any) -> Any:
+def as_written(value: Any) -> Any:
+    """Returns whole numbers as integers, and any other value unchanged."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
@@ -117,7 +120,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
             starting_point=data.get("starting_point", ()), theta=data.get("theta"), segments=tuple(segments)
         )
     except ValidationError as error:
-        raise UsageError(f"the design cannot be read: {_first(error)}") from error
+        raise UsageError(f"the design cannot be read: {first_error(error)}") from error
     return design, (*remarks, *_unfit(design.segments))
 
 
@@ -160,7 +163,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
     try:
         segment = Segment.model_validate(raw)
     except ValidationError as error:
-        raise UsageError(f"segment {number} cannot be read: {_first(error)}") from error
+        raise UsageError(f"segment {number} cannot be read: {first_error(error)}") from error
     remarks = []
     turn = math.copysign(segment.turn_degrees, {"left": 1.0, "right": -1.0}.get(segment.direction, 1.0))
     if segment.direction == "straight":
@@ -192,7 +195,7 @@ def _no_truths(what: str, data: Mapping[str, Any]) -> None:
             raise UsageError(f"{what} cannot be read: {str(name)[:40]}: {_advice('float_type', {})}")
 
 
-def _first(error: ValidationError) -> str:
+def first_error(error: ValidationError) -> str:
     """Returns the first error as 'field: what to do'."""
     problem = error.errors()[0]
     place = ".".join(str(part) for part in problem["loc"])

@@ -30,9 +30,9 @@ from roadgpt.road.opendrive.lanes import NEAR, Lanes, friction, read_lanes, spee
 from roadgpt.road.opendrive.left_out import left_out
 from roadgpt.road.opendrive.line import exact, fitted, lies_on_the_line, walk
 from roadgpt.road.opendrive.profile import Carry, FileProfile, checked, read_profile
-from roadgpt.road.opendrive.reversal import reversed_cubics, reversed_road
 from roadgpt.road.opendrive.tree import Choice, Node, read_tree
 from roadgpt.road.profile import Profile
+from roadgpt.road.reversal import reversed_cubics, reversed_road
 from roadgpt.road.road import Road, check_length
 from roadgpt.road.world import World
 

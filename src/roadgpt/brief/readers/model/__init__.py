@@ -23,7 +23,7 @@ from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, 
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.negative_numbers import negative_number
-from roadgpt.brief.readers.model.network import Network
+from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
@@ -271,13 +271,13 @@ class ModelReader:
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
 
     @cached_property
-    def networks(self) -> tuple[Network, ...]:
+    def networks(self) -> tuple[NeuralNetwork, ...]:
         """The one or two networks that read every text."""
         names = ["", *([SECOND] if (self.folder / f"encoder{SECOND}.onnx").is_file() else [])]
-        return tuple(Network(self.folder, name) for name in names)
+        return tuple(NeuralNetwork(self.folder, name) for name in names)
 
     @property
-    def _network(self) -> Network:
+    def _network(self) -> NeuralNetwork:
         return self.networks[0]
 
     @cached_property

@@ -14,7 +14,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.bounds import bounded
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
-from roadgpt.brief.readers.model.network import Network, WrittenPlan
+from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
 from roadgpt.errors import RoadGPTError
@@ -92,7 +92,7 @@ class VariantPlans:
 
 
 def scored_plans(
-    networks: Sequence[Network],
+    networks: Sequence[NeuralNetwork],
     words: str,
     refuse_from: float,
     shown: Callable[[SlottedText], SlottedText] = lambda text: text,
@@ -132,7 +132,7 @@ def _are_clear(variants: Sequence[VariantPlans]) -> bool:
     return all(variant.is_clear for variant in variants) and len({v.best for v in variants}) == 1
 
 
-def refusal(networks: Sequence[Network], words: str) -> float:
+def refusal(networks: Sequence[NeuralNetwork], words: str) -> float:
     """Returns the mean probability of a refusal over all networks and variants."""
     chances: list[float] = []
     for network in networks:
@@ -150,7 +150,7 @@ def _others(words: str) -> list[tuple[str, bool]]:
 
 
 def _plans_of_variant(
-    network: Network,
+    network: NeuralNetwork,
     text: SlottedText,
     refuse_from: float,
     is_mirrored: bool,

@@ -7,7 +7,7 @@ the remaining words. If this hardly changes, the word is reported as unused.
 from collections.abc import Collection, Sequence
 
 from roadgpt.brief.readers.model.bounds import NOT
-from roadgpt.brief.readers.model.network import Network
+from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slots import SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
@@ -27,7 +27,7 @@ MOST_WORDS = 60
 
 
 def unused_words(
-    network: Network, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
+    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
 ) -> tuple[str, ...]:
     """Returns the words that the plan does not depend on, as spelled in the text, each once, in text order.
 
@@ -62,7 +62,7 @@ def passes_over_a_negation(unused: Sequence[str]) -> bool:
 
 
 def _idle(
-    network: Network, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
+    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
 ) -> frozenset[int]:
     """Returns the places of the words that the plan does not depend on.
 
@@ -79,7 +79,7 @@ def _idle(
 
 
 def _are_kept(
-    network: Network, text: SlottedText, tokens: Sequence[str], left_out: Sequence[Collection[int]]
+    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], left_out: Sequence[Collection[int]]
 ) -> list[bool]:
     """Returns for each set of places whether the plan stays the likeliest without the words there."""
     if not left_out:

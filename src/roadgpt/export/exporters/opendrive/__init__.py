@@ -3,17 +3,19 @@
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """
 
+import json
 from pathlib import Path
 
-from roadgpt.export.exporters.opendrive.heights import elevations
-from roadgpt.export.exporters.opendrive.lanes import lanes, lateral_profile, speed_kmh
-from roadgpt.export.exporters.opendrive.plan import geometries
-from roadgpt.export.georeference import PROJECTION
+from roadgpt.export.exporters.opendrive.junctions import network_document
+from roadgpt.export.exporters.opendrive.roads import header, road_element
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
+from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 ROAD = 1  # id of the one road in the file
+ROUTE = ".route.json"
+"""Suffix of the file that names the roads and lanes of a route: ``{"route": [[road, lane], ...]}``."""
 
 
 class OpenDrive:
@@ -23,45 +25,25 @@ class OpenDrive:
     suffix = ".xodr"
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file. ``poses`` is ignored, because OpenDRIVE cannot hold a drive."""
+        """Writes the file and, for a route through a network, ``NAME.route.json`` beside it.
+
+        ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
+        """
         path.write_bytes(document(road, world).to_text().encode())
+        if isinstance(road, Route):
+            path.with_suffix(ROUTE).write_text(json.dumps(road.to_route_json()) + "\n")
 
 
 def document(road: Road, world: World) -> XmlElement:
-    """Returns the XML document.
+    """Returns the XML document of a road, or of the network of a route.
 
     Raises:
         ExportError: The road has a number that is not finite.
     """
+    if isinstance(road, Route):
+        return network_document(road.network, world)
     root = XmlElement("OpenDRIVE")
-    root.extended(_header(road, world))
-    body = root.add(
-        "road", {"name": "road", "length": road.length, "id": str(ROAD), "junction": "-1", "rule": "RHT"}
-    )
-    body.add("type", {"s": 0, "type": "rural"}).add("speed", {"max": speed_kmh(world), "unit": "km/h"})
-    body.add("planView").extended(*geometries(road.plan))
-    body.add("elevationProfile").extended(*elevations(road))
-    body.extended(*lateral_profile(road), lanes(road, world))
-    return root
-
-
-def _header(road: Road, world: World) -> XmlElement:
-    """Returns the header: revision, bounds of lanes and shoulders, and the georeference. It has no date."""
     x, y = road.centreline()[:, :2].T
     reach = world.profile_of(road).reach
-    header = XmlElement(
-        "header",
-        {
-            "revMajor": 1,
-            "revMinor": 8,
-            "name": "road",
-            "version": "1",
-            "north": round(float(y.max()) + reach, 3),
-            "south": round(float(y.min()) - reach, 3),
-            "east": round(float(x.max()) + reach, 3),
-            "west": round(float(x.min()) - reach, 3),
-            "vendor": "RoadGPT",
-        },
-    )
-    header.add("geoReference", raw=f"<![CDATA[{PROJECTION}]]>")
-    return header
+    bounds = (x.min() - reach, y.min() - reach, x.max() + reach, y.max() + reach)
+    return root.extended(header(bounds), road_element(road, ROAD, world))

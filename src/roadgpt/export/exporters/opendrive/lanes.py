@@ -5,7 +5,7 @@ id     2     |    1    |    -1    |    -2          a road with one lane in each 
                        0
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from roadgpt.export.exporters.opendrive.heights import rows
 from roadgpt.export.markup import XmlElement
@@ -17,14 +17,25 @@ DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
-def lanes(road: Road, world: World) -> XmlElement:
-    """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings."""
+LaneLinks = Mapping[int, tuple[int, int]]
+"""For the id of a lane of a connecting road, the ids of the lanes before and after it."""
+
+
+def lanes(road: Road, world: World, links: LaneLinks | None = None) -> XmlElement:
+    """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
+
+    Args:
+        road: The road.
+        world: The World, which gives the lanes of a road without its own, the speed limit and the friction.
+        links: The links of the lanes of a connecting road in a junction, where it is stated that there are no
+            markings; None for any other road.
+    """
     profile, section = world.profile_of(road), XmlElement("laneSection", {"s": 0})
-    left = list(_side(profile.left, 1, road.length, world))
+    left = list(_side(profile.left, 1, road.length, world, links))
     if left:
         section.add("left").extended(*reversed(left))
-    section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking)))
-    section.add("right").extended(*_side(profile.right, -1, road.length, world))
+    section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, links)))
+    section.add("right").extended(*_side(profile.right, -1, road.length, world, links))
     return XmlElement("lanes").extended(section)
 
 
@@ -38,12 +49,20 @@ def lateral_profile(road: Road) -> list[XmlElement]:
     return [XmlElement("lateralProfile").extended(*rows("superelevation", "s", angle, road.length))]
 
 
-def _side(side: Sequence[Lane], sign: int, length: float, world: World) -> Iterator[XmlElement]:
+def _side(
+    side: Sequence[Lane], sign: int, length: float, world: World, links: LaneLinks | None
+) -> Iterator[XmlElement]:
     """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
     kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
     for number, lane in enumerate(kept, 1):
         widths = rows("width", "sOffset", _cubics(lane.width), length)
-        made = _lane(sign * number, lane.kind).extended(*widths, *_mark(lane.marking))
+        made = _lane(sign * number, lane.kind)
+        if links is not None and sign * number in links:
+            before, after = links[sign * number]
+            link = made.add("link")
+            link.add("predecessor", {"id": before})
+            link.add("successor", {"id": after})
+        made.extended(*widths, *_mark(lane.marking, links))
         if lane.kind == "driving":
             made.add(
                 "material",
@@ -67,10 +86,14 @@ def _lane(number: int, kind: str) -> XmlElement:
     return XmlElement("lane", {"id": number, "type": kind, "level": "false"})
 
 
-def _mark(kind: Marking) -> list[XmlElement]:
-    """Returns the road marking at the outer edge of a lane; an empty list for none."""
+def _mark(kind: Marking, links: LaneLinks | None) -> list[XmlElement]:
+    """Returns the road marking at the outer edge of a lane.
+
+    Where there is none, the list is empty; inside junctions, the marking "none" is written, because some
+    programs would draw a line there.
+    """
     if kind == "none":
-        return []
+        return [] if links is None else [XmlElement("roadMark", {"sOffset": 0, "type": "none"})]
     mark = XmlElement(
         "roadMark",
         {

@@ -24,7 +24,7 @@ NAMES = Path(__file__).parent.parent  # packages of the competition's names, and
 OVER = 123  # exit status with which the competition ends a generator that asks for more than its budget
 
 
-class Connection:
+class TaskConnection:
     """The connection from this process to RoadGPT; all copies of an executor share it."""
 
     def __init__(self, hears: IO[bytes], tells: IO[bytes]) -> None:
@@ -33,7 +33,7 @@ class Connection:
         self.turn = threading.RLock()
         """Held while a test is executed."""
 
-    def __deepcopy__(self, memo: Any) -> Connection:
+    def __deepcopy__(self, memo: Any) -> TaskConnection:
         return self
 
     def __reduce__(self) -> Any:
@@ -92,10 +92,10 @@ def main() -> None:
     _leave()
 
 
-def _opened() -> Connection:
+def _opened() -> TaskConnection:
     """Returns the connection. It has its own file descriptors: afterwards, the generator reads no data from
     standard input, and what it prints goes to standard error."""
-    connection = Connection(os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb"))
+    connection = TaskConnection(os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb"))
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)
@@ -113,7 +113,7 @@ def _class(module_name: str, class_name: str) -> Any:
         ) from None
 
 
-def _worked(made: Any, task: Message, connection: Connection) -> Message:
+def _worked(made: Any, task: Message, connection: TaskConnection) -> Message:
     """Runs the generator; returns how it ended."""
     from code_pipeline.beamng_executor import BeamngExecutor
 

@@ -47,7 +47,7 @@ class WrittenPlan:
         return sum(self.log_chances) / float(max(1, len(self.log_chances)) ** FAVOUR)
 
 
-class Network:
+class NeuralNetwork:
     """The trained network, which reads a description and writes plans."""
 
     def __init__(self, folder: Path, name: str = "") -> None:

@@ -1,0 +1,145 @@
+"""Writes the signs and lights of junctions, with their stop lines.
+
+Source: ASAM OpenDRIVE 1.8.1, signals; its catalogue of signals gives type 1000001 for traffic lights. Signs
+are those of the German road traffic regulations (StVO): 205 give way, 206 stop, 306 priority road.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from roadgpt.export.markup import XmlElement
+from roadgpt.network import Arm, Network
+
+BEFORE = 1.0  # m, from a sign to the junction
+STOP_LINE = 0.5  # m, width of a stop line (Germany, RMS-1)
+GIVE_WAY_LINE = 0.5  # m, width of a give-way line (Germany, RMS-1)
+BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
+TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
+NAMES = {
+    "stop": "stop sign",
+    "yield": "give way sign",
+    "priority": "priority road sign",
+    "lights": "traffic light",
+}
+SIZES = {"stop": (0.9, 0.9), "yield": (0.9, 0.9), "priority": (0.6, 0.6), "lights": (0.9, 0.3)}
+"""Height and width of each sign in metres."""
+HEIGHTS = {"stop": 2.0, "yield": 2.0, "priority": 2.0, "lights": 2.1}
+"""Height in metres of the lower edge above the road."""
+
+
+@dataclass(frozen=True)
+class _Signal:
+    """The sign or light of one arm."""
+
+    id: int
+    junction: int
+    arm: Arm
+
+
+@dataclass(frozen=True)
+class Signals:
+    """The signs and lights of a network, each with its id."""
+
+    network: Network
+    them: tuple[_Signal, ...]
+
+    @classmethod
+    def of(cls, network: Network) -> "Signals":
+        """Returns the signals of a network; their ids follow those of its roads and junctions."""
+        arms = [
+            (junction.id, arm)
+            for junction in network.junctions
+            for arm in junction.arms
+            if arm.control != "none"
+        ]
+        first = 1 + max([*(each.id for each in network.roads), *(each.id for each in network.junctions)])
+        return cls(
+            network, tuple(_Signal(first + n, junction, arm) for n, (junction, arm) in enumerate(arms))
+        )
+
+    def on_road(self, road: int) -> Iterator[XmlElement]:
+        """Yields the elements ``objects`` and ``signals`` of a road; nothing if it has none."""
+        own = [signal for signal in self.them if signal.arm.end.road == road]
+        lines = [line for signal in own for line in self._line(signal)]
+        if lines:
+            yield XmlElement("objects").extended(*lines)
+        if own:
+            yield XmlElement("signals").extended(*map(self._element, own))
+
+    def controllers(self) -> Iterator[XmlElement]:
+        """Yields a controller for the lights of each junction that has some; its id is the junction's."""
+        for junction in self._lit():
+            controller = XmlElement("controller", {"id": str(junction), "name": f"lights {junction}"})
+            for signal in self.them:
+                if signal.junction == junction and signal.arm.control == "lights":
+                    controller.add("control", {"signalId": str(signal.id), "type": "0"})
+            yield controller
+
+    def of_junction(self, junction: int) -> Iterator[XmlElement]:
+        """Yields the reference to the controller of a junction; nothing if it has no lights."""
+        if junction in self._lit():
+            yield XmlElement("controller", {"id": str(junction), "type": "0", "sequence": 0})
+
+    def _lit(self) -> list[int]:
+        return list(dict.fromkeys(s.junction for s in self.them if s.arm.control == "lights"))
+
+    def _element(self, signal: _Signal) -> XmlElement:
+        control, end = signal.arm.control, signal.arm.end
+        member = self.network.road(end.road)
+        at_end = end.contact == "end"
+        s = max(member.road.length - BEFORE, 0.0) if at_end else min(BEFORE, member.road.length)
+        rims = member.profile.rims(s)
+        t = float(rims.right) - BESIDE if at_end else float(rims.left) + BESIDE
+        height, width = SIZES[control]
+        made = XmlElement(
+            "signal",
+            {
+                "id": str(signal.id),
+                "name": NAMES[control],
+                "s": s,
+                "t": t,
+                "zOffset": HEIGHTS[control],
+                "height": height,
+                "width": width,
+                "dynamic": "yes" if control == "lights" else "no",
+                "orientation": "+" if at_end else "-",
+                "country": "OpenDRIVE" if control == "lights" else "DE",
+                "type": TYPES[control],
+                "subtype": "-1",
+                "value": "-1",
+            },
+        )
+        forward, backward = member.profile.count
+        lanes = (-forward, -1) if at_end else (1, backward)
+        made.add("validity", {"fromLane": lanes[0], "toLane": lanes[1]})
+        return made
+
+    def _line(self, signal: _Signal) -> Iterator[XmlElement]:
+        """Yields the stop line or give-way line of an arm; nothing for a road with priority."""
+        if signal.arm.control == "priority":
+            return
+        end = signal.arm.end
+        member = self.network.road(end.road)
+        at_end = end.contact == "end"
+        width = GIVE_WAY_LINE if signal.arm.control == "yield" else STOP_LINE
+        s = max(member.road.length - width / 2, 0.0) if at_end else min(width / 2, member.road.length)
+        edges = member.profile.edges(s)
+        outer = float(edges.right if at_end else edges.left)
+        yield XmlElement(
+            "object",
+            {
+                "id": str(signal.id),
+                "name": "give-way line" if signal.arm.control == "yield" else "stop line",
+                "type": "roadMark",
+                "subtype": "signalLines",
+                "s": s,
+                "t": outer / 2,
+                "zOffset": 0.0,
+                "hdg": 0.0,
+                "orientation": "+" if at_end else "-",
+                "length": width,
+                "width": abs(outer),
+                "height": 0.01,
+                "dynamic": "no",
+            },
+        )

@@ -1,0 +1,37 @@
+"""Joins roads to networks, with junctions, roundabouts and routes. Main function: ``build_route``.
+
+A NetworkDesign describes a route with the junctions that it passes. ``build_route`` makes a Route from it. A
+Route is a Road: the reference lines of its roads, one after another. ``route.network`` is the Network, with
+all roads, connecting roads, junctions and roundabouts.
+"""
+
+from roadgpt.network.design import JunctionDesign, NetworkDesign, has_junctions, read_network_design
+from roadgpt.network.growing import build_route
+from roadgpt.network.network import (
+    Arm,
+    Connection,
+    Junction,
+    Leg,
+    Network,
+    NetworkRoad,
+    RoadEnd,
+    Roundabout,
+)
+from roadgpt.network.route import Route
+
+__all__ = [
+    "Arm",
+    "Connection",
+    "Junction",
+    "JunctionDesign",
+    "Leg",
+    "Network",
+    "NetworkDesign",
+    "NetworkRoad",
+    "RoadEnd",
+    "Roundabout",
+    "Route",
+    "build_route",
+    "has_junctions",
+    "read_network_design",
+]

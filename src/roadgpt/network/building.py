@@ -1,0 +1,111 @@
+"""Collects the roads and junctions of a network while it is built, and gives them their ids."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
+from roadgpt.network.network import Junction, Network, NetworkRoad, RoadEnd, Roundabout
+from roadgpt.road import Profile, Road
+from roadgpt.road.profile import Lane, Width
+
+
+@dataclass
+class Builder:
+    """A network under construction."""
+
+    roads: dict[int, NetworkRoad] = field(default_factory=dict)
+    junctions: list[Junction] = field(default_factory=list)
+    roundabouts: list[Roundabout] = field(default_factory=list)
+    _last: int = 0
+
+    def number(self) -> int:
+        """Returns the next free id; roads and junctions never share one."""
+        self._last += 1
+        return self._last
+
+    def add(self, road: Road, junction: int | None = None, number: int | None = None) -> int:
+        """Adds a road and returns its id."""
+        number = self.number() if number is None else number
+        self.roads[number] = NetworkRoad(number, road, junction)
+        return number
+
+    def network(self) -> Network:
+        """Returns the finished network; roads stand in the order of their ids."""
+        ordered = tuple(self.roads[number] for number in sorted(self.roads))
+        return Network(ordered, tuple(self.junctions), tuple(self.roundabouts))
+
+
+@dataclass(frozen=True)
+class Stub:
+    """The end of a road that leads into a junction, before the junction is built."""
+
+    end: RoadEnd
+    direction: float
+    """The heading in radians out of the junction."""
+    profile: Profile
+    station: float
+    """The station in metres of the road's end."""
+
+    @property
+    def into(self) -> tuple[Lane, ...]:
+        """The driving lanes that lead into the junction, from the centre line outwards."""
+        return _driving(self.profile.right if self.end.contact == "end" else self.profile.left)
+
+    @property
+    def out_of(self) -> tuple[Lane, ...]:
+        """The driving lanes that lead out of the junction, from the centre line outwards."""
+        return _driving(self.profile.left if self.end.contact == "end" else self.profile.right)
+
+    def id_into(self, index: int) -> int:
+        """Returns the id of a lane that leads into the junction; lanes count from 0 at the centre line."""
+        return -(index + 1) if self.end.contact == "end" else index + 1
+
+    def width_of(self, lane: Lane) -> float:
+        """Returns the width in metres of a lane at the junction."""
+        return width_at(lane.width, self.station)
+
+    @property
+    def mouth(self) -> tuple[float, float]:
+        """Widths in metres at the junction of all lanes that lead into it, and of all that lead out."""
+        return sum(map(self.width_of, self.into)), sum(map(self.width_of, self.out_of))
+
+
+def _driving(lanes: Sequence[Lane]) -> tuple[Lane, ...]:
+    return tuple(lane for lane in lanes if lane.kind == "driving")
+
+
+def width_at(width: Width, s: float) -> float:
+    """Returns a width in metres at a station."""
+    return float(width.height(s)) if isinstance(width, CubicProfile) else width
+
+
+def level(length: float, z: float) -> GradeProfile:
+    """Returns the profile of a level road."""
+    return GradeProfile(z, (0.0, length), (0.0, 0.0))
+
+
+def one_way(first: float, last: float, length: float) -> Profile:
+    """Returns the cross-section of a connecting road with one lane on the right, without markings.
+
+    Its width in metres changes smoothly from ``first`` to ``last``.
+    """
+    same = math.isclose(first, last, abs_tol=1e-9)
+    width: Width = first if same else CubicProfile.smooth([(0.0, first), (length, last)])
+    return Profile((), (Lane("driving", width),), 0, "none")
+
+
+def connecting_road(
+    start: tuple[float, float, float], heading: float, pieces: Sequence[Piece], widths: tuple[float, float]
+) -> Road:
+    """Returns a level connecting road with one lane.
+
+    Args:
+        start: The point in metres at which its reference line begins.
+        heading: The heading there in radians.
+        pieces: The lines, arcs and clothoids of its reference line.
+        widths: The width of its lane in metres at the start and at the end.
+    """
+    x, y, z = start
+    plan = PieceCurve(x, y, heading, tuple(pieces))
+    return Road(plan, level(plan.length, z), profile=one_way(*widths, plan.length))

@@ -1,0 +1,112 @@
+"""Builds junctions whose arms meet at one point: T- and Y-junctions, crossroads and stars.
+
+The reference lines of all arms lead through the node. Each arm ends at its contact, as far from the node as
+the kerbs to both neighbouring arms need. Between two contacts, a connecting road follows lines, an arc and
+clothoids; its own reference line begins and ends on those of the arms.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from roadgpt.geometry.curve import wrap_angle
+from roadgpt.network.building import Builder, Stub, connecting_road
+from roadgpt.network.network import Arm, Connection, Control, Junction, Kind
+from roadgpt.network.turning import STRAIGHT, curve_between, tangent_length
+
+NEAREST = 2.0  # m, from the node to a contact
+OPPOSITE = math.radians(2.0)  # of a straight line: between arms that are so nearly opposite, there is no kerb
+
+
+@dataclass(frozen=True)
+class Mouth:
+    """What the layout of a junction needs to know of an arm."""
+
+    direction: float
+    """The heading in radians out of the junction."""
+    width_in: float
+    """Width in metres of all lanes that lead into the junction."""
+    width_out: float
+    """Width in metres of all lanes that lead out of it."""
+
+
+def setbacks(mouths: Sequence[Mouth], kerb: float) -> list[float]:
+    """Returns the distance in metres from the node to the contact of each arm.
+
+    Args:
+        mouths: The arms in counter-clockwise order.
+        kerb: The smallest radius in metres of a kerb between two neighbouring arms.
+    """
+    found = [NEAREST] * len(mouths)
+    for i, mouth in enumerate(mouths):
+        j = (i + 1) % len(mouths)
+        gap = (mouths[j].direction - mouth.direction) % (2 * math.pi)
+        if gap >= math.pi - OPPOSITE:
+            continue
+        # traffic that turns right here keeps to the kerb, at most these widths from the reference line
+        tangent = (kerb + max(mouth.width_in, mouths[j].width_out)) * tangent_length(math.pi - gap)
+        for arm, own, theirs in (
+            (i, mouths[j].width_out, mouth.width_in),
+            (j, mouth.width_in, mouths[j].width_out),
+        ):
+            clear = (own + theirs * math.cos(gap)) / math.sin(gap)
+            found[arm] = max(found[arm], tangent, clear)
+    return found
+
+
+def build_crossing(
+    builder: Builder,
+    kind: Kind,
+    node: tuple[float, float, float],
+    stubs: Sequence[Stub],
+    distances: Sequence[float],
+    controls: Sequence[Control],
+    kerb: float,
+) -> Junction:
+    """Adds a junction and its connecting roads to a network; returns the junction.
+
+    Args:
+        builder: The network; the roads of all stubs are in it.
+        kind: The kind of the junction.
+        node: The point in metres at which the arms would meet.
+        stubs: The arms in counter-clockwise order.
+        distances: The distance in metres from the node to the contact of each arm.
+        controls: The sign or light of each arm.
+        kerb: The radius in metres of the kerbs that was asked for.
+    """
+    number = builder.number()
+    connections = []
+    for i, start in enumerate(stubs):
+        for j, end in enumerate(stubs):
+            if i != j and start.into and end.out_of:
+                connections.append(
+                    _connection(builder, number, node, (start, end), (distances[i], distances[j]))
+                )
+    arms = tuple(
+        Arm(stub.end, stub.direction, control) for stub, control in zip(stubs, controls, strict=True)
+    )
+    junction = Junction(number, kind, arms, tuple(connections), node, kerb)
+    builder.junctions.append(junction)
+    return junction
+
+
+def _connection(
+    builder: Builder,
+    junction: int,
+    node: tuple[float, float, float],
+    ends: tuple[Stub, Stub],
+    distances: tuple[float, float],
+) -> Connection:
+    start, end = ends
+    x, y, z = node
+    heading = start.direction + math.pi
+    turn = float(wrap_angle(end.direction - heading))
+    contact = (
+        x + distances[0] * math.cos(start.direction),
+        y + distances[0] * math.sin(start.direction),
+        z,
+    )
+    pieces = curve_between(*distances, turn if abs(turn) >= STRAIGHT else 0.0)
+    widths = (start.width_of(start.into[0]), end.width_of(end.out_of[0]))
+    road = builder.add(connecting_road(contact, heading, pieces, widths), junction)
+    return Connection(road, start.end, end.end, ((start.id_into(0), -1),))

@@ -1,0 +1,250 @@
+"""Defines the NetworkDesign: the design of a route with the junctions that it passes.
+
+It is written in RoadGPT's JSON format, with two additions:
+
+    "lanes": {"forward": 1, "backward": 1, "width": 3.5}
+    "junction1": {"after": 2, "kind": "crossroads", "take": "left", "control": "yield", "kerb": 10,
+                  "arms": [{"angle": -90}, {"angle": 0, "length": 40}, {"angle": 90}]}
+
+``after`` is the number of segments before the junction. ``arms`` are the other roads that meet there;
+``angle`` is the direction in which one leaves on them, in degrees from the direction in which the route
+arrives, positive to the left. ``take`` names the arm on which the route goes on: "left", "right" or
+"straight", or the number of the exit, counted counter-clockwise from the road on which one arrives.
+"""
+
+import re
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, Field, ValidationError
+
+from roadgpt.errors import UsageError
+from roadgpt.network.network import Control, Kind
+from roadgpt.road import Segment, read_design
+from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error
+
+KEY = re.compile(r"junction(\d{1,4})")
+KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
+ISLAND = 16.0  # m, radius of the central island
+STUB = 25.0  # m, of an arm whose length is not given
+ASTERN = 25.0  # degrees; an arm nearer to the road on which one arrives cannot be told from it
+MOST_JUNCTIONS = 100
+MOST_ARMS = 7
+
+USUAL_ARMS: dict[Kind, tuple[float, ...]] = {
+    "t_junction": (-90.0, 90.0),
+    "y_junction": (-60.0, 60.0),
+    "crossroads": (-90.0, 0.0, 90.0),
+    "star": (-108.0, -36.0, 36.0, 108.0),
+    "roundabout": (-90.0, 0.0, 90.0),
+}
+"""The arms of a junction for which none are given, as angles in degrees."""
+COUNTS: dict[Kind, tuple[int, int]] = {
+    "t_junction": (2, 2),
+    "y_junction": (2, 2),
+    "crossroads": (3, 3),
+    "star": (4, MOST_ARMS),
+    "roundabout": (2, 5),
+}
+"""The smallest and the largest number of arms, besides the road on which one arrives."""
+
+Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1, le=MOST_ARMS + 1)]
+
+
+class LanesDesign(FrozenFields):
+    """The cross-section of all roads of a network."""
+
+    forward: Annotated[int, Field(ge=1, le=1)] = 1
+    """Number of lanes in the direction of the route."""
+    backward: Annotated[int, Field(ge=1, le=1)] = 1
+    """Number of oncoming lanes."""
+    width: Annotated[float, Field(ge=2, le=10, allow_inf_nan=False)] = 4.0
+    """Width of every lane in metres."""
+
+
+class ArmDesign(FrozenFields):
+    """A road that meets a junction, other than the one on which the route arrives."""
+
+    angle: Annotated[float, Field(gt=-180, lt=180)]
+    """Direction in degrees in which one leaves on it, from the direction of arrival, positive to the left."""
+    length: Length | None = None
+    """Length in metres of a straight arm; not for the arm that the route takes."""
+    control: Control | None = None
+    """The sign or the light on this arm; None for what the junction's ``control`` implies."""
+
+
+class JunctionDesign(FrozenFields):
+    """A junction on the route."""
+
+    after: Annotated[int, Field(ge=1, le=500)]
+    """Number of segments of the route before it."""
+    kind: Kind
+    take: Take
+    control: Control = "none"
+    """What the driver of the route meets: "priority", "yield", "stop", "lights" or "none"."""
+    kerb: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = KERB
+    """Radius in metres of the kerb between two neighbouring arms; not for roundabouts."""
+    radius: Annotated[float, Field(ge=1, le=200, allow_inf_nan=False)] = ISLAND
+    """Radius in metres of the central island of a roundabout."""
+    arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
+    """The arms other than the one of arrival, in any order; empty for the usual arms of the kind."""
+
+    @property
+    def all_arms(self) -> tuple[ArmDesign, ...]:
+        """The arms in counter-clockwise order from the road on which the route arrives."""
+        arms = self.arms or tuple(ArmDesign(angle=angle) for angle in USUAL_ARMS[self.kind])
+        return tuple(sorted(arms, key=lambda arm: arm.angle))
+
+    @property
+    def taken(self) -> int | None:
+        """Index in ``all_arms`` of the arm that the route takes; None for the road on which it arrived.
+
+        Raises:
+            UsageError: No arm, or more than one, fits ``take``.
+        """
+        arms = self.all_arms
+        if isinstance(self.take, int):
+            if self.take > len(arms) + (self.kind == "roundabout"):
+                raise UsageError(f"take {self.take} is more than the number of arms; give 1 to {len(arms)}")
+            return self.take - 1 if self.take <= len(arms) else None
+        return _towards(self.kind, self.take, [arm.angle for arm in arms])
+
+
+AHEAD = 25.0  # degrees; an arm within this angle of straight on counts as straight on
+
+
+def _towards(kind: Kind, take: str, angles: Sequence[float]) -> int:
+    """Returns the index of the arm on a side; in a fork the leftmost or the rightmost arm."""
+    if kind == "y_junction" and take != "straight":
+        return len(angles) - 1 if take == "left" else 0
+    sides = ["left" if angle > AHEAD else "right" if angle < -AHEAD else "straight" for angle in angles]
+    found = [n for n, side in enumerate(sides) if side == take]
+    if len(found) != 1:
+        word = "no arm leads" if not found else f"{len(found)} arms lead"
+        raise UsageError(f"{word} {take}; give the number of the exit as take, 1 to {len(angles)}")
+    return found[0]
+
+
+class NetworkDesign(FrozenFields):
+    """Where a route starts, its heading there, its segments and its junctions in driving order."""
+
+    starting_point: tuple[Finite, Finite, Finite]
+    theta: Finite
+    """Heading at the start in degrees, 0 along +x, counter-clockwise."""
+    segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
+    junctions: Annotated[tuple[JunctionDesign, ...], Field(min_length=1, max_length=MOST_JUNCTIONS)]
+    lanes: LanesDesign | None = None
+    """None for the lanes of the World."""
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(junction.kind.replace("_", "-") for junction in self.junctions)
+        length = sum(segment.distance for segment in self.segments)
+        return f"NetworkDesign({length:.0f} m of road, junctions: {kinds})"
+
+    @property
+    def stretches(self) -> tuple[tuple[Segment, ...], ...]:
+        """The segments before, between and after the junctions; one more than there are junctions."""
+        ends = [0, *(junction.after for junction in self.junctions), len(self.segments)]
+        return tuple(self.segments[a:b] for a, b in pairwise(ends))
+
+    def to_json(self) -> dict[str, Any]:
+        """Returns the design as a dictionary in RoadGPT's JSON format."""
+        out: dict[str, Any] = {
+            "starting_point": [as_written(v) for v in self.starting_point],
+            "theta": as_written(self.theta),
+        }
+        if self.lanes is not None:
+            out["lanes"] = _plain(self.lanes)
+        for number, segment in enumerate(self.segments, 1):
+            out[f"road_segment{number}"] = _plain(segment)
+        for number, junction in enumerate(self.junctions, 1):
+            row = _plain(junction, exclude={"arms"})
+            arms = [_plain(arm) for arm in junction.arms]
+            out[f"junction{number}"] = {**row, "arms": arms} if arms else row
+        return out
+
+
+def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
+    data = value.model_dump(exclude_none=True, exclude=exclude)
+    return {key: as_written(each) for key, each in data.items()}
+
+
+def has_junctions(data: Any) -> bool:
+    """Returns whether parsed JSON is a design with junctions."""
+    return isinstance(data, Mapping) and any(KEY.fullmatch(str(key)) for key in data)
+
+
+def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[str, ...]]:
+    """Reads a dictionary in RoadGPT's JSON format with junctions; returns the design and remarks.
+
+    Each remark is a sentence about a contradiction in the data or an unusual value.
+
+    Raises:
+        UsageError: A field is missing, misnamed, of the wrong type or out of range.
+    """
+    rest = {key: value for key, value in data.items() if key != "lanes" and not KEY.fullmatch(str(key))}
+    design, remarks = read_design(rest)
+    numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
+    junctions = [_junction(number, raw) for number, raw in numbered]
+    junctions.sort(key=lambda each: each.after)
+    try:
+        lanes = None if data.get("lanes") is None else LanesDesign.model_validate(data["lanes"])
+    except ValidationError as error:
+        raise UsageError(f"the lanes of the design cannot be read: {first_error(error)}") from error
+    _check_order([junction.after for junction in junctions], len(design.segments))
+    made = NetworkDesign(
+        starting_point=design.starting_point,
+        theta=design.theta,
+        segments=design.segments,
+        junctions=tuple(junctions),
+        lanes=lanes,
+    )
+    return made, remarks
+
+
+def _check_order(after: Sequence[int], segments: int) -> None:
+    for n, place in enumerate(after):
+        if n and place == after[n - 1]:
+            raise UsageError(f"two junctions stand after segment {place}; put a segment between them")
+        if place >= segments:
+            raise UsageError(
+                f"a junction stands after segment {place}, and there are {segments}; add a segment behind it "
+                "for the road on which the route goes on"
+            )
+
+
+def _junction(number: int, raw: Any) -> JunctionDesign:
+    what = f"junction {number}"
+    try:
+        made = JunctionDesign.model_validate(raw)
+    except ValidationError as error:
+        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+    try:
+        _check_arms(made)
+        taken = made.taken
+    except UsageError as error:
+        raise UsageError(f"{what}: {error}") from error
+    if taken is not None and made.all_arms[taken].length is not None:
+        raise UsageError(
+            f"{what}: the arm at {made.all_arms[taken].angle:g} degrees is the one that the route takes; its "
+            "length is that of the segments behind the junction, so leave out length"
+        )
+    return made
+
+
+def _check_arms(made: JunctionDesign) -> None:
+    angles = [arm.angle for arm in made.all_arms]
+    least, most = COUNTS[made.kind]
+    if not least <= len(angles) <= most:
+        wanted = f"{least}" if least == most else f"{least} to {most}"
+        raise UsageError(
+            f"a {made.kind} has {wanted} arms besides the road of arrival, and {len(angles)} are given"
+        )
+    around = [-180.0, *angles, 180.0]
+    for a, b in pairwise(around):
+        if b - a < ASTERN:
+            raise UsageError(
+                f"arms at {a:g} and {b:g} degrees are less than {ASTERN:g} degrees apart (180 degrees is the "
+                "road of arrival); turn them apart"
+            )

@@ -1,0 +1,221 @@
+"""Defines the Network: roads that are joined by junctions and roundabouts.
+
+Ids of roads, junctions and lanes are those of OpenDRIVE. Lanes on the right of a road's reference line have
+negative ids and are driven along the road; lanes on its left have positive ids and are driven against it.
+Every junction has its own connecting roads, one for each way from one arm to another.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+from roadgpt.network.paved import outline_of, paved_by
+from roadgpt.network.polygon import Area
+from roadgpt.road import Profile, Road
+
+Contact = Literal["start", "end"]
+Control = Literal["priority", "yield", "stop", "lights", "none"]
+Kind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+
+
+class RoadEnd(NamedTuple):
+    """One end of a road."""
+
+    road: int
+    """The id of the road."""
+    contact: Contact
+
+
+class Leg(NamedTuple):
+    """One road of a route."""
+
+    road: int
+    """The id of the road."""
+    lane: int
+    """The id of the lane that the route follows; positive if the route leads against the road."""
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkRoad:
+    """A road of a network, or a connecting road of a junction."""
+
+    id: int
+    road: Road
+    """The geometry; its ``profile`` is never None."""
+    junction: int | None = None
+    """The id of the junction, if this is a connecting road."""
+
+    @property
+    def profile(self) -> Profile:
+        """The lanes of the road."""
+        assert self.road.profile is not None
+        return self.road.profile
+
+
+@dataclass(frozen=True)
+class Connection:
+    """One way through a junction, along a connecting road from its start to its end."""
+
+    road: int
+    """The id of the connecting road."""
+    incoming: RoadEnd
+    outgoing: RoadEnd
+    lanes: tuple[tuple[int, int], ...]
+    """Pairs of lane ids: lane of the incoming road, lane of the connecting road."""
+
+
+@dataclass(frozen=True)
+class Arm:
+    """A road where it meets a junction."""
+
+    end: RoadEnd
+    direction: float
+    """The heading in radians out of the junction."""
+    control: Control = "none"
+    """The sign or the light at which traffic into the junction has to stop or give way."""
+
+
+@dataclass(frozen=True)
+class Junction:
+    """A place where roads meet, with a connecting road for each way through it.
+
+    A roundabout has one junction for each of its arms; see ``Roundabout``.
+    """
+
+    id: int
+    kind: Kind
+    arms: tuple[Arm, ...]
+    """The arms in counter-clockwise order."""
+    connections: tuple[Connection, ...]
+    node: tuple[float, float, float]
+    """The point in metres at which the reference lines of the arms meet; the centre of a roundabout."""
+    kerb: float
+    """The radius in metres that was asked for where the kerbs of two neighbouring arms meet."""
+
+
+@dataclass(frozen=True)
+class Roundabout:
+    """The junctions of one roundabout and the roads of its ring, both in driving order."""
+
+    junctions: tuple[int, ...]
+    ring: tuple[int, ...]
+    centre: tuple[float, float, float]
+    radius: float
+    """The radius of the central island in metres."""
+    width: float
+    """The width of the circulatory roadway in metres."""
+
+
+@dataclass(frozen=True, eq=False)
+class Network:
+    """Roads, the junctions that join them, and the roundabouts among these.
+
+    Raises:
+        ValueError: Two roads or two junctions have the same id, or an arm or a connection names a road that
+            does not exist.
+    """
+
+    roads: tuple[NetworkRoad, ...]
+    junctions: tuple[Junction, ...] = ()
+    roundabouts: tuple[Roundabout, ...] = ()
+
+    def __post_init__(self) -> None:
+        if len(self._by_id) < len(self.roads) or len(self._junction_by_id) < len(self.junctions):
+            raise ValueError("two roads or two junctions of a network have the same id")
+        for junction in self.junctions:
+            named = {arm.end.road for arm in junction.arms}
+            for connection in junction.connections:
+                named |= {connection.road, connection.incoming.road, connection.outgoing.road}
+            if unknown := named - set(self._by_id):
+                raise ValueError(f"junction {junction.id} names road {min(unknown)}, which does not exist")
+
+    def __repr__(self) -> str:
+        metres = sum(each.road.length for each in self.roads if each.junction is None)
+        kinds = ", ".join(kind.replace("_", "-") for kind, _ in self.nodes)
+        return f"Network({len(self.plain_roads)} roads, {metres:.0f} m, junctions: {kinds or 'none'})"
+
+    @cached_property
+    def _by_id(self) -> dict[int, NetworkRoad]:
+        return {each.id: each for each in self.roads}
+
+    @cached_property
+    def _junction_by_id(self) -> dict[int, Junction]:
+        return {each.id: each for each in self.junctions}
+
+    def road(self, number: int) -> NetworkRoad:
+        """Returns the road with this id.
+
+        Raises:
+            KeyError: There is no such road.
+        """
+        return self._by_id[number]
+
+    def junction(self, number: int) -> Junction:
+        """Returns the junction with this id.
+
+        Raises:
+            KeyError: There is no such junction.
+        """
+        return self._junction_by_id[number]
+
+    @cached_property
+    def plain_roads(self) -> tuple[NetworkRoad, ...]:
+        """The roads outside junctions, among them the pieces of rings."""
+        return tuple(each for each in self.roads if each.junction is None)
+
+    @cached_property
+    def junction_at(self) -> dict[RoadEnd, int]:
+        """The id of the junction at each end of a road that meets one."""
+        return {arm.end: junction.id for junction in self.junctions for arm in junction.arms}
+
+    @cached_property
+    def connection_of(self) -> dict[int, tuple[Junction, Connection]]:
+        """For the id of each connecting road, its junction and its connection."""
+        return {each.road: (junction, each) for junction in self.junctions for each in junction.connections}
+
+    @cached_property
+    def roundabout_of(self) -> dict[int, Roundabout]:
+        """The roundabout to which a junction or a road belongs, by the id of the junction or the road."""
+        pairs = [
+            (number, ring)
+            for ring in self.roundabouts
+            for number in (*ring.junctions, *ring.ring, *self._connecting(ring.junctions))
+        ]
+        return dict(pairs)
+
+    def _connecting(self, junctions: Sequence[int]) -> list[int]:
+        return [each.road for number in junctions for each in self.junction(number).connections]
+
+    @cached_property
+    def nodes(self) -> tuple[tuple[Kind, tuple[Junction, ...]], ...]:
+        """The junctions as a driver counts them: each with its kind; those of one roundabout are one."""
+        found: list[tuple[Kind, tuple[Junction, ...]]] = []
+        for junction in self.junctions:
+            ring = self.roundabout_of.get(junction.id)
+            if ring is None:
+                found.append((junction.kind, (junction,)))
+            elif ring.junctions[0] == junction.id:
+                found.append((junction.kind, tuple(map(self.junction, ring.junctions))))
+        return tuple(found)
+
+    @cached_property
+    def paved(self) -> Area:
+        """The area of all lanes for driving, seen from above, without shoulders."""
+        return paved_by([each.road for each in self.roads])
+
+    def outline(self, junction: int) -> Array:
+        """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise.
+
+        Raises:
+            KeyError: There is no such junction.
+        """
+        inside = [self.road(each.road).road for each in self.junction(junction).connections]
+        return outline_of(paved_by(inside))
+
+    def bounds(self) -> Array:
+        """Returns the smallest and the largest x and y of the paved area, ``(2, 2)``, in metres."""
+        return np.array(self.paved.bounds, float).reshape(2, 2)

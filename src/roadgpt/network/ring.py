@@ -1,0 +1,141 @@
+"""Builds one-lane roundabouts, for traffic on the right.
+
+The reference line of the ring is the edge of the central island, driven counter-clockwise with one lane on
+its right. Each arm leads towards the centre and has a junction of its own: a mouth on the ring, through which
+one connecting road leads along the ring, one from the ring to the arm, and one from the arm to the ring.
+"""
+
+import math
+from collections.abc import Sequence
+
+from roadgpt.geometry import Piece, PieceCurve
+from roadgpt.network.building import Builder, Stub, connecting_road, level, one_way
+from roadgpt.network.network import Arm, Connection, Control, Junction, RoadEnd, Roundabout
+from roadgpt.network.turning import curve_between
+from roadgpt.road import Road
+
+WIDTH = 5.0  # m, of the circulatory roadway
+NARROW_WIDTH = 4.5  # m, of a mini roundabout
+MINI = 8.0  # m, largest radius of the island of a mini roundabout: an outer diameter of 25 m
+MOUTH = 9.5  # m along the ring, from the middle of a mouth to either end
+SMALLEST_MOUTH = 3.0  # m; see MOUTH
+BETWEEN = 2.0  # m along the ring, between two mouths
+APPROACH = 9.0  # m, from the outer edge of the ring to the contact of an arm
+
+
+def ring_width(radius: float) -> float:
+    """Returns the width in metres of the circulatory roadway around an island of this radius in metres."""
+    return NARROW_WIDTH if radius <= MINI else WIDTH
+
+
+def contact_distance(radius: float) -> float:
+    """Returns the distance in metres from the centre of a roundabout to the contacts of its arms."""
+    return radius + ring_width(radius) + APPROACH
+
+
+def mouth_of(radius: float, directions: Sequence[float]) -> float:
+    """Returns half of the length in metres of each mouth, along the edge of the island.
+
+    It is at most ``MOUTH``, and so short that ``BETWEEN`` metres of ring remain between two mouths.
+
+    Args:
+        radius: The radius of the central island in metres.
+        directions: The directions of the arms from the centre in radians, counter-clockwise.
+    """
+    gaps = [
+        (b - a) % (2 * math.pi) for a, b in zip(directions, [*directions[1:], directions[0]], strict=True)
+    ]
+    return min(MOUTH, (radius * min(gaps) - BETWEEN) / 2)
+
+
+def smallest_radius(directions: Sequence[float]) -> float:
+    """Returns the smallest radius in metres of an island around which the mouths of all arms fit."""
+    gaps = [
+        (b - a) % (2 * math.pi) for a, b in zip(directions, [*directions[1:], directions[0]], strict=True)
+    ]
+    return (2 * SMALLEST_MOUTH + BETWEEN) / min(gaps)
+
+
+def build_roundabout(
+    builder: Builder,
+    centre: tuple[float, float, float],
+    radius: float,
+    stubs: Sequence[Stub],
+    controls: Sequence[Control],
+    kerb: float,
+) -> Roundabout:
+    """Adds a roundabout to a network and returns it.
+
+    Args:
+        builder: The network; the roads of all stubs are in it.
+        centre: The centre in metres.
+        radius: The radius of the central island in metres; at least ``smallest_radius``.
+        stubs: The arms in counter-clockwise order; each ends ``contact_distance`` from the centre.
+        controls: The sign or light of each arm.
+        kerb: Kept in the junctions.
+    """
+    directions = [stub.direction for stub in stubs]
+    width, half = ring_width(radius), mouth_of(radius, directions) / radius
+    count = len(stubs)
+    numbers = [builder.number() for _ in stubs]
+    ring = []
+    for i in range(count):  # from the mouth of arm i to the next mouth
+        gap = (directions[(i + 1) % count] - directions[i]) % (2 * math.pi)
+        ring.append(builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width)))
+    found = Roundabout(tuple(numbers), tuple(ring), centre, radius, width)
+    for i, stub in enumerate(stubs):
+        before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
+        connections = _mouth(builder, found, numbers[i], stub, (before, after), half)
+        arms = (
+            Arm(stub.end, stub.direction, controls[i]),
+            Arm(after, stub.direction + half + math.pi / 2),
+            Arm(before, stub.direction - half - math.pi / 2),
+        )
+        builder.junctions.append(Junction(numbers[i], "roundabout", arms, connections, centre, kerb))
+    builder.roundabouts.append(found)
+    return found
+
+
+def _arc(centre: tuple[float, float, float], radius: float, start: float, angle: float, width: float) -> Road:
+    """Returns a piece of the ring from direction ``start`` through ``angle``, both in radians."""
+    x, y, z = centre
+    plan = PieceCurve(
+        x + radius * math.cos(start),
+        y + radius * math.sin(start),
+        start + math.pi / 2,
+        (Piece(angle * radius, 1 / radius, 1 / radius),),
+    )
+    return Road(plan, level(plan.length, z), profile=one_way(width, width, plan.length))
+
+
+def _mouth(
+    builder: Builder,
+    ring: Roundabout,
+    junction: int,
+    stub: Stub,
+    ends: tuple[RoadEnd, RoadEnd],
+    half: float,
+) -> tuple[Connection, ...]:
+    """Adds the connecting roads of one mouth: along the ring, off the ring, and onto the ring."""
+    before, after = ends
+    x, y, z = ring.centre
+    at, turn = stub.direction, math.pi / 2 - half
+    # the reference line of the arm and the tangent of the ring at an end of the mouth meet here
+    meeting = ring.radius / math.cos(half)
+    to_ring, to_arm = ring.radius * math.tan(half), contact_distance(ring.radius) - meeting
+    along = builder.add(_arc(ring.centre, ring.radius, at - half, 2 * half, ring.width), junction)
+    made = [Connection(along, before, after, ((-1, -1),))]
+    if stub.out_of:
+        start = (x + ring.radius * math.cos(at - half), y + ring.radius * math.sin(at - half), z)
+        pieces = curve_between(to_ring, to_arm, -turn)
+        widths = (ring.width, stub.width_of(stub.out_of[0]))
+        off = connecting_road(start, at - half + math.pi / 2, pieces, widths)
+        made.append(Connection(builder.add(off, junction), before, stub.end, ((-1, -1),)))
+    if stub.into:
+        far = contact_distance(ring.radius)
+        start = (x + far * math.cos(at), y + far * math.sin(at), z)
+        pieces = curve_between(to_arm, to_ring, -turn)
+        widths = (stub.width_of(stub.into[0]), ring.width)
+        onto = connecting_road(start, at + math.pi, pieces, widths)
+        made.append(Connection(builder.add(onto, junction), stub.end, after, ((stub.id_into(0), -1),)))
+    return tuple(made)

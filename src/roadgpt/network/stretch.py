@@ -1,0 +1,85 @@
+"""Builds the road between two junctions from segments. It is level where it meets a junction."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+from roadgpt.geometry import GradeProfile, PieceCurve
+from roadgpt.geometry.pieces import joined
+from roadgpt.road import Profile, Road, Segment
+from roadgpt.road.alignment import pieces_of
+from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT, elevation_of
+
+LEVEL = 1e-9  # ratio; a smaller grade is level
+LANDING = 4.0  # m of level road before a junction: about the length of a car that waits there
+MOST_OF_LANDING = 0.2  # share of a segment that the level road may take
+
+
+def road_of(
+    segments: Sequence[Segment],
+    start: tuple[float, float, float],
+    heading: float,
+    profile: Profile,
+    is_level: tuple[bool, bool],
+) -> Road:
+    """Returns the road that segments describe.
+
+    Args:
+        segments: At least one segment.
+        start: The point in metres at which the road begins.
+        heading: The heading there in radians.
+        profile: The cross-section.
+        is_level: Whether the grade is 0 at the start, and whether it is 0 at the end. A vertical curve of
+            the usual radius, within the first or the last segment, leads to the grade of that segment.
+    """
+    x, y, z = start
+    plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
+    return Road(plan, _leveled(segments, z, is_level), profile=profile)
+
+
+def _leveled(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
+    found = elevation_of(segments, z)
+    knots = list(zip(found.stations, found.grades, strict=True))
+    if is_level[0]:
+        knots = _from_level(knots, segments[0].distance)
+    if is_level[1]:
+        end = knots[-1][0]
+        knots = _from_level([(end - s, g) for s, g in reversed(knots)], segments[-1].distance)
+        knots = [(end - s, g) for s, g in reversed(knots)]
+    return GradeProfile(z, tuple(s for s, _ in knots), tuple(g for _, g in knots))
+
+
+def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple[float, float]]:
+    """Returns the knots (station, grade) with a level part at the start, and a vertical curve behind it.
+
+    Args:
+        knots: The knots; the first one is at station 0, and the grade is constant up to the second one.
+        distance: Length in metres of the first segment.
+    """
+    (_, grade), *rest = knots
+    if abs(grade) < LEVEL:
+        return knots
+    room = min(rest[0][0], distance)
+    landing = min(LANDING, MOST_OF_LANDING * room)
+    length = min(CREST_RADIUS * abs(grade), MOST_OF_SEGMENT * room - landing)
+    return [(0.0, 0.0), (landing, 0.0), (landing + length, grade), *rest]
+
+
+def joined_grades(roads: Sequence[Road]) -> GradeProfile:
+    """Returns the heights along roads that follow each other.
+
+    Raises:
+        TypeError: The heights of a road are not given by grades.
+    """
+    knots: list[tuple[float, float]] = []
+    start, height = 0.0, 0.0
+    for n, road in enumerate(roads):
+        own = road.elevation
+        if not isinstance(own, GradeProfile):
+            raise TypeError("the heights of a network are given by grades")
+        height = height if n else own.z0
+        here = [(start + s, g) for s, g in zip(own.stations, own.grades, strict=True)]
+        knots += here[1:] if knots else here
+        start += road.length
+        knots[-1] = (start, knots[-1][1])
+    kept = [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
+    return GradeProfile(height, tuple(s for s, _ in kept), tuple(g for _, g in kept))

@@ -1,0 +1,52 @@
+"""Computes the curve of a connecting road: a clothoid, an arc and a clothoid between two straight lines.
+
+The two lines meet at one point. A curve of radius 1 m that turns by ``turn`` radians begins
+``tangent_length(turn)`` metres before this point and ends as far behind it; a curve of radius R is R times as
+large.
+"""
+
+import math
+from functools import lru_cache
+
+from roadgpt.geometry import Piece
+from roadgpt.geometry.pieces import PieceCurve, joined
+
+SHARE = 0.3  # of the angle of a turn that its two clothoids take; the arc turns by the rest
+STRAIGHT = 1e-9  # rad; a smaller turn is a straight line
+
+
+@lru_cache(maxsize=1024)
+def tangent_length(turn: float) -> float:
+    """Returns the distance, in radii, from the start of a curve to the point where its tangents meet.
+
+    Args:
+        turn: The angle of the curve in radians, more than 0 and less than pi.
+    """
+    ramp, arc = SHARE * turn, (1 - SHARE) * turn
+    curve = PieceCurve(0.0, 0.0, 0.0, (Piece(ramp, 0.0, 1.0), Piece(arc, 1.0, 1.0), Piece(ramp, 1.0, 0.0)))
+    return math.hypot(*curve.at(curve.length)) / (2 * math.cos(turn / 2))
+
+
+def curve_between(before: float, after: float, turn: float) -> tuple[Piece, ...]:
+    """Returns lines and a curve that lead from one line to another, in the largest radius that fits.
+
+    Args:
+        before: Distance in metres from the start to the point where the two lines meet.
+        after: Distance in metres from this point to the end.
+        turn: The change of heading in radians, positive to the left, between -pi and pi.
+    """
+    if abs(turn) < STRAIGHT:
+        return (Piece(before + after),)
+    tangent = min(before, after)
+    radius = tangent / tangent_length(abs(turn))
+    k = math.copysign(1 / radius, turn)
+    ramp, arc = SHARE * abs(turn) * radius, (1 - SHARE) * abs(turn) * radius
+    return joined(
+        (
+            Piece(before - tangent),
+            Piece(ramp, 0.0, k),
+            Piece(arc, k, k),
+            Piece(ramp, k, 0.0),
+            Piece(after - tangent),
+        )
+    )
