@@ -16,7 +16,8 @@ from roadgpt.errors import PartError, UsageError, explained
 
 if TYPE_CHECKING:
     from roadgpt.campaign.selection import Choice, Selection
-    from roadgpt.road import Design, Geometry, Road, World
+    from roadgpt.network import Blueprint
+    from roadgpt.road import Geometry, World
     from roadgpt.run import Run
 
 ENDINGS = (".json", ".xodr", ".csv", ".tsv", ".sbft")
@@ -145,8 +146,8 @@ LANES = ("lanes", "lane_width", "lane_width_end", "shoulder", "bank")
 """Fields of the World that have no effect on a road with a cross-section of its own."""
 
 
-def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str, ...]]:
-    """Returns the Design or the Road in a file, and remarks on assumptions made in reading it.
+def blueprint_of(file: str, world: "World") -> tuple["Blueprint", tuple[str, ...]]:
+    """Returns the design or the road in a file, and remarks on assumptions made in reading it.
 
     If the file defines lanes, lane options have no effect; a remark then names the ones that were given.
 
@@ -157,7 +158,8 @@ def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str,
     Raises:
         UsageError: The file holds no road, or the folder is not that of a run.
     """
-    from roadgpt.road import Design, World, read_blueprint
+    from roadgpt.network import read_blueprint
+    from roadgpt.road import Road, World
     from roadgpt.run.card import CARD
 
     if Path(file, CARD).is_file():
@@ -168,7 +170,7 @@ def blueprint_of(file: str, world: "World") -> tuple["Design | Road", tuple[str,
             "DIR/runs/0001, which roadgpt drive --again makes from a test of a campaign"
         )
     blueprint, remarks = read_blueprint(file)
-    if isinstance(blueprint, Design) or blueprint.profile is None:
+    if not isinstance(blueprint, Road) or blueprint.profile is None:
         return blueprint, remarks
     values, usual = world.values(), World().values()
     of_lanes = [each for each in WORLD if each.field in LANES]

@@ -18,9 +18,18 @@ from roadgpt.network.network import (
     Roundabout,
 )
 from roadgpt.network.route import Route
+from roadgpt.network.source import (
+    Blueprint,
+    made_from,
+    read_any_design,
+    read_blueprint,
+    read_road,
+    road_from_json,
+)
 
 __all__ = [
     "Arm",
+    "Blueprint",
     "Connection",
     "Junction",
     "JunctionDesign",
@@ -33,5 +42,10 @@ __all__ = [
     "Route",
     "build_route",
     "has_junctions",
+    "made_from",
+    "read_any_design",
+    "read_blueprint",
     "read_network_design",
+    "read_road",
+    "road_from_json",
 ]

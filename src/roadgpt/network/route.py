@@ -5,16 +5,18 @@ Road can be done with a Route: check, drive, judge and draw it.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import accumulate, pairwise
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
+from roadgpt.network.ground import shoulders_on_ground
 from roadgpt.network.network import Junction, Leg, Network, NetworkRoad, RoadEnd
+from roadgpt.network.network_json import network_to_json
 from roadgpt.network.stretch import joined_grades
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane, Width
@@ -85,6 +87,24 @@ class Route(Road):
                 found.append((start, self.network.junction(road.junction)))
             last = inside
         return tuple(found)
+
+    def on_ground(self) -> Self:
+        """Returns the route with shoulders that reach to the edge of the ground.
+
+        The ground is the paved area of the network, widened by its shoulders.
+        """
+        assert self.profile is not None
+        left, right = shoulders_on_ground(self)
+        profile = replace(
+            self.profile,
+            left=(self.profile.left[0], Lane("shoulder", left)),
+            right=(self.profile.right[0], Lane("shoulder", right)),
+        )
+        return self.with_profile(profile)
+
+    def to_json(self) -> dict[str, Any]:
+        """Returns the route and its network as JSON data, for ``network.road_from_json``."""
+        return {**self.to_route_json(), "network": network_to_json(self.network)}
 
     def to_route_json(self) -> dict[str, list[list[int]]]:
         """Returns the content of a route file: ``{"route": [[road, lane], ...]}`` in driving order."""

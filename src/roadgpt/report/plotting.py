@@ -6,10 +6,11 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from roadgpt.errors import UsageError
+from roadgpt.network import NetworkDesign, made_from
 from roadgpt.report.birds_eye import driven_path, mark
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import draw_ends, draw_road, stations_of
-from roadgpt.road import Design, Road, World, build
+from roadgpt.road import Design, Road, World
 from roadgpt.run import Run
 
 MARGIN = 0.05  # of the road's extent, left free around it
@@ -60,11 +61,9 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
         if what.road is None:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")
         return what.road, world or what.world
-    if isinstance(what, Design):
-        what = build(what)
-    if isinstance(what, Road):
+    if isinstance(what, (Design, NetworkDesign, Road)):
         world = world or World()
-        return world.lay(what), world
+        return made_from(what, world), world
     raise UsageError(f"a {type(what).__name__} cannot be plotted; give a Road, a Design or a Run")
 
 

@@ -1,8 +1,9 @@
 """Reads roads from files: RoadGPT's road files and designs, tests of other tools, tables and OpenDRIVE."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -26,6 +27,13 @@ SHAPES = (
 )
 
 
+T = TypeVar("T")
+
+
+def _nothing(data: Any) -> None:
+    """Knows no data."""
+
+
 def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
     """Returns the road in a road file or in the folder of a run.
 
@@ -40,10 +48,17 @@ def read_road(path: str | Path, geometry: Geometry = "arcs") -> Road:
     return build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
 
 
-def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
+def read_blueprint(
+    path: str | Path, others: Callable[[Any], tuple[T, tuple[str, ...]] | None] = _nothing
+) -> tuple[Design | Road | T, tuple[str, ...]]:
     """Returns the Design or the Road in a file, and remarks on the file.
 
     Each remark is a sentence about something in the file that was changed, ignored or unusual.
+
+    Args:
+        path: The file, or a folder that holds ``road.json``.
+        others: Called first with the parsed JSON of a file. It returns what this function then returns, for
+            data that it knows, and None for all other data.
 
     Raises:
         UsageError: The file cannot be read, is not valid, or holds no road.
@@ -65,6 +80,8 @@ def read_blueprint(path: str | Path) -> tuple[Design | Road, tuple[str, ...]]:
     try:
         if is_table:
             return Road.through(points_of_table(text)), ()
+        if (found_by_others := others(data)) is not None:
+            return found_by_others
         if isinstance(data, dict) and "starting_point" in data:
             return read_design(data)
         if isinstance(data, dict) and _is_test(data):

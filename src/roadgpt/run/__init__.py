@@ -26,6 +26,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
+from roadgpt.network import Blueprint, made_from
 from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -133,7 +134,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
 
 
 def prove(
-    blueprint: Design | Road,
+    blueprint: Blueprint,
     seed: int = 0,
     world: World = USUAL,
     setup: Setup = PLAIN,
@@ -141,10 +142,10 @@ def prove(
     brief: Brief | None = None,
     despite_findings: bool = False,
 ) -> Run:
-    """Makes a Run from a Design or a Road: checks the road, drives it, and judges the drive.
+    """Makes a Run from a design or a Road: checks the road, drives it, and judges the drive.
 
     Args:
-        blueprint: the Design, or the Road.
+        blueprint: the Design, with or without junctions, or the Road.
         seed: seed of the drive; it is used unchanged.
         world: the World, with the size of the map, the limits that the rules check, and the friction. If the
             World gives no friction, a surface that ``brief`` names determines it.
@@ -161,8 +162,8 @@ def prove(
     world = world.on_surface_of(brief)
     check_parts(setup, world)
     begun = time.perf_counter()
-    design = blueprint if isinstance(blueprint, Design) else None
-    road = world.lay(build(blueprint, setup.geometry) if isinstance(blueprint, Design) else blueprint)
+    design = None if isinstance(blueprint, Road) else blueprint
+    road = made_from(blueprint, world, setup.geometry)
     findings = inspect(road, brief, world, setup.rules)
     request = Request(words=brief.words if brief else "", seed=seed, world=world, setup=setup)
     checking = time.perf_counter() - begun

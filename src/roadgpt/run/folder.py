@@ -24,8 +24,8 @@ from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
+from roadgpt.network import read_any_design, road_from_json
 from roadgpt.reading import LARGEST, read_json, read_text, strictly
-from roadgpt.road import Road, read_design
 from roadgpt.run.atomic import json_text, refuse_links, to_bytes, whole_folder, write_whole
 from roadgpt.run.model import Outcome, Request, Run, Seconds
 from roadgpt.run.sbft_json import test_name, test_text
@@ -192,8 +192,8 @@ def _read(folder: Path, card: dict[str, Any]) -> Run:
         outcome=data.outcome,
         description=data.description,
         brief=None if brief is None else Brief.model_validate(brief),
-        design=None if design is None else read_design(design)[0],
-        road=None if road is None else Road.from_json(road),
+        design=None if design is None else read_any_design(design)[0],
+        road=None if road is None else road_from_json(road),
         findings=data.findings,
         drive=Drive.load(folder / "drive.npz") if (folder / "drive.npz").is_file() else None,
         verdict=None if verdict is None else Verdict.from_json(verdict),

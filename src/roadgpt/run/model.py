@@ -9,6 +9,7 @@ from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import permission
+from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -103,7 +104,7 @@ class Run:
     description: str = "valid, not driven"
     """The outcome in a sentence."""
     brief: Brief | None = None
-    design: Design | None = None
+    design: Design | NetworkDesign | None = None
     road: Road | None = None
     findings: tuple[Finding, ...] = ()
     drive: "Drive | None" = None
@@ -136,6 +137,11 @@ class Run:
     def title(self) -> str:
         """The description, or the road's source if there is no description; never empty."""
         return self.words or self.source or "a road without a description"
+
+    @property
+    def plain_design(self) -> Design | None:
+        """The design; None if there is none, or if it has junctions."""
+        return self.design if isinstance(self.design, Design) else None
 
     @property
     def world(self) -> World:

@@ -156,8 +156,8 @@ class RoadGPTTestGenerator:
 
         def another() -> Road | None:
             run = perform(brief, self.seed, world, setup, next(numbers), [*earlier])
-            if run.design is not None:
-                earlier.append(run.design)
+            if run.plain_design is not None:
+                earlier.append(run.plain_design)
             return run.road if run.is_valid else None
 
         return another

@@ -77,16 +77,17 @@ def smallest_change(
     Raises:
         UsageError: the numbers of segments differ, a Run has no Design, or the second Run did not fail.
     """
-    if kept.design is None or failure.design is None:
-        raise UsageError("only roads with designs can be compared segment by segment")
-    if len(kept.design.segments) != len(failure.design.segments):
+    if kept.plain_design is None or failure.plain_design is None:
+        raise UsageError("only roads with designs without junctions can be compared segment by segment")
+    counts = len(kept.plain_design.segments), len(failure.plain_design.segments)
+    if counts[0] != counts[1]:
         raise UsageError(
-            f"the roads have {len(kept.design.segments)} and {len(failure.design.segments)} segments; "
+            f"the roads have {counts[0]} and {counts[1]} segments; "
             "a smallest change is looked for between roads of equally many"
         )
     trial = Trial(failure, brief, most)
-    base = _at_the_start_of(failure.design, kept.design)
-    every = _differences(base, failure.design)
+    base = _at_the_start_of(failure.plain_design, kept.plain_design)
+    every = _differences(base, failure.plain_design)
     needed = _fewest(base, every, trial)
     least = _least(base, needed, trial)
     run = trial.fails(_changed(base, least))

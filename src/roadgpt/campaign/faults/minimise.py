@@ -35,8 +35,8 @@ class Simplest:
     @property
     def sentence(self) -> str:
         """The result as text for users."""
-        assert self.run.design is not None
-        left = len(self.run.design.segments)
+        assert self.run.plain_design is not None
+        left = len(self.run.plain_design.segments)
         what = f"{self.segments_before} segments" if self.segments_before != 1 else "1 segment"
         return (
             f"{what} -> {left}, {self.run.length:.0f} m: {self.run.description} ({self.drives} drives"
@@ -48,10 +48,10 @@ class Trial:
     """Drives simplified versions of one failing road, each at most once, and counts the drives."""
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
-        if failure.verdict is None or failure.verdict.kept or failure.design is None:
+        if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
             raise UsageError(
-                f"road {failure.index} did not fail, or has no design; "
-                "only failing roads with designs are simplified"
+                f"road {failure.index} did not fail, or has no design without junctions; "
+                "only failing roads with such designs are simplified"
             )
         self.failure, self.brief, self.most = failure, brief, most
         self.kind = (failure.verdict.cause, failure.verdict.side)
@@ -113,15 +113,15 @@ def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) 
         UsageError: the Run did not fail, or has no Design.
     """
     trial = Trial(failure, brief, most)
-    assert failure.design is not None
-    design, before = failure.design, None
+    assert failure.plain_design is not None
+    design, before = failure.plain_design, None
     while design != before:
         before = design
         for way in simplifications():
             design = _reduced(design, way(design), trial)
-    run = failure if design == failure.design else trial.fails(design)
+    run = failure if design == failure.plain_design else trial.fails(design)
     assert run is not None
-    return Simplest(run, len(failure.design.segments), trial.drives, not trial.is_exhausted)
+    return Simplest(run, len(failure.plain_design.segments), trial.drives, not trial.is_exhausted)
 
 
 def _reduced(design: Design, steps: Sequence[Simplification], trial: Trial) -> Design:

@@ -41,11 +41,11 @@ def command(files: tuple[str, ...], rules: str, geometry: str, verbose: bool, **
 
 def _checked(screen: Screen, file: str, rules: str, geometry: Any, world: Any) -> Row:
     from roadgpt.check import inspect
-    from roadgpt.road import Design, build
+    from roadgpt.network import made_from
 
     begun = time.perf_counter()
     blueprint, remarks = blueprint_of(file, world)
-    road = build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint
+    road = made_from(blueprint, world, geometry)
     findings = inspect(road, None, world, rules)
     seconds = time.perf_counter() - begun
     for remark in remarks:

@@ -98,7 +98,8 @@ class _Source:
         Raises:
             UsageError: The road cannot be read.
         """
-        from roadgpt.road import Design, build, read_opendrive
+        from roadgpt.network import made_from
+        from roadgpt.road import read_opendrive
         from roadgpt.run import Request, Run
 
         file = named.said
@@ -113,8 +114,7 @@ class _Source:
             return Run(Request(world=world), 1, 0, road=found.road)
         blueprint, remarks = blueprint_of(file, self.world)
         self._tell(file, remarks)
-        road = build(blueprint, self.geometry) if isinstance(blueprint, Design) else blueprint
-        return Run(Request(world=self.world), 1, 0, road=self.world.lay(road))
+        return Run(Request(world=self.world), 1, 0, road=made_from(blueprint, self.world, self.geometry))
 
     def _tell(self, file: str, remarks: tuple[str, ...]) -> None:
         for remark in () if self.is_quiet else remarks:

@@ -1,0 +1,114 @@
+"""Computes where the ground beside a route ends: the paved area of the network with its shoulders.
+
+At each station the ground reaches along the normal of the route, on both sides of its reference line, up to
+the first edge. The height of the ground is that of the route at the same station.
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.curve import Array
+from roadgpt.network.polygon import Area
+from roadgpt.road import Edges, Road
+
+if TYPE_CHECKING:
+    from roadgpt.network.route import Route
+
+FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
+STEP = 0.5  # m, between the stations at which edges are computed
+AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
+ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
+
+
+def ground_of(route: "Route") -> Area:
+    """Returns the paved area of the route's network, widened by its widest shoulder."""
+    shoulder = max(_shoulder(each.road) for each in route.network.roads)
+    area = route.network.paved
+    return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
+
+
+def _shoulder(road: Road) -> float:
+    assert road.profile is not None
+    return road.profile.reach - road.profile.paved_reach
+
+
+def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
+    """Returns the offsets of the left and the right edge of the ground at stations ``s``, in metres."""
+    import shapely
+
+    boundary, starts = ground.boundary, route.plan.at(s)
+    found = []
+    for side in (1.0, -1.0):
+        ends = route.at(s, side * FARTHEST)[:, :2]
+        rays = shapely.linestrings(np.stack((starts, ends), axis=1))
+        hits = shapely.intersection(rays, boundary)
+        away = shapely.distance(shapely.points(starts), hits)
+        found.append(side * np.where(np.isnan(away), FARTHEST, away))
+    return Edges(*found)
+
+
+def windows(route: "Route") -> list[tuple[float, float]]:
+    """Returns the stretches of a route, in metres, at and around its junctions."""
+    found: list[tuple[float, float]] = []
+    for start, end, leg in zip(route.starts, route.starts[1:], route.legs, strict=False):
+        inside = route.network.road(leg.road).junction is not None
+        if not inside and leg.road not in route.network.roundabout_of:
+            continue
+        low, high = max(0.0, start - AROUND), min(route.length, end + AROUND)
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], high)
+        else:
+            found.append((low, high))
+    return found
+
+
+def shoulders_on_ground(route: "Route") -> tuple[CubicProfile, CubicProfile]:
+    """Returns the widths of the left and the right shoulder, in metres, that reach to the edge of the ground.
+
+    Beside roads without a junction near, they are those of the road.
+    """
+    assert route.profile is not None
+    ground, profile = ground_of(route), route.profile
+    rows: tuple[list[_Row], list[_Row]] = ([], [])
+    last = 0.0
+    for low, high in windows(route):
+        s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
+        ends, paved = edges_of_ground(route, ground, s), profile.edges(s)
+        widths = (ends.left - paved.left, paved.right - ends.right)
+        for side, width, usual in zip(
+            rows, widths, _usual(profile.rims(last), profile.edges(last)), strict=True
+        ):
+            if low > last:
+                side.append((last, usual, 0.0))
+            side += _linear(s, np.maximum(width, 0.0))
+        last = high
+    for side, usual in zip(rows, _usual(profile.rims(last), profile.edges(last)), strict=True):
+        end = min(last, route.length - 1e-6)
+        while side and side[-1][0] >= end:
+            side.pop()
+        side.append((end, usual, 0.0))
+    left, right = (_profile(side) for side in rows)
+    return left, right
+
+
+_Row = tuple[float, float, float]
+"""Station, width, and its change per metre."""
+
+
+def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
+    """Returns the widths of the shoulders outside junctions."""
+    return float(rims.left - edges.left), float(edges.right - rims.right)
+
+
+def _linear(s: Array, widths: Array) -> list[_Row]:
+    slopes = np.diff(widths) / np.diff(s)
+    return list(zip(s[:-1].tolist(), widths[:-1].tolist(), slopes.tolist(), strict=True))
+
+
+def _profile(rows: Sequence[_Row]) -> CubicProfile:
+    return CubicProfile(
+        tuple(s for s, _, _ in rows), tuple((width, slope, 0.0, 0.0) for _, width, slope in rows)
+    )

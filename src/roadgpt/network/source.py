@@ -1,0 +1,87 @@
+"""Reads roads, routes and designs from files, and makes roads from designs with or without junctions."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from roadgpt.network.design import NetworkDesign, has_junctions, read_network_design
+from roadgpt.network.growing import build_route
+from roadgpt.network.network_json import legs_from_json, network_from_json
+from roadgpt.network.route import Route
+from roadgpt.road import Design, Geometry, Road, World, build, read_design
+from roadgpt.road.source import read_blueprint as read_road_blueprint
+
+Blueprint = Design | NetworkDesign | Road
+"""Anything from which a road is made."""
+
+
+def read_blueprint(path: str | Path) -> tuple[Blueprint, tuple[str, ...]]:
+    """Returns the design or the road in a file, and remarks on the file.
+
+    Each remark is a sentence about something in the file that was changed, ignored or unusual.
+
+    Raises:
+        UsageError: The file cannot be read, is not valid, or holds no road.
+    """
+    return read_road_blueprint(path, _of_network)
+
+
+def _of_network(data: Any) -> tuple[Blueprint, tuple[str, ...]] | None:
+    """Returns the design with junctions or the route in parsed JSON; None if it holds neither."""
+    if has_junctions(data):
+        return read_network_design(data)
+    if isinstance(data, Mapping) and "network" in data:
+        return road_from_json(data), ()
+    return None
+
+
+def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None = None) -> Road:
+    """Returns the road in a road file or in the folder of a run.
+
+    Args:
+        path: The file, or a folder that holds ``road.json``.
+        geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
+        world: The World, which gives the lanes of a design with junctions; None for the usual World.
+
+    Raises:
+        UsageError: The file cannot be read, is not valid, or holds no road.
+    """
+    return made_from(read_blueprint(path)[0], world or World(), geometry)
+
+
+def read_any_design(data: Mapping[str, Any]) -> tuple[Design | NetworkDesign, tuple[str, ...]]:
+    """Reads a dictionary in RoadGPT's JSON format, with or without junctions; returns the design and remarks.
+
+    Raises:
+        UsageError: A field is missing, misnamed, of the wrong type or out of range.
+    """
+    return read_network_design(data) if has_junctions(data) else read_design(data)
+
+
+def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -> Road:
+    """Returns the road of a blueprint, laid in a World.
+
+    Args:
+        blueprint: A design, a design with junctions, or a road.
+        world: The World, which gives the lanes where the blueprint has none.
+        geometry: How a design without junctions becomes a road.
+
+    Raises:
+        UsageError: The road is too long, or the World asks for lanes that networks do not have.
+    """
+    if isinstance(blueprint, NetworkDesign):
+        return build_route(blueprint, world).on_ground()
+    return world.lay(build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint)
+
+
+def road_from_json(data: Mapping[str, Any]) -> Road:
+    """Restores a road or a route from JSON data as returned by its ``to_json``.
+
+    Raises:
+        UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
+            steep.
+    """
+    if "network" not in data:
+        return Road.from_json(data)
+    network = network_from_json(data["network"])
+    return Route.along(network, legs_from_json(data.get("route"))).on_ground()
