@@ -10,9 +10,20 @@ ROUNDING = 1e-6  # m
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the lowest place of the road if it is below the ground of the level."""
+    found = low_place(road, world)
+    if found is None:
+        return ()
+    s, what = found
+    x, y, _ = (float(v) for v in road.at(s))
+    return (Finding("below_floor", f"at s = {s:.0f} m: {what}", s, x, y),)
+
+
+def low_place(road: Road, world: World) -> tuple[float, str] | None:
+    """Returns the station in metres where the road is lowest, and what is wrong there.
+
+    The result is None if no part of the road is below the ground.
+    """
     s, z = lowest(road.elevation, road.length)
     if z >= world.site.z_floor - ROUNDING:
-        return ()
-    x, y, _ = (float(v) for v in road.at(s))
-    sentence = f"at s = {s:.0f} m: height {z:.1f} m is below the ground at {world.site.z_floor:g} m"
-    return (Finding("below_floor", sentence, s, x, y),)
+        return None
+    return s, f"height {z:.1f} m is below the ground at {world.site.z_floor:g} m"

@@ -9,13 +9,25 @@ from roadgpt.road import Road, World
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the first station where a coordinate, heading, curvature or grade is not finite."""
+    found = missing_number(road)
+    if found is None:
+        return ()
+    s, what = found
+    place = "" if s is None else f"at s = {s:.0f} m: "
+    return (Finding("finite", place + what, s, stops=True),)
+
+
+def missing_number(road: Road) -> tuple[float | None, str] | None:
+    """Returns the first station in metres where a value is not finite, and which value it is.
+
+    The station is None if the length of the road is not finite. The result is None if all values are finite.
+    """
     if not np.isfinite(road.length):
-        return (Finding("finite", "the length of the road is not a number", stops=True),)
+        return None, "the length of the road is not a number"
     with np.errstate(invalid="ignore", over="ignore"):  # such values are found below
         samples = road.sample()
     for name in ("x", "y", "z", "heading", "curvature", "grade"):
         bad = np.flatnonzero(~np.isfinite(getattr(samples, name)))
         if bad.size:
-            s = float(samples.s[bad[0]])
-            return (Finding("finite", f"at s = {s:.0f} m: {name} is not a number", s, stops=True),)
-    return ()
+            return float(samples.s[bad[0]]), f"{name} is not a number"
+    return None

@@ -20,12 +20,27 @@ from roadgpt.road import Road, World
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the first place where the road overlaps itself, and the earlier place that it overlaps."""
+    found, nearest, gap = overlap_with_itself(road, world)
+    if found is not None:
+        return (_finding(road, *found),)
+    return _on_sbft_s_spline(road, world, nearest) if gap < SPLINE_REACH else ()
+
+
+def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | None, int, float]:
+    """Returns where the road first overlaps itself, and how near two of its parts come to each other.
+
+    Returns:
+        - the index of the sample at which the road overlaps an earlier part, and what is wrong there; None if
+          it does not overlap itself,
+        - the index of the sample at which two parts of the road are nearest to each other,
+        - the distance in metres between these parts; infinite if it is more than ``SPLINE_REACH``.
+    """
     samples = road.sample()
     offsets = world.profile_of(road).edges(samples.s)
     quads = quads_of(*sides(samples, offsets))
     folded = np.flatnonzero(~is_convex(quads))
     if folded.size:
-        return (_finding(road, int(folded[0]), "the road folds onto itself; widen the bend"),)
+        return (int(folded[0]), "the road folds onto itself; widen the bend"), 0, 0.0
     slack = 2 * bulge(samples, offsets)
     narrowest = min(offsets.left.min(), -offsets.right.max())
     half_turn = np.pi * narrowest / max(float(samples.s[1] - samples.s[0]), 1e-9)
@@ -36,10 +51,10 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
         if lies_over.any():
             again = int(j[lies_over].min())
             earlier = float(samples.s[int(i[lies_over & (j == again)].min())])
-            return (_finding(road, again, f"the road overlaps itself at s = {earlier:.0f} m"),)
+            return (again, f"the road overlaps itself at s = {earlier:.0f} m"), again, 0.0
         if gap.size:
             nearest = min(nearest, (float(gap.min()), int(j[gap.argmin()])))
-    return _on_sbft_s_spline(road, world, nearest[1]) if nearest[0] < SPLINE_REACH else ()
+    return None, nearest[1], nearest[0]
 
 
 def _on_sbft_s_spline(road: Road, world: World, nearest: int) -> tuple[Finding, ...]:

@@ -25,30 +25,37 @@ ROUNDING = 1e-3  # of the limit
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the crest or dip that exceeds its limit by the largest factor, if there is one."""
+    found = abrupt_place(road, brief, world)
+    if found is None:
+        return ()
+    s, what = found
+    x, y, _ = (float(v) for v in road.at(s))
+    return (Finding("too_abrupt", f"at s = {s:.0f} m: {what}", s, x, y),)
+
+
+def abrupt_place(road: Road, brief: Brief | None, world: World) -> tuple[float, str] | None:
+    """Returns the station in metres of the crest or dip that exceeds its limit by the largest factor, and
+    what is wrong there.
+
+    The result is None if the whole road satisfies the limits.
+    """
     begin, end, bend = vertical_bends(road)
     suspects = np.flatnonzero(np.abs(bend) * world.limits.speed_limit**2 > MOST * (1 + ROUNDING))
     if not suspects.size:
-        return ()
+        return None
     s = np.linspace(0.0, road.length, max(1, round(road.length / STEP)) + 1)
     speed = expected_speed(road.curvature(s), road.grade(s), float(s[1]), world, road.profile)
     fastest = np.array([_fastest(s, speed, begin[i], end[i]) for i in suspects])
     felt = fastest**2 * np.abs(bend[suspects])
     if felt.max() <= MOST * (1 + ROUNDING):
-        return ()
+        return None
     middle = (begin[suspects] + end[suspects]) / 2
     most = np.where(_inside(middle, bumps_asked(road, brief)), GRAVITY, MOST)
     worst = int((felt / most).argmax())
     if felt[worst] <= most[worst] * (1 + ROUNDING):
-        return ()
-    return (
-        _finding(
-            road,
-            float(middle[worst]),
-            float(bend[suspects[worst]]),
-            float(fastest[worst]),
-            float(most[worst]),
-        ),
-    )
+        return None
+    said = _said(float(bend[suspects[worst]]), float(fastest[worst]), float(most[worst]))
+    return float(middle[worst]), said
 
 
 def _fastest(s: Array, speed: Array, begin: float, end: float) -> float:
@@ -63,12 +70,10 @@ def _inside(s: Array, spans: list[tuple[float, float]]) -> Array:
     return out
 
 
-def _finding(road: Road, s: float, bend: float, speed: float, most: float) -> Finding:
-    x, y, _ = (float(v) for v in road.at(s))
+def _said(bend: float, speed: float, most: float) -> str:
     what = "crest" if bend < 0 else "dip"
     felt = f"{speed**2 * abs(bend):.1f} m/s2 at the {3.6 * speed:.0f} km/h expected there"
-    sentence = (
-        f"at s = {s:.0f} m: the vertical radius of the {what} is {1 / abs(bend):.1f} m, which is {felt}; "
+    return (
+        f"the vertical radius of the {what} is {1 / abs(bend):.1f} m, which is {felt}; "
         f"{speed**2 / most:.0f} m would be enough for {most:.3g} m/s2"
     )
-    return Finding("too_abrupt", sentence, s, x, y)

@@ -17,17 +17,23 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     """Reports the length of the road if it is too short."""
     length = road.length
     if length <= LEAST:
-        return (_without_room(length),)
+        return (without_room(length),)
     if length > world.limits.min_length + DOUBT:
         return ()
     length = min(length, measured_length(interpolate(road.control_points())))
     if length > world.limits.min_length:
         return ()
+    return (shorter_than_allowed(length, world),)
+
+
+def shorter_than_allowed(length: float, world: World) -> Finding:
+    """Returns the Finding for a road of this length in metres, which is at most the smallest allowed one."""
     wanted = f"a road is longer than {world.limits.min_length:g} m"
-    return (Finding("too_short", f"the road is {length:.1f} m long, and {wanted}"),)
+    return Finding("too_short", f"the road is {length:.1f} m long, and {wanted}")
 
 
-def _without_room(length: float) -> Finding:
+def without_room(length: float) -> Finding:
+    """Returns the Finding for a road of this length in metres on which a car cannot be driven."""
     sentence = (
         f"the road is {length:.1f} m long, too short to be driven: a car starts {START:g} m along a road and "
         f"has arrived {GOAL:g} m before its end"

@@ -17,14 +17,25 @@ ROUNDING = 1e-6  # ratio
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the steepest place of the road if its grade exceeds the limit."""
+    found = steep_place(road, world)
+    if found is None:
+        return ()
+    s, what = found
+    x, y, _ = (float(v) for v in road.at(s))
+    return (Finding("too_steep", f"at s = {s:.0f} m: {what}", s, x, y),)
+
+
+def steep_place(road: Road, world: World) -> tuple[float, str] | None:
+    """Returns the station in metres where the road is steepest, and what is wrong there.
+
+    The result is None if the grade satisfies the limit everywhere.
+    """
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.limits.max_grade + ROUNDING:
-            x, y, _ = (float(v) for v in road.at(s))
             way = "uphill" if grade > 0 else "downhill"
             limit = f"steeper than {100 * world.limits.max_grade:g} %"
-            sentence = f"at s = {s:.0f} m: grade {100 * abs(grade):.1f} % {way}{over} is {limit}"
-            return (Finding("too_steep", sentence, s, x, y),)
-    return ()
+            return s, f"grade {100 * abs(grade):.1f} % {way}{over} is {limit}"
+    return None
 
 
 def _over_a_window(road: Road) -> tuple[float, float]:

@@ -16,12 +16,12 @@ ROUNDING = 1e-9  # of the limit
 
 def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...]:
     """Reports the tightest place of the road if its radius is below the limit."""
-    s, bend = tightest(road)
-    limit = f"tighter than {world.limits.min_radius:.4g} m"
-    if abs(bend) * world.limits.min_radius > 1 + ROUNDING:
+    found = tight_place(road, world)
+    if found is not None:
+        s, what = found
         x, y, _ = (float(v) for v in road.at(s))
-        sentence = f"at s = {s:.0f} m: radius {1 / abs(bend):.1f} m is {limit}"
-        return (Finding("too_tight", sentence, s, x, y),)
+        return (Finding("too_tight", f"at s = {s:.0f} m: {what}", s, x, y),)
+    limit = f"tighter than {world.limits.min_radius:.4g} m"
     nodes = interpolate(road.control_points())
     radius, middle = smallest_radius(nodes)
     if radius >= world.limits.min_radius:
@@ -30,3 +30,14 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
     s = float(road.locate(x, y)[0])
     sentence = f"at s = {s:.0f} m: radius {radius:.1f} m, as SBFT measures it on its spline, is {limit}"
     return (Finding("too_tight", sentence, s, x, y),)
+
+
+def tight_place(road: Road, world: World) -> tuple[float, str] | None:
+    """Returns the station in metres where the curve of the road is tightest, and what is wrong there.
+
+    The result is None if the radius satisfies the limit everywhere.
+    """
+    s, bend = tightest(road)
+    if abs(bend) * world.limits.min_radius <= 1 + ROUNDING:
+        return None
+    return s, f"radius {1 / abs(bend):.1f} m is tighter than {world.limits.min_radius:.4g} m"
