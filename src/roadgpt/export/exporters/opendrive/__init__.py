@@ -1,4 +1,5 @@
-"""Exports roads as ASAM OpenDRIVE 1.8, with only those elements that version 1.7 also defines.
+"""Exports roads as ASAM OpenDRIVE 1.8, with only those elements that version 1.7 also defines, except for
+the boundaries of junctions.
 
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """
@@ -7,7 +8,7 @@ import json
 from pathlib import Path
 
 from roadgpt.export.exporters.opendrive.junctions import network_document
-from roadgpt.export.exporters.opendrive.roads import header, road_element
+from roadgpt.export.exporters.opendrive.roads import REVISION, header, road_element
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.network import Route
@@ -29,21 +30,36 @@ class OpenDrive:
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
         """
-        path.write_bytes(document(road, world).to_text().encode())
-        if isinstance(road, Route):
-            path.with_suffix(ROUTE).write_text(json.dumps(road.to_route_json()) + "\n")
+        write(road, path, world)
 
 
-def document(road: Road, world: World) -> XmlElement:
+def write(road: Road, path: Path, world: World, revision: int = REVISION) -> None:
+    """Writes the file of a road and, for a route, the file with the roads and lanes that it follows.
+
+    Args:
+        road: The road, or the route through a network.
+        path: The file to write.
+        world: The World.
+        revision: The minor revision of OpenDRIVE 1.
+
+    Raises:
+        ExportError: The road has a number that is not finite.
+    """
+    path.write_bytes(document(road, world, revision).to_text().encode())
+    if isinstance(road, Route):
+        path.with_suffix(ROUTE).write_text(json.dumps(road.to_route_json()) + "\n")
+
+
+def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
     """Returns the XML document of a road, or of the network of a route.
 
     Raises:
         ExportError: The road has a number that is not finite.
     """
     if isinstance(road, Route):
-        return network_document(road.network, world)
+        return network_document(road.network, world, revision)
     root = XmlElement("OpenDRIVE")
     x, y = road.centreline()[:, :2].T
     reach = world.profile_of(road).reach
     bounds = (x.min() - reach, y.min() - reach, x.max() + reach, y.max() + reach)
-    return root.extended(header(bounds), road_element(road, ROAD, world))
+    return root.extended(header(bounds, revision), road_element(road, ROAD, world))

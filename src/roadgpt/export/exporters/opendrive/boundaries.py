@@ -1,6 +1,9 @@
-"""Writes the boundary of a junction: across each arm, and along the kerbs between neighbouring arms.
+"""Writes the boundary of a junction: across the lanes of each arm, and along the kerbs between two arms.
 
-Source: ASAM OpenDRIVE 1.8.1, junction boundary. Its segments are in counter-clockwise order.
+Source: ASAM OpenDRIVE 1.8.1, junction boundary. The segments are in counter-clockwise order and close the
+boundary. A segment of type "joint" leads across an arm from one lane to another, from outer edge to outer
+edge; a segment of type "lane" leads along the outer edge of a lane. Lane 0 has no width, so its edge is the
+line between the lanes of both directions, at which a connecting road begins.
 """
 
 from collections.abc import Iterator
@@ -17,27 +20,51 @@ def boundary(network: Network, junction: Junction) -> XmlElement:
 def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
     arms = [arm.end for arm in junction.arms]
     for n, end in enumerate(arms):
-        yield XmlElement("segment", {"type": "joint", "roadId": str(end.road), "contactPoint": end.contact})
-        beside = _between(junction, end, arms[(n + 1) % len(arms)])
-        if beside is not None:
-            lanes = len(network.road(beside.road).profile.right)
-            yield XmlElement(
-                "segment",
-                {
-                    "type": "lane",
-                    "roadId": str(beside.road),
-                    "boundaryLane": -lanes,
-                    "sStart": "start",
-                    "sEnd": "end",
-                },
-            )
+        yield _across(network, end)
+        after = arms[(n + 1) % len(arms)]
+        if (right := _way(junction, end, after)) is not None:
+            lanes = len(network.road(right.road).profile.right)
+            yield _along(right.road, -lanes, "start", "end")
+        elif (left := _way(junction, after, end)) is not None:
+            # along the central island of a roundabout, where there is no traffic on the other side
+            yield _along(left.road, 0, "end", "start")
 
 
-def _between(junction: Junction, end: RoadEnd, after: RoadEnd) -> Connection | None:
-    """Returns the connection at the kerb between an arm and the next one counter-clockwise.
+def _across(network: Network, end: RoadEnd) -> XmlElement:
+    """Returns the segment across the driving lanes of an arm.
 
-    Traffic on the right that turns right into the next arm keeps to this kerb.
+    Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
+    to those that lead into it. Shoulders end at the junction.
+    """
+    forward, backward = network.road(end.road).profile.count
+    right, left = -forward if forward else 0, backward
+    first, last = (right, left) if end.contact == "start" else (left, right)
+    return XmlElement(
+        "segment",
+        {
+            "type": "joint",
+            "roadId": str(end.road),
+            "contactPoint": end.contact,
+            "jointLaneStart": first,
+            "jointLaneEnd": last,
+        },
+    )
+
+
+def _along(road: int, lane: int, start: str, end: str) -> XmlElement:
+    """Returns the segment along the outer edge of a lane of a connecting road, from one end to the other."""
+    return XmlElement(
+        "segment",
+        {"type": "lane", "roadId": str(road), "boundaryLane": lane, "sStart": start, "sEnd": end},
+    )
+
+
+def _way(junction: Junction, start: RoadEnd, end: RoadEnd) -> Connection | None:
+    """Returns the connection from one arm to another.
+
+    Traffic on the right that turns right into the next arm counter-clockwise keeps to the kerb between the
+    two arms.
     """
     return next(
-        (each for each in junction.connections if (each.incoming, each.outgoing) == (end, after)), None
+        (each for each in junction.connections if (each.incoming, each.outgoing) == (start, end)), None
     )

@@ -93,7 +93,8 @@ def _mark(kind: Marking, links: LaneLinks | None) -> list[XmlElement]:
     programs would draw a line there.
     """
     if kind == "none":
-        return [] if links is None else [XmlElement("roadMark", {"sOffset": 0, "type": "none"})]
+        blank = XmlElement("roadMark", {"sOffset": 0, "type": "none", "color": "standard"})
+        return [] if links is None else [blank]
     mark = XmlElement(
         "roadMark",
         {
