@@ -5,6 +5,7 @@ Each format is a plug-in, for example:
     class Exporter:
         name = "opendrive"                                     # of the format
         suffix = ".xodr"                                       # of its file
+        holds_junctions = True                                 # optional: it can hold a network
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
@@ -20,6 +21,7 @@ from typing import Any, Protocol, runtime_checkable
 from roadgpt import plugins
 from roadgpt.errors import ExportError, UsageError
 from roadgpt.export.poses import Poses
+from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 __all__ = ["Exporter", "Poses", "exporter_of", "save"]
@@ -27,7 +29,11 @@ __all__ = ["Exporter", "Poses", "exporter_of", "save"]
 
 @runtime_checkable
 class Exporter(Protocol):
-    """Writes roads in one format."""
+    """Writes roads in one format.
+
+    An exporter whose attribute ``holds_junctions`` is True also gets routes through junctions
+    (``roadgpt.network.Route``). An exporter without this attribute gets single roads only.
+    """
 
     name: str
     """Name under which the format is registered as a plug-in."""
@@ -88,11 +94,15 @@ def save(
     Raises:
         PartError: A format is unknown.
         UsageError: ``name`` cannot be the name of a file.
-        ExportError: A format cannot hold this road, or a file cannot be written.
+        ExportError: A format cannot hold this road, or a file cannot be written. If a format cannot hold
+            junctions, no file is written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
         raise UsageError(f"'{name}' cannot name a file; give a name without a folder")
+    if isinstance(road, Route):
+        for part in parts:
+            _check_holds_junctions(part)
     road, folder = world.lay(road), Path(folder)
     written: list[Path] = []
     try:
@@ -106,6 +116,14 @@ def save(
         why = error.strerror or error
         raise ExportError(f"cannot write into {folder}: {why}; name another folder") from error
     return tuple(dict.fromkeys(written))
+
+
+def _check_holds_junctions(part: Exporter) -> None:
+    """Raises ExportError if a format would hold only the route, without the junctions beside it."""
+    if getattr(part, "holds_junctions", False):
+        return
+    reads = ", and netconvert reads it" if part.name == "sumo" else ""
+    raise ExportError(f"{part.name} cannot hold junctions yet; opendrive can{reads}")
 
 
 def _moved(draft: Path, folder: Path) -> list[Path]:

@@ -21,11 +21,12 @@ class Csv:
 
     If the road does not have the default cross-section (one lane of constant width in each direction, level),
     the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.
-    Lanes are numbered as in OpenDRIVE.
+    Lanes are numbered as in OpenDRIVE. Of a network, the table holds the route.
     """
 
     name = "csv"
     suffix = ".csv"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the road to ``path`` and the drive, if there is one, to NAME.drive.csv."""

@@ -11,6 +11,7 @@ from roadgpt.export.finite import finite
 from roadgpt.export.georeference import degrees
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 STEP = 1.0  # m
@@ -24,15 +25,18 @@ class GeoJson:
 
     name = "geojson"
     suffix = ".geojson"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes one feature collection.
 
-        ``roadgpt.export.georeference`` defines the geographic position of the map.
+        ``roadgpt.export.georeference`` defines the geographic position of the map. For a route through
+        junctions, the paved area of the whole network takes the place of the lanes.
         """
         s = road.sample(STEP).s
         about = {"length_m": road.length, "speed_kmh": world.limits.speed_limit * 3.6}
-        features = [_line("centre line", road.at(s), about), *_lanes(road, world, s)]
+        beside = _paved(road, world) if isinstance(road, Route) else _lanes(road, world, s)
+        features = [_line("centre line", road.at(s), about), *beside]
         if poses is not None:
             way = np.stack([poses.x, poses.y, poses.z], axis=-1)
             seconds = (np.round(poses.time, 3) + 0.0).tolist()
@@ -58,6 +62,20 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
             low, high = (outer[n], inner) if side == "right" else (inner, outer[n])
             name = f"{side} lane" if count == 1 else f"{side} lane {n + 1}"
             yield _area(name, road.at(s, low), road.at(s, high), properties)
+
+
+def _paved(route: Route, world: World) -> Iterator[dict[str, Any]]:
+    """Yields one polygon for each part of the paved area of a network; it has no heights."""
+    from shapely import get_parts
+    from shapely.geometry.polygon import orient
+
+    for part in get_parts(route.network.paved):
+        turned = orient(part)  # the outline counter-clockwise and holes clockwise, as the standard requires
+        rings = [np.asarray(each.coords, float) for each in (turned.exterior, *turned.interiors)]
+        level = [np.column_stack([ring, np.zeros(len(ring))]) for ring in rings]
+        outlines = [[each[:2] for each in _on_globe(ring)] for ring in level]
+        geometry = {"type": "Polygon", "coordinates": outlines}
+        yield _feature("paved area", geometry, {"friction": world.site.friction})
 
 
 def _line(name: str, points: Array, properties: dict[str, Any]) -> dict[str, Any]:

@@ -17,6 +17,7 @@ class OpenDrive17:
 
     name = "opendrive17"
     suffix = ".1.7.xodr"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the file and, for a route through a network, ``NAME.1.7.route.json`` beside it.

@@ -24,6 +24,7 @@ class OpenDrive:
 
     name = "opendrive"
     suffix = ".xodr"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the file and, for a route through a network, ``NAME.route.json`` beside it.
