@@ -1,0 +1,197 @@
+"""Says what is painted on the roads of a network, and which signs and lights stand at its junctions.
+
+Outside junctions, the lines are those of each road's profile. Inside junctions there are only edge lines,
+along the kerbs. An arm at which traffic has to stop or to give way has a line at the end of its road; at a
+roundabout the line lies at the outer edge of the ring.
+"""
+
+from collections.abc import Iterator
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+from roadgpt.network.network import Arm, Control, Junction, Network, NetworkRoad, Roundabout
+from roadgpt.network.paved import paved_by, ribbon, stations_of
+from roadgpt.network.surface import roads_inside, roads_outside
+from roadgpt.road.profile import LINE
+
+DASH, GAP = 3.0, 6.0  # m, of a broken line
+STOP_LINE = 0.5  # m, width of stop and give-way lines (Germany, RMS-1)
+BLOCK, BLOCK_GAP = 0.5, 0.25  # m, of a give-way line (Germany, RMS-1)
+BEFORE = 1.0  # m, from a sign to the junction
+BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
+SHORTEST = 0.3  # m; shorter pieces of lines come from rounding
+CIRCLE = 64  # segments in a quarter of the circle on which a give-way line lies
+
+StrokeKind = Literal["edge", "lane", "stop", "give_way"]
+
+
+class PaintedStroke(NamedTuple):
+    """One painted line without gaps; each dash of a broken line is a stroke."""
+
+    kind: StrokeKind
+    width: float
+    """Width in metres; half of it lies on each side of the points."""
+    points: Array
+    """Points ``(n, 3)`` of its middle in metres, at the height of the road."""
+    road: int | None = None
+    """The id of the road outside junctions on which it lies; None inside a junction."""
+
+
+class JunctionSign(NamedTuple):
+    """A sign or a light at an arm of a junction."""
+
+    control: Control
+    place: tuple[float, float, float]
+    """The foot of its post in metres, on the right of the arm."""
+    heading: float
+    """The heading in radians of traffic that sees its front."""
+
+
+def strokes(network: Network) -> tuple[PaintedStroke, ...]:
+    """Returns everything that is painted on the roads of a network."""
+    found = [stroke for member in roads_outside(network) for stroke in _of_road(member)]
+    for _, junctions in network.nodes:
+        found += _kerb_lines(network, junctions)
+        for junction in junctions:
+            found += [stroke for arm in junction.arms for stroke in _of_arm(network, junction, arm)]
+    return tuple(found)
+
+
+def signs(network: Network) -> tuple[JunctionSign, ...]:
+    """Returns the signs and lights at the arms of all junctions."""
+    return tuple(
+        _sign(network, arm)
+        for junction in network.junctions
+        for arm in junction.arms
+        if arm.control != "none"
+    )
+
+
+def _of_road(member: NetworkRoad) -> Iterator[PaintedStroke]:
+    """Yields the lines along a road outside junctions."""
+    road, profile = member.road, member.profile
+    s = stations_of(road)
+    for number, line in enumerate(profile.markings(s)):
+        kind: StrokeKind = "edge" if number in (0, len(profile.markings(s)) - 1) else "lane"
+        if line.marking == "solid":
+            yield PaintedStroke(kind, LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
+            continue
+        for start in np.arange(0.0, road.length, DASH + GAP).tolist():
+            end = min(start + DASH, road.length)
+            if end - start < SHORTEST:
+                continue
+            along = np.r_[start, s[(s > start) & (s < end)], end]
+            edges = profile.markings(along)[number].edges
+            yield PaintedStroke(kind, LINE, road.at(along, (edges.left + edges.right) / 2), member.id)
+
+
+def _kerb_lines(network: Network, junctions: tuple[Junction, ...]) -> Iterator[PaintedStroke]:
+    """Yields the edge lines along the kerbs and islands of a junction; the carriageway lies on their left."""
+    import shapely
+
+    inside = paved_by([each.road for each in roads_inside(network, junctions)])
+    inner = network.paved.buffer(-LINE / 2, join_style="mitre")
+    rings = [
+        ring
+        for part in shapely.get_parts(inner)
+        for polygon in [shapely.geometry.polygon.orient(part)]
+        for ring in (polygon.exterior, *polygon.interiors)
+    ]
+    height = junctions[0].node[2]
+    for ring in rings:
+        for piece in _pieces(shapely.intersection(ring, inside)):
+            if piece.length >= SHORTEST:
+                yield PaintedStroke("edge", LINE, _raised(_along(piece, ring), height))
+
+
+def _pieces(shape: Any) -> list[Any]:
+    """Returns the lines in a shape, joined where they touch."""
+    import shapely
+
+    lines = [part for part in shapely.get_parts(shape) if part.geom_type in ("LineString", "LinearRing")]
+    if not lines:
+        return []
+    return list(shapely.get_parts(shapely.line_merge(shapely.multilinestrings(lines))))
+
+
+def _along(piece: Any, ring: Any) -> Array:
+    """Returns the points of a piece of a ring in the direction of the ring."""
+    import shapely
+
+    points = np.asarray(piece.coords, float)[:, :2]
+    step = (points[1] - points[0]) * min(0.5, 0.01 / max(np.hypot(*(points[1] - points[0])), 1e-9))
+    one, two = shapely.line_locate_point(ring, shapely.points([points[0] + step, points[0] + 1.5 * step]))
+    return points if two > one else points[::-1]
+
+
+def _raised(points: Array, height: float) -> Array:
+    return np.column_stack([points, np.full(len(points), height)])
+
+
+def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedStroke]:
+    """Yields the stop line of an arm, or the blocks of its give-way line."""
+    if arm.control in ("priority", "none"):
+        return
+    ring = network.roundabout_of.get(junction.id)
+    line = _across(network, arm) if ring is None else _around(network, junction, arm, ring)
+    if line is None:
+        return
+    if arm.control != "yield":
+        yield PaintedStroke("stop", STOP_LINE, line)
+        return
+    for block in _blocks(line):
+        yield PaintedStroke("give_way", STOP_LINE, block)
+
+
+def _across(network: Network, arm: Arm) -> Array:
+    """Returns the middle ``(2, 3)`` of the line at the end of an arm, from mid-road outwards."""
+    member, at_end = network.road(arm.end.road), arm.end.contact == "end"
+    half = min(STOP_LINE / 2, member.road.length)
+    s = member.road.length - half if at_end else half
+    edges = member.profile.edges(s)
+    outer = float(edges.right) + LINE if at_end else float(edges.left) - LINE
+    return member.road.at(np.full(2, s), np.array([0.0, outer]))
+
+
+def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) -> Array | None:
+    """Returns the middle ``(n, 3)`` of the line where traffic from an arm enters a roundabout, beside the
+    ring; None if no road leads from the arm into the roundabout."""
+    import shapely
+
+    onto = [each for each in junction.connections if each.incoming == arm.end]
+    off = [each for each in junction.connections if each.outgoing == arm.end]
+    if not onto:
+        return None
+    x, y, z = ring.centre
+    circle = shapely.Point(x, y).buffer(ring.radius + ring.width + STOP_LINE / 2, quad_segs=CIRCLE).exterior
+    # traffic keeps to the right: only the part on the right of the arm is crossed by entering traffic
+    lane = ribbon(network.road(onto[0].road).road)
+    for each in off:
+        lane = shapely.difference(lane, ribbon(network.road(each.road).road))
+    pieces = _pieces(shapely.intersection(circle, lane.buffer(-STOP_LINE / 2)))
+    if not pieces:
+        return None
+    return _raised(np.asarray(max(pieces, key=lambda piece: piece.length).coords, float)[:, :2], z)
+
+
+def _blocks(line: Array) -> Iterator[Array]:
+    """Yields the middles ``(n, 3)`` of the blocks of a give-way line; those at the ends touch its ends."""
+    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
+    count = max(1, round((along[-1] + BLOCK_GAP) / (BLOCK + BLOCK_GAP)))
+    size = (along[-1] + BLOCK_GAP) / count
+    for n in range(count):
+        start, end = n * size, n * size + size - BLOCK_GAP
+        stops = np.r_[start, along[(along > start) & (along < end)], end]
+        yield np.column_stack([np.interp(stops, along, line[:, k]) for k in range(3)])
+
+
+def _sign(network: Network, arm: Arm) -> JunctionSign:
+    member, at_end = network.road(arm.end.road), arm.end.contact == "end"
+    before = min(BEFORE, member.road.length)
+    s = member.road.length - before if at_end else before
+    rims = member.profile.rims(s)
+    t = float(rims.right) - BESIDE if at_end else float(rims.left) + BESIDE
+    x, y, z = member.road.at(s, t).tolist()
+    return JunctionSign(arm.control, (x, y, z), arm.direction + np.pi)

@@ -1,0 +1,149 @@
+"""Divides the surface of a network into roads outside junctions and the level areas of its junctions.
+
+A roundabout is one area, with the pieces of its ring. Pictures, pages and exported meshes are made from these
+parts: together, the roads and the areas cover the paved area of the network.
+"""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry.curve import Array
+from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
+from roadgpt.network.paved import paved_by
+from roadgpt.network.polygon import Area
+from roadgpt.road import Road
+
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
+GREEN = 0.1  # share of a hole in the paved area that must remain inside its shoulder for grass to grow there
+
+
+@dataclass(frozen=True, eq=False)
+class JunctionSurface:
+    """The level surface of one junction, or of one roundabout, seen from above."""
+
+    kind: Kind
+    height: float
+    """Height in metres."""
+    junctions: tuple[int, ...]
+    """The ids of the junctions; a roundabout has several."""
+    paved: Area
+    """The area of its connecting roads and of its ring."""
+    shoulder: Area
+    """The shoulder around the paved area, without the shoulders of the roads that lead there; may be
+    empty."""
+    kerbed: tuple["Polygon", ...]
+    """Traffic islands: holes in the paved area that are too small for a shoulder."""
+    green: tuple["Polygon", ...]
+    """Islands with grass, inside their shoulders, such as the middle of a roundabout."""
+
+
+@dataclass(frozen=True, eq=False)
+class NetworkSurface:
+    """The surface of a network, in parts that do not overlap."""
+
+    roads: tuple[NetworkRoad, ...]
+    """The roads outside junctions and roundabouts."""
+    areas: tuple[JunctionSurface, ...]
+    shoulder: float
+    """The width in metres of the shoulder around the junctions; 0 for none."""
+
+    @classmethod
+    def of(cls, network: Network) -> "NetworkSurface":
+        """Returns the parts of a network's surface."""
+        roads = roads_outside(network)
+        width = max((_shoulder(each) for each in network.roads), default=0.0)
+        beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
+        areas = tuple(_area_of(network, kind, junctions, width, beside) for kind, junctions in network.nodes)
+        return cls(roads, areas, width)
+
+    @property
+    def reach(self) -> float:
+        """The largest distance in metres from a reference line to the outer edge of its shoulder."""
+        return self.shoulder + max(each.profile.paved_reach for each in self.roads)
+
+
+def roads_outside(network: Network) -> tuple[NetworkRoad, ...]:
+    """Returns the roads that belong to no junction and to no roundabout."""
+    return tuple(each for each in network.plain_roads if each.id not in network.roundabout_of)
+
+
+def roads_inside(network: Network, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
+    """Returns the connecting roads of some junctions and, for those of a roundabout, the pieces of its
+    ring."""
+    ring = network.roundabout_of.get(junctions[0].id)
+    numbers = [each.road for junction in junctions for each in junction.connections]
+    return [network.road(number) for number in (*numbers, *(ring.ring if ring else ()))]
+
+
+def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
+    """Returns whether a road's start and its end lie at no junction."""
+    return (
+        RoadEnd(road.id, "start") not in network.junction_at,
+        RoadEnd(road.id, "end") not in network.junction_at,
+    )
+
+
+def _shoulder(member: NetworkRoad) -> float:
+    return member.profile.reach - member.profile.paved_reach
+
+
+def _with_shoulders(member: NetworkRoad) -> Road:
+    """Returns a road whose carriageway is as wide as its lanes and shoulders together."""
+    profile = member.profile
+    sides = [tuple(replace(lane, kind="driving") for lane in side) for side in (profile.left, profile.right)]
+    return member.road.with_profile(replace(profile, left=sides[0], right=sides[1]))
+
+
+def _area_of(
+    network: Network, kind: Kind, junctions: tuple[Junction, ...], width: float, beside: Area
+) -> JunctionSurface:
+    """Returns the surface of one junction; ``beside`` is the area of all roads with their shoulders."""
+    import shapely
+
+    paved = paved_by([each.road for each in roads_inside(network, junctions)])
+    wide = paved.buffer(width, quad_segs=ROUND) if width > 0 else paved
+    holes = [shapely.Polygon(hole) for part in shapely.get_parts(paved) for hole in part.interiors]
+    kerbed, green = [], []
+    for hole in holes:
+        rest = shapely.difference(hole, wide)
+        if rest.area < GREEN * hole.area:
+            kerbed.append(hole)
+        else:
+            green += [part for part in shapely.get_parts(rest) if part.area > 0]
+    used = shapely.union_all([network.paved, beside, *kerbed])
+    shoulder = polygons(shapely.difference(wide, used))
+    height = junctions[0].node[2]
+    numbers = tuple(each.id for each in junctions)
+    return JunctionSurface(kind, height, numbers, paved, shoulder, tuple(kerbed), tuple(green))
+
+
+def polygons(shape: Any) -> Area:
+    """Returns the polygons among the parts of a shape, without lines and points."""
+    import shapely
+
+    parts = [part for part in shapely.get_parts(shape) if part.geom_type == "Polygon" and part.area > 0]
+    return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+
+
+def triangulated(area: Area) -> tuple[Array, NDArray[np.int64]]:
+    """Returns points ``(n, 2)`` in metres, and triangles that fill an area: indices ``(m, 3)`` of points,
+    counter-clockwise. Every point is a corner of the area.
+    """
+    import shapely
+
+    found = shapely.get_parts(shapely.constrained_delaunay_triangles(area))
+    if not len(found):
+        return np.empty((0, 2)), np.empty((0, 3), np.int64)
+    corners = shapely.get_coordinates(found).reshape(-1, 4, 2)[:, :3]
+    points, at = np.unique(corners.reshape(-1, 2), axis=0, return_inverse=True)
+    triangles = at.reshape(-1, 3).astype(np.int64)
+    a, b, c = (points[triangles[:, k]] for k in range(3))
+    turn = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    triangles[turn < 0] = triangles[turn < 0][:, ::-1]
+    return points, triangles[np.abs(turn) > 0]

@@ -1,0 +1,160 @@
+"""What is painted on networks: lines lie where the geometry says, and parts of the surface do not overlap."""
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from tests.network.random_designs import random_design
+
+from roadgpt.network import Network, Route, made_from, read_any_design
+from roadgpt.network.markings import STOP_LINE, signs, strokes
+from roadgpt.network.surface import NetworkSurface, free_ends, triangulated
+from roadgpt.road import CrossSection, World
+from roadgpt.road.profile import LINE
+
+STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
+
+
+def route_of(junction: dict[str, object], **world: object) -> Route:
+    data = {
+        "starting_point": [40, 60, 2],
+        "theta": 0,
+        "road_segment1": STRAIGHT,
+        "junction1": {"after": 1, **junction},
+        "road_segment2": STRAIGHT,
+    }
+    found = made_from(read_any_design(data)[0], World(**world))
+    assert isinstance(found, Route)
+    return found
+
+
+def drawn(seed: int) -> Network:
+    found = made_from(read_any_design(random_design(seed))[0], World())
+    assert isinstance(found, Route)
+    return found.network
+
+
+def apart(seeds: range) -> list[Network]:
+    """Networks whose roads do not cover each other: their area is that of their parts."""
+    found = []
+    for network in map(drawn, seeds):
+        surface = NetworkSurface.of(network)
+        parts = sum(each.paved.area for each in surface.areas)
+        roads = sum(each.road.length * 2 * each.profile.paved_reach for each in surface.roads)
+        if abs(network.paved.area - parts - roads) < 0.02 * network.paved.area:
+            found.append(network)
+    assert len(found) >= 3
+    return found
+
+
+NETWORKS = apart(range(8))
+
+
+@pytest.mark.parametrize("network", NETWORKS)
+def test_lines_between_lanes_end_where_a_junction_begins(network: Network) -> None:
+    inside = shapely.union_all([each.paved for each in NetworkSurface.of(network).areas]).buffer(-0.2)
+    lanes = [stroke for stroke in strokes(network) if stroke.kind == "lane"]
+    assert lanes
+    for stroke in lanes:
+        assert not shapely.LineString(stroke.points[:, :2]).intersects(inside)
+
+
+@pytest.mark.parametrize("network", NETWORKS)
+def test_all_paint_lies_on_the_carriageway(network: Network) -> None:
+    wide = network.paved.buffer(0.02)
+    for stroke in strokes(network):
+        line = shapely.LineString(stroke.points[:, :2]).buffer(stroke.width / 2, cap_style="flat")
+        assert shapely.difference(line, wide).area < 0.01 * line.area
+
+
+@pytest.mark.parametrize("network", NETWORKS)
+def test_edge_lines_follow_the_whole_edge_of_the_carriageway(network: Network) -> None:
+    edges = [stroke.points[:, :2] for stroke in strokes(network) if stroke.kind == "edge"]
+    lines = shapely.union_all([shapely.LineString(points) for points in edges])
+    ends = []
+    for member in NetworkSurface.of(network).roads:
+        for s, is_free in zip((0.0, member.road.length), free_ends(network, member), strict=True):
+            if is_free:
+                ends.append(shapely.Point(member.road.at(s)[:2]).buffer(member.profile.paved_reach + 0.2))
+    edge = shapely.difference(network.paved.boundary, shapely.union_all(ends))
+    places = shapely.line_interpolate_point(edge, np.arange(0.0, 1.0, 0.002), normalized=True)
+    assert shapely.distance(places, lines).max() < LINE
+
+
+@pytest.mark.parametrize("control", ["stop", "lights"])
+def test_a_stop_line_lies_across_the_arriving_lane_where_the_road_ends(control: str) -> None:
+    route = route_of({"kind": "crossroads", "take": "left", "control": control})
+    arrival = route.network.road(route.legs[0].road)
+    (line,) = [
+        stroke
+        for stroke in strokes(route.network)
+        if stroke.kind == "stop" and stroke.points[:, 0].max() < arrival.road.at(arrival.road.length)[0]
+    ]
+    x = arrival.road.at(arrival.road.length)[0] - STOP_LINE / 2
+    assert line.width == STOP_LINE
+    np.testing.assert_allclose(line.points, [[x, 60, 2], [x, 60 - 4 + LINE, 2]], atol=1e-9)
+
+
+def test_roads_with_priority_have_no_line() -> None:
+    route = route_of({"kind": "t_junction", "take": "straight", "control": "priority", "arms": [
+        {"angle": 0}, {"angle": 90}]})  # fmt: skip
+    found = [stroke for stroke in strokes(route.network) if stroke.kind in ("stop", "give_way")]
+    assert found
+    assert min(stroke.points[:, 1].min() for stroke in found) > 70  # all on the arm to the north
+    assert sorted(sign.control for sign in signs(route.network)) == ["priority", "priority", "yield"]
+
+
+@pytest.mark.parametrize("radius", [7.0, 16.0, 30.0])
+def test_traffic_gives_way_at_the_edge_of_the_ring(radius: float) -> None:
+    route = route_of({"kind": "roundabout", "take": "straight", "radius": radius})
+    (ring,) = route.network.roundabouts
+    blocks = [stroke for stroke in strokes(route.network) if stroke.kind == "give_way"]
+    assert len(blocks) >= 4 * 4
+    outer = ring.radius + ring.width + STOP_LINE / 2
+    for block in blocks:
+        away = np.hypot(*(block.points[:, :2] - ring.centre[:2]).T)
+        np.testing.assert_allclose(away, outer, atol=0.02)
+    # from the west one enters on the south side of the arm, from the others a quarter turn on
+    angles = np.arctan2(*(np.array([b.points.mean(axis=0)[:2] for b in blocks]) - ring.centre[:2]).T[::-1])
+    quarter = (angles - math.pi) % (math.pi / 2)
+    assert quarter.min() > 0.02
+    assert quarter.max() < math.pi / 4
+
+
+@pytest.mark.parametrize("network", NETWORKS)
+def test_the_parts_of_the_surface_cover_the_paved_area_once(network: Network) -> None:
+    surface = NetworkSurface.of(network)
+    for area in surface.areas:
+        points, triangles = triangulated(area.paved)
+        a, b, c = (points[triangles[:, k]] for k in range(3))
+        sizes = ((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+        assert sizes.min() > 0
+        assert sizes.sum() == pytest.approx(area.paved.area, abs=1e-6)
+        assert shapely.intersection(area.shoulder, network.paved).area < 1e-3
+        for island in (*area.kerbed, *area.green):
+            assert shapely.intersection(island, network.paved).area < 1e-3
+
+
+@pytest.mark.parametrize("radius", [7.0, 16.0])
+def test_a_roundabout_has_grass_in_its_middle_and_kerbs_at_its_arms(radius: float) -> None:
+    route = route_of({"kind": "roundabout", "take": "straight", "radius": radius})
+    (area,) = NetworkSurface.of(route.network).areas
+    (green,) = area.green
+    assert green.centroid.distance(shapely.Point(route.network.roundabouts[0].centre[:2])) < 0.1
+    assert green.area == pytest.approx(math.pi * (radius - 3) ** 2, rel=0.02)
+    assert len(area.kerbed) == 4
+
+
+def test_without_shoulders_there_are_none_at_junctions() -> None:
+    route = route_of({"kind": "roundabout", "take": "straight"}, section=CrossSection(shoulder=0))
+    surface = NetworkSurface.of(route.network)
+    assert surface.shoulder == 0
+    assert all(area.shoulder.is_empty for area in surface.areas)
+
+
+def test_signs_stand_on_the_right_of_those_who_read_them() -> None:
+    route = route_of({"kind": "crossroads", "take": "left", "control": "stop"})
+    first = next(sign for sign in signs(route.network) if math.cos(sign.heading) > 0.99)
+    assert first.control == "stop"
+    assert first.place[1] == pytest.approx(60 - 4 - 3 - 0.6)
