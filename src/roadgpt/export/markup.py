@@ -1,6 +1,7 @@
 """Writes XML as text, with attributes in the given order and numbers that can be read back exactly."""
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
@@ -12,6 +13,8 @@ DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 )
+
+_UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # what an escape may be needed for
 
 Value = str | float | int
 
@@ -27,7 +30,8 @@ def number(value: float) -> str:
     value = float(value) + 0.0  # -0.0 becomes 0.0
     if not math.isfinite(value):
         raise ExportError(NOT_FINITE)
-    return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    text = repr(value)
+    return text[:-2] if text.endswith(".0") and abs(value) < 1e15 else text
 
 
 def escaped(text: str) -> str:
@@ -35,6 +39,8 @@ def escaped(text: str) -> str:
 
     Characters that XML does not allow are removed.
     """
+    if _UNUSUAL(text) is None:
+        return text
     return "".join(filter(_is_allowed, text)).translate(_ESCAPES)
 
 
@@ -54,6 +60,8 @@ class XmlElement:
     children: list["XmlElement"] = field(default_factory=list)
     raw: str = ""
     """Content between the tags, already escaped. It is used instead of children."""
+    is_shared: bool = False
+    """Whether the element is in several places of a document. It must not be changed any more."""
 
     def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "XmlElement":
         """Adds a child with the given attributes and returns the child."""
@@ -67,22 +75,43 @@ class XmlElement:
         return self
 
     def to_text(self) -> str:
-        """Returns the XML document with this element as its root, indented by two spaces per level."""
+        """Returns the XML document with this element as its root, indented by two spaces per level.
+
+        An element that is in several places, such as equal lanes of many roads, is turned into text once per
+        level.
+        """
         lines = [DECLARATION]
-        _write(self, "", lines)
+        _write(self, "", lines, {})
         return "\n".join(lines) + "\n"
 
 
-def _write(element: XmlElement, indent: str, lines: list[str]) -> None:
-    said = "".join(
+_Written = dict[tuple[int, str], str]
+"""The text of elements that are in several places, by the element and the indent."""
+
+
+def _write(element: XmlElement, indent: str, lines: list[str], written: _Written) -> None:
+    if not element.is_shared:
+        _write_all(element, indent, lines, written)
+        return
+    key = (id(element), indent)
+    if (text := written.get(key)) is None:
+        own: list[str] = []
+        _write_all(element, indent, own, written)
+        text = written[key] = "\n".join(own)
+    lines.append(text)
+
+
+def _write_all(element: XmlElement, indent: str, lines: list[str], written: _Written) -> None:
+    said = [
         f' {name}="{escaped(value) if isinstance(value, str) else number(value)}"'
         for name, value in element.attributes.items()
-    )
-    opening = f"{indent}<{element.name}{said}"
+    ]
+    opening = f"{indent}<{element.name}{''.join(said)}"
     if element.children:
-        lines.append(f"{opening}>")
+        lines.append(opening + ">")
+        deeper = indent + "  "
         for child in element.children:
-            _write(child, indent + "  ", lines)
+            _write(child, deeper, lines, written)
         lines.append(f"{indent}</{element.name}>")
     else:
-        lines.append(f"{opening}>{element.raw}</{element.name}>" if element.raw else f"{opening}/>")
+        lines.append(f"{opening}>{element.raw}</{element.name}>" if element.raw else opening + "/>")

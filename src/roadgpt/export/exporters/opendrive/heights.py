@@ -34,6 +34,8 @@ def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[
         profile: The cubics.
         length: Length of the road in metres.
     """
+    if profile.stations[0] == 0 and not any(1e-9 < s < length - 1e-9 for s in profile.stations):
+        return [XmlElement(name, dict(zip((station, *"abcd"), (0.0, *profile.coefficients[0]), strict=True)))]
     stations = _within(profile.stations, length)
     table = profile.cubics(stations)
     kept = [0]
@@ -55,6 +57,8 @@ def _table(road: Road) -> tuple[Array, Array]:
     """Returns stations ``(n,)``, and for each station the four coefficients ``(n, 4)`` of the height as a
     cubic of the distance from it."""
     profile, length = road.elevation, road.length
+    if isinstance(profile, GradeProfile) and len(profile.stations) == 2 and not any(profile.grades):
+        return np.zeros(1), np.array([[profile.z0, 0.0, 0.0, 0.0]])  # level, as all roads of junctions
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
         half = profile.vertical_curvature(stations) / 2

@@ -6,9 +6,13 @@ Source: ASAM OpenDRIVE 1.8.1, junctions.
 from collections.abc import Iterator, Sequence
 
 from roadgpt.export.exporters.opendrive.boundaries import boundary
-from roadgpt.export.exporters.opendrive.roads import REVISION, RoadLink, header, road_element
+from roadgpt.export.exporters.opendrive.extent import bounds_of
+from roadgpt.export.exporters.opendrive.lanes import CrossSections
+from roadgpt.export.exporters.opendrive.plan import Start, starts_of
+from roadgpt.export.exporters.opendrive.roads import REVISION, Place, RoadLink, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import XmlElement
+from roadgpt.geometry import PieceCurve
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.road import World
 
@@ -23,13 +27,14 @@ def network_document(network: Network, world: World, revision: int = REVISION) -
         world: The World, which gives the speed limit and the friction.
         revision: The minor revision of OpenDRIVE 1: 7, or 8 with the boundaries of junctions.
     """
-    (west, south), (east, north) = network.bounds()
-    reach = max(each.profile.reach - each.profile.paved_reach for each in network.roads)
-    bounds = (west - reach, south - reach, east + reach, north + reach)
-    signals = Signals.of(network)
+    starts = starts_of([_curve(each) for each in network.roads])
+    reach = max(each.profile.reach for each in network.roads)
+    bounds = bounds_of([start for own in starts for start in own], reach)
+    signals, sections = Signals.of(network), CrossSections(world)
     root = XmlElement("OpenDRIVE").extended(header(bounds, revision))
-    for member in network.roads:
-        root.extended(_road(network, member, world).extended(*signals.on_road(member.id)))
+    for member, own in zip(network.roads, starts, strict=True):
+        made = road_element(member.road, member.id, sections, _place(network, member, own))
+        root.extended(made.extended(*signals.on_road(member.id)))
     root.extended(*signals.controllers())
     for junction in network.junctions:
         made = XmlElement("junction", {"id": str(junction.id), "name": f"junction {junction.id}"})
@@ -40,16 +45,19 @@ def network_document(network: Network, world: World, revision: int = REVISION) -
     return root.extended(*_groups(network))
 
 
-def _road(network: Network, member: NetworkRoad, world: World) -> XmlElement:
+def _curve(member: NetworkRoad) -> PieceCurve:
+    assert isinstance(member.road.plan, PieceCurve)
+    return member.road.plan
+
+
+def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> Place:
+    """Returns where a road is in its network: its links, and the starts of its lines, arcs and spirals."""
     found = network.connection_of.get(member.id)
     if found is None:
-        return road_element(member.road, member.id, world, list(_links(network, member)))
+        return Place(tuple(_links(network, member)), starts=starts)
     connection = found[1]
-    links = [
-        _to_road("predecessor", connection.incoming),
-        _to_road("successor", connection.outgoing),
-    ]
-    return road_element(member.road, member.id, world, links, found[0].id, _lane_links(connection))
+    links = (_to_road("predecessor", connection.incoming), _to_road("successor", connection.outgoing))
+    return Place(links, found[0].id, _lane_links(connection), starts)
 
 
 def _links(network: Network, member: NetworkRoad) -> Iterator[RoadLink]:

@@ -6,12 +6,14 @@ id     2     |    1    |    -1    |    -2          a road with one lane in each 
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
 
 from roadgpt.export.exporters.opendrive.heights import rows
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
-from roadgpt.road.profile import LINE, Lane, Marking, Width
+from roadgpt.road.profile import LINE, Lane, Marking, Profile, Width
 
 DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
@@ -21,22 +23,69 @@ LaneLinks = Mapping[int, tuple[int, int]]
 """For the id of a lane of a connecting road, the ids of the lanes before and after it."""
 
 
-def lanes(road: Road, world: World, links: LaneLinks | None = None) -> XmlElement:
-    """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
+@dataclass(frozen=True)
+class CrossSections:
+    """Writes the lanes of the roads of one file. Equal elements are made once and shared."""
 
-    Args:
-        road: The road.
-        world: The World, which gives the lanes of a road without its own, the speed limit and the friction.
-        links: The links of the lanes of a connecting road in a junction, where it is stated that there are no
-            markings; None for any other road.
-    """
-    profile, section = world.profile_of(road), XmlElement("laneSection", {"s": 0})
-    left = list(_side(profile.left, 1, road.length, world, links))
-    if left:
-        section.add("left").extended(*reversed(left))
-    section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, links)))
-    section.add("right").extended(*_side(profile.right, -1, road.length, world, links))
-    return XmlElement("lanes").extended(section)
+    world: World
+    _made: dict[object, XmlElement] = field(default_factory=dict)
+
+    @cached_property
+    def road_type(self) -> XmlElement:
+        """The element ``type`` with the speed limit."""
+        made = XmlElement("type", {"s": 0, "type": "rural"}, is_shared=True)
+        made.add("speed", {"max": speed_kmh(self.world), "unit": "km/h"})
+        return made
+
+    def lanes(self, road: Road, links: LaneLinks | None = None) -> XmlElement:
+        """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
+
+        Args:
+            road: The road.
+            links: The links of the lanes of a connecting road in a junction, where it is stated that there
+                are no markings; None for any other road.
+        """
+        profile = self.world.profile_of(road)
+        length = None if _is_constant(profile) else road.length
+        key = (profile.left, profile.right, profile.centre_marking, length, links and tuple(links.items()))
+        if key not in self._made:
+            self._made[key] = self._lanes(profile, road.length, links)
+        return self._made[key]
+
+    def _lanes(self, profile: Profile, length: float, links: LaneLinks | None) -> XmlElement:
+        section = XmlElement("laneSection", {"s": 0})
+        left = list(self._side(profile.left, 1, length, links))
+        if left:
+            section.add("left").extended(*reversed(left))
+        section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, links)))
+        section.add("right").extended(*self._side(profile.right, -1, length, links))
+        return XmlElement("lanes", is_shared=True).extended(section)
+
+    def _side(
+        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks | None
+    ) -> Iterator[XmlElement]:
+        """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
+        kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
+        for number, lane in enumerate(kept, 1):
+            widths = rows("width", "sOffset", _cubics(lane.width), length)
+            made = _lane(sign * number, lane.kind)
+            if links is not None and sign * number in links:
+                before, after = links[sign * number]
+                link = made.add("link")
+                link.add("predecessor", {"id": before})
+                link.add("successor", {"id": after})
+            made.extended(*widths, *_mark(lane.marking, links))
+            if lane.kind == "driving":
+                friction = self.world.site.friction
+                made.add(
+                    "material", {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
+                )
+                made.add("speed", {"sOffset": 0, "max": speed_kmh(self.world), "unit": "km/h"})
+            yield made
+
+
+def _is_constant(profile: Profile) -> bool:
+    return not any(isinstance(lane.width, CubicProfile) for lane in (*profile.left, *profile.right))
 
 
 def lateral_profile(road: Road) -> list[XmlElement]:
@@ -47,29 +96,6 @@ def lateral_profile(road: Road) -> list[XmlElement]:
     if angle is None:
         return []
     return [XmlElement("lateralProfile").extended(*rows("superelevation", "s", angle, road.length))]
-
-
-def _side(
-    side: Sequence[Lane], sign: int, length: float, world: World, links: LaneLinks | None
-) -> Iterator[XmlElement]:
-    """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
-    kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
-    for number, lane in enumerate(kept, 1):
-        widths = rows("width", "sOffset", _cubics(lane.width), length)
-        made = _lane(sign * number, lane.kind)
-        if links is not None and sign * number in links:
-            before, after = links[sign * number]
-            link = made.add("link")
-            link.add("predecessor", {"id": before})
-            link.add("successor", {"id": after})
-        made.extended(*widths, *_mark(lane.marking, links))
-        if lane.kind == "driving":
-            made.add(
-                "material",
-                {"sOffset": 0, "friction": world.site.friction, "surface": "asphalt", "roughness": 0},
-            )
-            made.add("speed", {"sOffset": 0, "max": speed_kmh(world), "unit": "km/h"})
-        yield made
 
 
 def _cubics(width: Width) -> CubicProfile:

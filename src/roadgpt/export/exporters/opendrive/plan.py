@@ -1,6 +1,9 @@
 """Writes the reference line: lines, arcs and spirals exactly, splines as cubics."""
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
+from itertools import accumulate
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -8,43 +11,113 @@ from roadgpt.export.hermite import cubics
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import Piece, PieceCurve, PlanCurve, SplineCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.pieces import advance
+
+T = TypeVar("T")
 
 TOLERANCE = 1e-4  # m, between a spline and its cubics
 STRAIGHT = 1e-7  # m of lateral deviation below which an element is written as a simpler one
 ROUND = 1e-5  # m between a spiral that other programs would refuse and the arcs that replace it
 APART = 0.1  # m; nodes of a spline closer together than this share a cubic
 STEP = 2.0  # m between the stations at which a curve of an unknown class is cut
+CLOSE, NEARLY = 1e-8, 1e-5  # 1/m and ratio; curvatures that differ by less are almost equal
 SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in its place
 
 
-def geometries(plan: PlanCurve) -> Iterator[XmlElement]:
-    """Yields the ``geometry`` elements of a plan curve in the order of their stations."""
+class Start(NamedTuple):
+    """Where a line, an arc or a spiral begins."""
+
+    s: float
+    """The station in metres."""
+    x: float
+    y: float
+    heading: float
+    """In radians."""
+    piece: Piece
+
+
+def geometries(plan: PlanCurve, starts: Sequence[Start] | None = None) -> Iterator[XmlElement]:
+    """Yields the ``geometry`` elements of a plan curve in the order of their stations.
+
+    Args:
+        plan: The curve.
+        starts: The starts of its pieces, if they have been computed already: see ``starts_of``.
+    """
     if isinstance(plan, PieceCurve):
-        return _pieces(plan)
+        return _pieces(plan, starts)
     return _cubics(plan)
 
 
-def _pieces(plan: PieceCurve) -> Iterator[XmlElement]:
-    pieces = [part for piece in plan.pieces for part in _tellable(piece)]
-    starts = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
-    points, headings = plan.at(starts).tolist(), plan.heading(starts).tolist()
-    rows = list(zip(starts.tolist(), points, headings, pieces, strict=True))
-    kept = [row for row in rows if row[3].length > SHORTEST] or rows[:1]
-    kept[0] = (0.0, *kept[0][1:])
-    ends = [row[0] for row in kept[1:]] + [plan.length]
-    for (s, (x, y), heading, piece), end in zip(kept, ends, strict=True):
+def starts_of(plans: Sequence[PieceCurve]) -> list[list[Start]]:
+    """Returns the starts of the pieces of many curves, computed together, which is faster than one by one."""
+    rows = np.array([(p.length, p.k0, p.k1) for plan in plans for p in plan.pieces])
+    length, k0, k1 = rows.T
+    turns = (length * (k0 + k1) / 2).tolist()
+    headings = [
+        heading
+        for plan, own in _shares(plans, turns)
+        for heading in accumulate(own[:-1], initial=plan.heading0)
+    ]
+    along, across = advance(length, np.array(headings), k0, (k1 - k0) / length, length)
+    steps = zip(headings, along.tolist(), across.tolist(), strict=True)
+    return [_starts(plan, own) for plan, own in _shares(plans, list(steps))]
+
+
+def _shares(plans: Sequence[PieceCurve], values: Sequence[T]) -> Iterator[tuple[PieceCurve, Sequence[T]]]:
+    """Yields each curve with the values of its own pieces."""
+    first = 0
+    for plan in plans:
+        yield plan, values[first : first + len(plan.pieces)]
+        first += len(plan.pieces)
+
+
+def _starts(plan: PieceCurve, steps: Sequence[tuple[float, float, float]]) -> list[Start]:
+    """Returns the starts of the pieces of a curve.
+
+    Args:
+        plan: The curve.
+        steps: For each piece, the heading in radians at its start, and how far it leads along x and y.
+    """
+    s, x, y = 0.0, plan.x, plan.y
+    found = []
+    for piece, (heading, dx, dy) in zip(plan.pieces, steps, strict=True):
+        found.append(Start(s, x, y, heading, piece))
+        s, x, y = s + piece.length, x + dx, y + dy
+    return found
+
+
+def _pieces(plan: PieceCurve, starts: Sequence[Start] | None) -> Iterator[XmlElement]:
+    if starts is None or not all(_is_tellable(piece) for piece in plan.pieces):
+        pieces = [part for piece in plan.pieces for part in _tellable(piece)]
+        stations = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
+        points, headings = plan.at(stations).tolist(), plan.heading(stations).tolist()
+        starts = [
+            Start(s, x, y, heading, piece)
+            for s, (x, y), heading, piece in zip(stations.tolist(), points, headings, pieces, strict=True)
+        ]
+    kept = [start for start in starts if start.piece.length > SHORTEST] or list(starts[:1])
+    kept[0] = kept[0]._replace(s=0.0)
+    ends = [start.s for start in kept[1:]] + [plan.length]
+    for (s, x, y, heading, piece), end in zip(kept, ends, strict=True):
         # up to the next piece, so that lengths add up even where a piece was left out
         length = piece.length if abs(end - s - piece.length) < SHORTEST / 100 else end - s
         yield _geometry(s, x, y, heading, length).extended(_shape(piece))
+
+
+def _is_tellable(piece: Piece) -> bool:
+    """Returns whether other programs accept a piece: see ``_tellable``. Its comparison is numpy's."""
+    k0, k1 = piece.k0, piece.k1
+    return k0 == k1 or not math.isfinite(k1) or not abs(k0 - k1) <= CLOSE + NEARLY * abs(k1)
 
 
 def _tellable(piece: Piece) -> list[Piece]:
     """Returns the piece itself, or arcs that replace it.
 
     Some programs refuse a spiral if the curvatures at its two ends are almost equal; CommonRoad compares the
-    curvatures with numpy's ``isclose``. Such pieces are replaced by arcs.
+    curvatures with numpy's ``isclose``, whose tolerances are ``CLOSE`` and ``NEARLY``. Such
+    pieces are replaced by arcs.
     """
-    if piece.k0 == piece.k1 or not np.isclose(piece.k0, piece.k1):
+    if _is_tellable(piece):
         return [piece]
     change = piece.k1 - piece.k0
     parts = max(1, int(np.ceil(np.sqrt(abs(change) * piece.length**2 / 12 / ROUND))))

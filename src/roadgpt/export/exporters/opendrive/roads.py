@@ -1,13 +1,18 @@
 """Writes the header of an OpenDRIVE file, and one road."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 from roadgpt.export.exporters.opendrive.heights import elevations
-from roadgpt.export.exporters.opendrive.lanes import LaneLinks, lanes, lateral_profile, speed_kmh
-from roadgpt.export.exporters.opendrive.plan import geometries
+from roadgpt.export.exporters.opendrive.lanes import (
+    CrossSections,
+    LaneLinks,
+    lateral_profile,
+)
+from roadgpt.export.exporters.opendrive.plan import Start, geometries
 from roadgpt.export.georeference import PROJECTION
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.road import Road, World
+from roadgpt.road import Road
 
 REVISION = 8  # ASAM OpenDRIVE 1.8
 
@@ -41,37 +46,44 @@ def header(bounds: Sequence[float], revision: int = REVISION) -> XmlElement:
     return made
 
 
-def road_element(
-    road: Road,
-    number: int,
-    world: World,
-    links: Sequence[RoadLink] | None = None,
-    junction: int = -1,
-    lane_links: LaneLinks | None = None,
-) -> XmlElement:
+@dataclass(frozen=True)
+class Place:
+    """Where a road is in a network."""
+
+    links: Sequence[RoadLink] = ()
+    """The roads or junctions before and after it."""
+    junction: int = -1
+    """The id of the junction to which a connecting road belongs; -1 for any other road."""
+    lane_links: LaneLinks | None = None
+    """The links of the lanes of a connecting road."""
+    starts: Sequence[Start] | None = None
+    """The starts of the pieces of its reference line, if they have been computed already."""
+
+
+def road_element(road: Road, number: int, sections: CrossSections, place: Place | None = None) -> XmlElement:
     """Returns the element ``road`` with its geometry and its lanes.
 
     Args:
         road: The road.
         number: Its id.
-        world: The World, which gives lanes, speed limit and friction.
-        links: The roads or junctions before and after it, for a road of a network; None for a single road.
-        junction: The id of the junction to which a connecting road belongs; -1 for any other road.
-        lane_links: The links of the lanes of a connecting road.
+        sections: What writes the lanes of all roads of the file.
+        place: Where the road is in its network; None for a single road.
     """
     body = XmlElement(
         "road",
         {
-            "name": "road" if links is None else f"road {number}",
+            "name": "road" if place is None else f"road {number}",
             "length": road.length,
             "id": str(number),
-            "junction": str(junction),
+            "junction": "-1" if place is None else str(place.junction),
             "rule": "RHT",
         },
     )
-    if links is not None:
-        body.add("link").extended(*(XmlElement(name, attributes) for name, attributes in links))
-    body.add("type", {"s": 0, "type": "rural"}).add("speed", {"max": speed_kmh(world), "unit": "km/h"})
-    body.add("planView").extended(*geometries(road.plan))
+    if place is not None:
+        body.add("link").extended(*(XmlElement(name, attributes) for name, attributes in place.links))
+    else:
+        place = Place()
+    body.extended(sections.road_type)
+    body.add("planView").extended(*geometries(road.plan, place.starts))
     body.add("elevationProfile").extended(*elevations(road))
-    return body.extended(*lateral_profile(road), lanes(road, world, lane_links))
+    return body.extended(*lateral_profile(road), sections.lanes(road, place.lane_links))
