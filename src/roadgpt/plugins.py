@@ -15,6 +15,7 @@ KINDS = (
     "readers",
     "designers",
     "rules",
+    "network_rules",
     "exporters",
     "simulators",
     "drivers",

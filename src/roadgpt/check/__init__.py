@@ -7,6 +7,11 @@ Finding, with measured values, for each violation; an empty tuple means that the
 
 A rule set is a named, ordered list of rules. Rules that other packages register as plug-ins (entry points of
 the group ``roadgpt.rules``) are appended to ``strict``.
+
+A road that leads through junctions is a Route, and its whole network is checked against other rules, which
+are under ``network_rules/`` (entry points of the group ``roadgpt.network_rules``):
+
+    def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]
 """
 
 from functools import cache
@@ -17,6 +22,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
+from roadgpt.network import Network, Route
 from roadgpt.road import Road, World
 
 RULE_SETS = {
@@ -37,6 +43,24 @@ RULE_SETS = {
 """The rules of each set in the order in which they are applied. The first Finding is given as the reason why
 a road is invalid.
 """
+NETWORK_RULES = (
+    "finite",
+    "too_short",
+    "leaves_map",
+    "below_floor",
+    "too_steep",
+    "too_abrupt",
+    "too_tight",
+    "ring_too_small",
+    "arms_too_close",
+    "conflicting_overlap",
+    "kerb_too_tight",
+    "connection_too_tight",
+    "junction_not_level",
+    "lanes_do_not_match",
+    "unreachable",
+)
+"""The rules that the set "strict" applies to networks, in this order. Rules of other packages follow them."""
 
 
 class Rule(Protocol):
@@ -47,15 +71,27 @@ class Rule(Protocol):
         ...
 
 
+class NetworkRule(Protocol):
+    """A function that checks one property of a network."""
+
+    def __call__(self, network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+        """Returns one Finding for each violation; an empty tuple if there is none.
+
+        The route is one through this network, None if there is none; stations of findings are its stations.
+        """
+        ...
+
+
 def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict") -> tuple[Finding, ...]:
     """Returns the findings of all rules of a set, in the order of the rules.
 
     A road without findings is valid. If there are findings, the first one is given as the reason why the road
-    is invalid.
+    is invalid. With "strict", a Route is checked by the rules of networks.
 
     Args:
         road: The road to check.
-        brief: The requirements that the road should meet; None if there are none.
+        brief: The requirements that the road should meet; None if there are none. They are not compared with
+            a Route.
         world: The map and the limits, such as the minimum radius and the maximum grade.
         rules: Name of the rule set, "strict" or "sbft".
 
@@ -64,12 +100,46 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         PartError: No rules are installed, or a rule of the set is missing. This ensures
             that no road passes because rules are missing.
     """
+    rules_of(rules)
+    if isinstance(road, Route) and rules == "strict":
+        return inspect_network(road.network, road, world)
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)
         if any(finding.stops for finding in found):
             break  # the other rules would have nothing to measure
     return tuple(found)
+
+
+def inspect_network(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Returns the findings of all rules of networks, in the order of the rules.
+
+    Args:
+        network: The network to check.
+        route: A route through this network; None if there is none.
+        world: The map and the limits.
+
+    Raises:
+        PartError: No rules of networks are installed, or one of ours is missing.
+    """
+    found = list[Finding]()
+    for _, rule in network_rules_of():
+        found += rule(network, route, world)
+        if any(finding.stops for finding in found):
+            break
+    return tuple(found)
+
+
+@cache
+def network_rules_of() -> tuple[tuple[str, NetworkRule], ...]:
+    """Returns the name and the function of each rule of networks, in the order in which they are applied.
+
+    Raises:
+        PartError: No rules of networks are installed, or one of ours is missing.
+    """
+    others = tuple(name for name in plugins.names("network_rules") if name not in NETWORK_RULES)
+    names = (*NETWORK_RULES, *others)
+    return tuple((name, cast(NetworkRule, plugins.find("network_rules", name))) for name in names)
 
 
 @cache
@@ -90,4 +160,15 @@ def rules_of(rules: str) -> tuple[tuple[str, Rule], ...]:
     return tuple((name, cast(Rule, plugins.find("rules", name))) for name in ours)
 
 
-__all__ = ["RULE_SETS", "Finding", "Rule", "inspect", "rules_of", "sbft_verdict"]
+__all__ = [
+    "NETWORK_RULES",
+    "RULE_SETS",
+    "Finding",
+    "NetworkRule",
+    "Rule",
+    "inspect",
+    "inspect_network",
+    "network_rules_of",
+    "rules_of",
+    "sbft_verdict",
+]

@@ -1,0 +1,285 @@
+"""Computes where the roads of a network lie: their ends, their carriageways, and which of these overlap.
+
+All roads are computed together, and a network is computed once for all rules that ask for it.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
+from roadgpt.geometry.curve import Array
+from roadgpt.geometry.pieces import advance
+from roadgpt.network import Network, NetworkRoad, RoadEnd
+from roadgpt.road.profile import Lane, Width
+
+SAG = 0.01  # m, between the edge of a bend and the chords of its polygon
+LONGEST = 8.0  # m, of a chord of a bend
+WIDENING = 1.0  # m, of a chord where a width varies
+TRIM = 1e-3  # m, by which polygons end before the road, so that roads that are joined do not touch
+SLACK = SAG + TRIM  # m, by which the true carriageway may extend beyond its polygon
+ROUNDING = 1e-9  # m
+
+Indices = NDArray[np.intp]
+
+
+class EndPose(NamedTuple):
+    """The centre line at one end of a road: the point in metres, the heading along the road in radians, and
+    the grade along the road as a ratio.
+    """
+
+    x: float
+    y: float
+    z: float
+    heading: float
+    grade: float
+
+    def beside(self, t: float) -> tuple[float, float]:
+        """Returns the point (x, y) in metres ``t`` metres to the left of the centre line."""
+        return self.x - t * math.sin(self.heading), self.y + t * math.cos(self.heading)
+
+
+class Overlap(NamedTuple):
+    """Two roads of a network whose carriageways overlap in plan view."""
+
+    one: NetworkRoad
+    other: NetworkRoad
+    area: float
+    """The area in square metres that both cover."""
+    x: float
+    """The centroid of this area in metres, as is ``y``."""
+    y: float
+
+
+class _Pieces(NamedTuple):
+    """All lines, arcs and clothoids of a network, one after another; arrays ``(m,)``."""
+
+    owner: Indices
+    """The index of the road that the piece belongs to."""
+    length: Array
+    k0: Array
+    dk: Array
+    heading: Array
+    """The heading at the start of the piece in radians, as ``x`` and ``y`` are its start in metres."""
+    x: Array
+    y: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Footprint:
+    """The carriageways of all roads of a network in plan view, without shoulders."""
+
+    network: Network
+
+    @cached_property
+    def _plans(self) -> list[PieceCurve]:
+        plans = [each.road.plan for each in self.network.roads]
+        assert all(isinstance(plan, PieceCurve) for plan in plans)
+        return plans  # type: ignore[return-value]
+
+    @cached_property
+    def _pieces(self) -> _Pieces:
+        rows = [(n, p.length, p.k0, p.k1) for n, plan in enumerate(self._plans) for p in plan.pieces]
+        table = np.array(rows)
+        owner, length, k0, k1 = table[:, 0].astype(np.intp), *table[:, 1:].T
+        starts = np.array([(plan.x, plan.y, plan.heading0) for plan in self._plans])[owner]
+        first = np.searchsorted(owner, owner)
+        heading = starts[:, 2] + _before(length * (k0 + k1) / 2, first)
+        dk = (k1 - k0) / length
+        dx, dy = advance(length, heading, k0, dk, length)
+        return _Pieces(
+            owner,
+            length,
+            k0,
+            dk,
+            heading,
+            starts[:, 0] + _before(dx, first),
+            starts[:, 1] + _before(dy, first),
+        )
+
+    def _places(self, index: Indices, u: Array) -> tuple[Array, Array, Array]:
+        """Returns x, y and heading ``u`` metres behind the starts of pieces; arrays of the shape of ``u``."""
+        length, k0, dk, heading, x, y = (column[index] for column in self._pieces[1:])
+        dx, dy = advance(u, heading, k0, dk, length)
+        return x + dx, y + dy, heading + u * (k0 + u * dk / 2)
+
+    @cached_property
+    def ends(self) -> dict[RoadEnd, EndPose]:
+        """The pose at each end of each road."""
+        owner, length = self._pieces.owner, self._pieces.length
+        last = np.flatnonzero(np.diff(owner, append=-1))
+        x, y, heading = (column.tolist() for column in self._places(last, length[last]))
+        found = {}
+        for n, (member, plan) in enumerate(zip(self.network.roads, self._plans, strict=True)):
+            (z0, g0), (z1, g1) = _heights(member)
+            found[RoadEnd(member.id, "start")] = EndPose(plan.x, plan.y, z0, plan.heading0, g0)
+            found[RoadEnd(member.id, "end")] = EndPose(x[n], y[n], z1, heading[n], g1)
+        return found
+
+    @cached_property
+    def _edges(self) -> tuple[Array, Array, Indices]:
+        """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, and the index
+        of the first point of each road, with ``n`` behind the last one.
+        """
+        index, u = self._stations()
+        owner = self._pieces.owner[index]
+        x, y, heading = self._places(index, u)
+        first = np.searchsorted(owner, np.arange(len(self._plans) + 1))
+        s = _before(self._pieces.length, np.searchsorted(self._pieces.owner, self._pieces.owner))[index] + u
+        left, right = np.empty(len(s)), np.empty(len(s))
+        for n, member in enumerate(self.network.roads):
+            here = slice(first[n], first[n + 1])
+            if _varies(member):
+                left[here] = _widths(member.profile.left, s[here])
+                right[here] = -_widths(member.profile.right, s[here])
+            else:
+                left[here], right[here] = _width(member.profile.left), -_width(member.profile.right)
+        sin, cos = np.sin(heading), np.cos(heading)
+        return (
+            np.stack((x - right * sin, y + right * cos), axis=1),
+            np.stack((x - left * sin, y + left * cos), axis=1),
+            first,
+        )
+
+    def _stations(self) -> tuple[Indices, Array]:
+        """Returns the piece of each point of the edges, and its distance in metres from the piece's start."""
+        owner, length, k0, dk, *_ = self._pieces
+        reach = np.array([_reach(each) for each in self.network.roads])[owner]
+        varies = np.array([_varies(each) for each in self.network.roads])[owner]
+        bend = np.maximum(np.abs(k0), np.abs(k0 + dk * length))
+        with np.errstate(divide="ignore"):
+            step = np.minimum(LONGEST, np.sqrt(8 * SAG / (bend * (1 + bend * reach))))
+        step = np.where(varies, np.minimum(step, WIDENING), np.where(bend == 0, length, step))
+        count = np.maximum(1, np.ceil(length / step - ROUNDING)).astype(np.intp)
+        ends = np.diff(owner, append=-1) != 0
+        index = np.repeat(np.arange(len(owner)), count + ends)
+        nth = np.arange(len(index)) - np.searchsorted(index, index)
+        u = nth * (length / count)[index]
+        trim = np.minimum(TRIM, length / 4)
+        starts = np.searchsorted(owner, owner) == np.arange(len(owner))
+        u = np.where((nth == 0) & starts[index], trim[index], u)
+        u = np.where((nth == count[index]) & ends[index], (length - trim)[index], u)
+        return index, u
+
+    @cached_property
+    def bounds(self) -> Array:
+        """The smallest x and y and the largest x and y of each carriageway ``(n, 4)``, within ``SLACK``."""
+        right, left, first = self._edges
+        low = np.minimum.reduceat(np.minimum(right, left), first[:-1])
+        high = np.maximum.reduceat(np.maximum(right, left), first[:-1])
+        return np.concatenate((low, high), axis=1)
+
+    def outermost(self, n: int, side: int) -> tuple[float, float]:
+        """Returns the point (x, y) in metres at which the carriageway of the road with index ``n`` reaches
+        one of its bounds; ``side`` is the index of the bound in ``bounds``.
+        """
+        right, left, first = self._edges
+        points = np.concatenate((right[first[n] : first[n + 1]], left[first[n] : first[n + 1]]))
+        along = points[:, side % 2]
+        x, y = points[int(along.argmin() if side < 2 else along.argmax())].tolist()
+        return x, y
+
+    @cached_property
+    def polygons(self) -> NDArray[Any]:
+        """The carriageway of each road as a polygon of shapely, in the order of ``network.roads``."""
+        import shapely
+
+        right, left, first = self._edges
+        points = np.concatenate((right, left))
+        n = len(right)
+        order = np.concatenate([np.r_[a:b, n + b - 1 : n + a - 1 : -1] for a, b in pairwise(first.tolist())])
+        rings = np.repeat(np.arange(len(first) - 1), 2 * np.diff(first))
+        found: NDArray[Any] = shapely.polygons(shapely.linearrings(points[order], indices=rings))
+        return found
+
+    @cached_property
+    def overlaps(self) -> tuple[Overlap, ...]:
+        """The pairs of roads that overlap, apart from connecting roads of the same junction."""
+        import shapely
+
+        i, j = _near(self.bounds)
+        inside = np.array([-1 if each.junction is None else each.junction for each in self.network.roads])
+        apart = (inside[i] != inside[j]) | (inside[i] < 0)
+        i, j = i[apart], j[apart]
+        shapely.prepare(self.polygons)
+        meet = shapely.intersects(self.polygons[i], self.polygons[j])
+        found = []
+        for one, other in zip(i[meet], j[meet], strict=True):
+            both = [shapely.make_valid(self.polygons[n]) for n in (one, other)]
+            area = shapely.intersection(*both)
+            if area.area > 0:
+                middle = area.centroid
+                members = self.network.roads[one], self.network.roads[other]
+                found.append(Overlap(*members, area.area, middle.x, middle.y))
+        return tuple(found)
+
+    @cached_property
+    def folded(self) -> tuple[NetworkRoad, ...]:
+        """The roads whose own edges meet: each overlaps itself or nearly does."""
+        import shapely
+
+        is_valid = shapely.is_valid(self.polygons)
+        return tuple(each for each, fine in zip(self.network.roads, is_valid, strict=True) if not fine)
+
+
+@lru_cache(maxsize=2)
+def footprint(network: Network) -> Footprint:
+    """Returns the Footprint of a network; it is kept for the next rule that asks."""
+    return Footprint(network)
+
+
+def _before(values: Array, first: Indices) -> Array:
+    """Returns, for each value, the sum of the values before it, from the one at ``first`` onwards."""
+    total = np.cumsum(values) - values
+    return np.asarray(total - total[first])
+
+
+def _near(bounds: Array) -> tuple[Indices, Indices]:
+    """Returns the index pairs, smaller index first, of boxes that touch."""
+    low, high = bounds[:, None, :2], bounds[None, :, 2:]
+    touch = (low <= high).all(axis=2)
+    one, other = np.nonzero(np.triu(touch & touch.T, 1))
+    return one, other
+
+
+def _driving(lanes: tuple[Lane, ...]) -> list[Width]:
+    return [lane.width for lane in lanes if lane.kind == "driving"]
+
+
+def _varies(member: NetworkRoad) -> bool:
+    widths = _driving(member.profile.left) + _driving(member.profile.right)
+    return any(isinstance(width, CubicProfile) for width in widths)
+
+
+def _width(lanes: tuple[Lane, ...]) -> float:
+    """Returns the width in metres of all driving lanes of one side, at most; exact if they do not vary."""
+    return sum(
+        max(row[0] for row in width.coefficients) if isinstance(width, CubicProfile) else width
+        for width in _driving(lanes)
+    )
+
+
+def _widths(lanes: tuple[Lane, ...], s: Array) -> Array:
+    """Returns the width in metres of all driving lanes of one side at stations ``s`` of the road."""
+    total = np.zeros(s.shape)
+    for width in _driving(lanes):
+        total += width.height(s) if isinstance(width, CubicProfile) else width
+    return total
+
+
+def _reach(member: NetworkRoad) -> float:
+    return max(_width(member.profile.left), _width(member.profile.right))
+
+
+def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Returns the height in metres and the grade at the start of a road, and those at its end."""
+    profile = member.road.elevation
+    if isinstance(profile, GradeProfile) and not any(profile.grades):
+        return (profile.z0, 0.0), (profile.z0, 0.0)
+    z, grade = (f(np.array([0.0, member.road.length])).tolist() for f in (profile.height, profile.grade))
+    return (z[0], grade[0]), (z[1], grade[1])

@@ -1,0 +1,70 @@
+"""Measures how tightly lines beside a centre line bend, such as the middle or the edge of a lane."""
+
+import math
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile, PieceCurve
+from roadgpt.network import NetworkRoad
+
+GRID = np.linspace(0.0, 1.0, 33)  # of a piece whose lane varies in width
+INSIDE = 1e-9  # m from the end of a road, so that the width is that before its end
+
+
+class Bend(NamedTuple):
+    """Where a line bends most: the station of the centre line and the radius of the line, in metres."""
+
+    s: float
+    radius: float
+
+
+def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> Bend | None:
+    """Returns the tightest bend of a line through the right lane of a connecting road.
+
+    The line is at ``share`` of the width of the lane to the right of the centre line: 0.5 for the middle of
+    the lane, 1 for its right edge. It may not be an arc even where the centre line is one, because the width
+    may vary. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
+
+    Args:
+        member: The connecting road.
+        share: Distance from the centre line as a ratio of the width of the lane.
+        only_right: Whether to leave out bends to the left.
+
+    Returns:
+        The bend; None if the line is straight. A radius of 0 means that the line folds.
+    """
+    plan, width = member.road.plan, member.profile.right[0].width
+    assert isinstance(plan, PieceCurve)
+    if isinstance(width, CubicProfile):
+        rows: Iterable[tuple[float, float]] = _sampled(plan, width, share)
+    else:
+        rows = _exact(plan, -share * width)
+    s, bend = max(((s, -k if only_right else abs(k)) for s, k in rows), key=lambda row: row[1])
+    return Bend(s, 1 / bend) if bend > 0 else None
+
+
+def _exact(plan: PieceCurve, t: float) -> Iterator[tuple[float, float]]:
+    """Yields stations and curvatures of a parallel curve; they are extreme at the ends of its pieces."""
+    s = 0.0
+    for piece in plan.pieces:
+        for at, k in ((s, piece.k0), (s + piece.length, piece.k1)):
+            along = 1 - t * k
+            yield at, k / along if along > 0 else math.copysign(math.inf, k)
+        s += piece.length
+
+
+def _sampled(plan: PieceCurve, width: CubicProfile, share: float) -> list[tuple[float, float]]:
+    """Returns stations and curvatures of a curve at ``share`` of a width that varies."""
+    rows = np.array([(piece.length, piece.k0, piece.k1) for piece in plan.pieces])
+    length, k0, k1 = rows.T[..., None]
+    k = (k0 + (k1 - k0) * GRID).ravel()
+    s = ((np.cumsum(length)[:, None] - length) + length * GRID).ravel()
+    at = np.minimum(s, plan.length - INSIDE)
+    d, d1, d2 = (-share * f(at) for f in (width.height, width.grade, width.vertical_curvature))
+    slope = np.repeat((k1 - k0) / length, len(GRID), axis=1).ravel()
+    along = 1 - d * k
+    across = (along * (d2 + along * k) + d1 * (d1 * k + d * slope + d1 * k)) / np.hypot(along, d1) ** 3
+    bend = np.where(along > 0, across, np.copysign(np.inf, k))
+    return list(zip(s.tolist(), bend.tolist(), strict=True))

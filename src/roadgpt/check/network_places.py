@@ -1,0 +1,91 @@
+"""Makes the findings of the rules of networks: names the road or junction, and its place on the route."""
+
+import math
+
+from roadgpt.check.finding import Finding
+from roadgpt.network import Junction, Network, NetworkRoad, Route
+
+NAMES = {
+    "t_junction": "T-junction",
+    "y_junction": "Y-junction",
+    "crossroads": "crossroads",
+    "star": "star junction",
+    "roundabout": "roundabout",
+}
+
+
+def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
+    """Returns the Finding that something is wrong at a junction; ``what`` says it without the place."""
+    x, y, _ = junction.node
+    s = None
+    if route is not None:
+        s = next((s for s, passed in route.passed if passed.node == junction.node), None)
+    return Finding(rule, f"at {name_of(junction)}: {what}", s, x, y)
+
+
+def road_finding(
+    rule: str, route: Route | None, member: NetworkRoad, s: float, what: str, stops: bool = False
+) -> Finding:
+    """Returns the Finding that something is wrong at station ``s`` (m) of a road.
+
+    ``what`` says it without the place. The station of the Finding is that of the route; None if the road is
+    not on the route.
+    """
+    x, y, _ = member.road.at(s).tolist()
+    along = station_on(route, member, s)
+    where = f"on road {member.id}" if along is None else f"at s = {along:.0f} m"
+    near = f", near ({x:.0f}, {y:.0f})" if math.isfinite(x) and math.isfinite(y) else ""
+    return Finding(rule, f"{where}{near}: {what}", along, x, y, stops)
+
+
+def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
+    """Returns the first station of a route, in metres, that is station ``s`` of a road.
+
+    The result is None if the road is not on the route.
+    """
+    if route is None:
+        return None
+    for start, leg in zip(route.starts, route.legs, strict=False):
+        if leg.road == member.id:
+            return start + (s if leg.lane < 0 else member.road.length - s)
+    return None
+
+
+def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
+    """Returns the station of a route, in metres, nearest to a point (x, y) of a road.
+
+    The result is None if the road is not on the route.
+    """
+    if station_on(route, member, 0.0) is None:
+        return None
+    return station_on(route, member, float(member.road.locate(x, y)[0]))
+
+
+def name_of(junction: Junction) -> str:
+    """Returns the name of a junction with its place, such as "the crossroads near (120, 125)"."""
+    x, y, _ = junction.node
+    return f"the {NAMES[junction.kind]} near ({x:.0f}, {y:.0f})"
+
+
+def more_room(junction: Junction) -> str:
+    """Returns what to do where the connecting roads of a junction are too tight."""
+    wanted = "give the island" if junction.kind == "roundabout" else "ask for a kerb with"
+    return f"{wanted} a larger radius or turn the arms apart"
+
+
+def owner_of(network: Network, member: NetworkRoad) -> str:
+    """Returns the name of a road outside junctions, or that of the junction or roundabout around a road."""
+    if member.junction is not None:
+        return name_of(network.junction(member.junction))
+    ring = network.roundabout_of.get(member.id)
+    return f"road {member.id}" if ring is None else name_of(network.junction(ring.junctions[0]))
+
+
+def is_ring(network: Network, member: NetworkRoad) -> bool:
+    """Returns whether a road outside junctions is a piece of the ring of a roundabout."""
+    return member.junction is None and member.id in network.roundabout_of
+
+
+def roads_outside_junctions(network: Network) -> tuple[NetworkRoad, ...]:
+    """Returns the roads outside junctions and roundabouts."""
+    return tuple(each for each in network.plain_roads if each.id not in network.roundabout_of)

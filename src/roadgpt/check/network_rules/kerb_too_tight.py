@@ -1,0 +1,44 @@
+"""Requires the kerb between two neighbouring arms of a junction to have a radius of at least 3 m.
+
+The kerb is the right edge of the connecting road by which traffic turns right from one arm to the next. Its
+smallest radius is measured, which is less than that of an arc with the same ends, because of the clothoids.
+Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb radii are 10 to 15 ft.
+"""
+
+from roadgpt.check.finding import Finding
+from roadgpt.check.lane_bends import tightest_bend
+from roadgpt.check.network_places import junction_finding, more_room
+from roadgpt.network import Junction, Network, Route
+from roadgpt.road import World
+
+LEAST = 3.0  # m
+EDGE = 1.0  # of the width of the lane
+ROUNDING = 1e-9  # m
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports each junction with a kerb that is too tight, and the smallest radius there."""
+    found = []
+    for _, junctions in network.nodes:
+        radii = [radius for junction in junctions for radius in _kerbs(network, junction)]
+        least = min(radii, default=LEAST)
+        if least < LEAST - ROUNDING:
+            what = (
+                f"the kerb between two arms has a radius of {least:.1f} m, tighter than {LEAST:g} m; "
+                f"{more_room(junctions[0])}"
+            )
+            found.append(junction_finding("kerb_too_tight", route, junctions[0], what))
+    return tuple(found)
+
+
+def _kerbs(network: Network, junction: Junction) -> list[float]:
+    """Returns the smallest radius in metres of each kerb that bends to the right."""
+    ends = [arm.end for arm in junction.arms]
+    following = dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
+    found = []
+    for each in junction.connections:
+        if following.get(each.incoming) == each.outgoing:
+            bend = tightest_bend(network.road(each.road), EDGE, only_right=True)
+            if bend is not None:
+                found.append(bend.radius)
+    return found

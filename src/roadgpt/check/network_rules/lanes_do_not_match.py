@@ -1,0 +1,54 @@
+"""Requires the lanes of connecting roads to meet those of the arms exactly where they are joined.
+
+Both edges of a lane must be at the same points within 1 mm. This also requires the same width, and the same
+heading within about a milliradian. The lanes that a connection names must exist. Source: OpenDRIVE 1.8, road
+linkage: linked lanes connect without gaps.
+"""
+
+from roadgpt.check.finding import Finding
+from roadgpt.check.lanes_at_ends import gap, lanes_into, lanes_out_of
+from roadgpt.check.network_places import junction_finding
+from roadgpt.network import Connection, Junction, Network, RoadEnd, Route
+from roadgpt.road import World
+
+MOST = 1e-3  # m
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports each connection that names a lane that does not exist, or whose lane does not meet an arm's."""
+    found = []
+    for junction in network.junctions:
+        for each in junction.connections:
+            for lane, own in each.lanes:
+                if (what := _wrong(network, junction, each, lane, own)) is not None:
+                    found.append(junction_finding("lanes_do_not_match", route, junction, what))
+    return tuple(found)
+
+
+def _wrong(network: Network, junction: Junction, each: Connection, lane: int, own: int) -> str | None:
+    ends = {arm.end for arm in junction.arms}
+    for end in (each.incoming, each.outgoing):
+        if end not in ends:
+            return (
+                f"connecting road {each.road} leads to the {end.contact} of road {end.road}, which is no arm"
+            )
+    start, finish = RoadEnd(each.road, "start"), RoadEnd(each.road, "end")
+    if lane not in lanes_into(network, each.incoming):
+        return f"road {each.incoming.road} has no lane {lane} that leads into it; name a lane that does"
+    if own not in lanes_out_of(network, start):
+        return f"connecting road {each.road} has no lane {own} along it; name a lane that it has"
+    apart = gap(network, (each.incoming, lane), (start, own))
+    if apart > MOST:
+        return _said(each.road, each.incoming.road, apart)
+    targets = lanes_out_of(network, each.outgoing)
+    if not targets:
+        return f"connecting road {each.road} leads to road {each.outgoing.road}, which has no lane out of it"
+    apart = min(gap(network, (finish, own), (each.outgoing, target)) for target in targets)
+    return _said(each.road, each.outgoing.road, apart) if apart > MOST else None
+
+
+def _said(connecting: int, road: int, apart: float) -> str:
+    return (
+        f"the lanes of roads {connecting} and {road} do not meet: their edges are {apart:.3f} m apart; give "
+        "both the same place, heading and width there"
+    )

@@ -1,0 +1,69 @@
+"""Requires roundabouts with an outer diameter of at least 13 m, and room between the mouths of their arms.
+
+The diameter is measured on the pieces of the ring: twice the radius of the reference line and the width of
+the lane outside it. Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabouts have
+13 m to 22 m.
+"""
+
+import math
+
+from roadgpt.check.finding import Finding
+from roadgpt.check.footprint import footprint
+from roadgpt.check.network_places import junction_finding
+from roadgpt.geometry import PieceCurve
+from roadgpt.network import Network, NetworkRoad, Roundabout, Route
+from roadgpt.road import World
+
+LEAST = 13.0  # m, outer diameter
+OVERLAP = 1e-3  # m^2
+ONCE = 1e-6  # rad, by which the pieces of a ring may miss one full turn
+ROUNDING = 1e-9  # m
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports each roundabout that is too small, and each one whose mouths overlap."""
+    found = []
+    for ring in network.roundabouts:
+        first = network.junction(ring.junctions[0])
+        diameter = min(_diameter(network.road(each)) for each in ring.ring)
+        if diameter < LEAST - ROUNDING:
+            what = (
+                f"the roundabout has an outer diameter of {diameter:.1f} m, smaller than {LEAST:g} m; give "
+                "its island a larger radius"
+            )
+            found.append(junction_finding("ring_too_small", route, first, what))
+        if abs(_turning(network, ring) - 2 * math.pi) > ONCE or _overlaps(network, ring):
+            what = "the mouths of two arms overlap; turn the arms apart or give the island a larger radius"
+            found.append(junction_finding("ring_too_small", route, first, what))
+    return tuple(found)
+
+
+def _diameter(member: NetworkRoad) -> float:
+    """Returns the outer diameter in metres of the tightest bend of a piece of a ring."""
+    plan = member.road.plan
+    assert isinstance(plan, PieceCurve)
+    bend = max(max(piece.k0, piece.k1) for piece in plan.pieces)
+    width = -float(member.profile.edges(0.0).right)
+    return 2 * (1 / bend + width) if bend > 0 else math.inf
+
+
+def _turning(network: Network, ring: Roundabout) -> float:
+    """Returns the angle in radians by which the pieces of the ring, and those in its mouths, turn."""
+    along = [
+        each.road
+        for number in ring.junctions
+        for each in network.junction(number).connections
+        if each.incoming.road in ring.ring and each.outgoing.road in ring.ring
+    ]
+    plans = [network.road(number).road.plan for number in (*ring.ring, *along)]
+    return sum((p.k0 + p.k1) / 2 * p.length for plan in plans for p in plan.pieces)  # type: ignore[attr-defined]
+
+
+def _overlaps(network: Network, ring: Roundabout) -> bool:
+    """Returns whether two roads of the ring or its mouths overlap that do not belong to the same mouth."""
+    return any(
+        network.roundabout_of.get(each.one.id) is ring
+        and network.roundabout_of.get(each.other.id) is ring
+        and each.area > OVERLAP
+        for each in footprint(network).overlaps
+    )

@@ -1,0 +1,33 @@
+"""Requires a route of more than 20 m, and room for a car on every road outside junctions and roundabouts.
+
+A car starts 2.5 m along the first road of a route and has arrived 8 m before the end of the last one, so that
+these two roads must be longer. The limit of the whole route is that of the SBFT competition.
+"""
+
+from roadgpt.check.finding import Finding
+from roadgpt.check.network_places import road_finding, roads_outside_junctions
+from roadgpt.check.rules.too_short import shorter_than_allowed, without_room
+from roadgpt.network import Network, Route
+from roadgpt.road import World
+from roadgpt.road.ends import GOAL, LEAST, START
+
+CAR = 4.7  # m, length of the tested car
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports the length of the route if it is too short, and each road without room for a car."""
+    found = []
+    least = {}
+    if route is not None:
+        if route.length <= LEAST:
+            return (without_room(route.length),)
+        if route.length <= world.limits.min_length:
+            found.append(shorter_than_allowed(route.length, world))
+        least[route.legs[0].road] = START + CAR / 2
+        least[route.legs[-1].road] = max(least.get(route.legs[-1].road, 0.0), GOAL)
+    for member in roads_outside_junctions(network):
+        length, wanted = member.road.length, least.get(member.id, CAR)
+        if length < wanted:
+            what = f"the road is {length:.1f} m long, too short for a car; give it {wanted:.3g} m or more"
+            found.append(road_finding("too_short", route, member, 0.0, what))
+    return tuple(found)

@@ -1,0 +1,36 @@
+"""Requires a way into every junction to lead on, and every lane out of a junction to be reached.
+
+A lane that ends at a junction without a connection would be a trap for traffic, and a lane that no connection
+reaches would stay empty. Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction.
+"""
+
+from roadgpt.check.finding import Finding
+from roadgpt.check.lanes_at_ends import lanes_into, lanes_out_of, reached
+from roadgpt.check.network_places import junction_finding, road_finding
+from roadgpt.network import Network, RoadEnd, Route
+from roadgpt.road import World
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports each lane at a junction without a connection, and each road that meets no junction."""
+    found = []
+    for junction in network.junctions:
+        left = {(each.incoming, lane) for each in junction.connections for lane, _ in each.lanes}
+        entered = {lane for each in junction.connections for lane in reached(network, each)}
+        for arm in junction.arms:
+            for lane in lanes_into(network, arm.end):
+                if (arm.end, lane) not in left:
+                    what = f"lane {lane} of road {arm.end.road} leads into it and has no way on; connect it"
+                    found.append(junction_finding("unreachable", route, junction, what))
+            for lane in lanes_out_of(network, arm.end):
+                if (arm.end, lane) not in entered:
+                    what = f"no way leads to lane {lane} of road {arm.end.road}, which leaves it; connect it"
+                    found.append(junction_finding("unreachable", route, junction, what))
+    if len(network.plain_roads) > 1:
+        for member in network.plain_roads:
+            if not {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")} & set(network.junction_at):
+                what = (
+                    "the road meets no junction, so that no other road leads to it; join it or leave it out"
+                )
+                found.append(road_finding("unreachable", route, member, 0.0, what))
+    return tuple(found)
