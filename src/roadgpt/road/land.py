@@ -42,18 +42,31 @@ class Land:
     @classmethod
     def around(cls, road: Road, world: World) -> "Land":
         """Returns the terrain around a road. The terrain is flat if the road has no shoulder."""
-        line = road.centreline(LONGEST_STEP)
+        line, profile = road.centreline(LONGEST_STEP), world.profile_of(road)
+        if not profile.has_shoulders:
+            return cls.beneath(line, None, world.site.z_floor)
+        return cls.beneath(_lowest(road, profile, line), profile.reach, world.site.z_floor)
+
+    @classmethod
+    def beneath(cls, line: Array, reach: float | None, floor: float) -> "Land":
+        """Returns the terrain beneath one or several roads.
+
+        Args:
+            line: Points ``(n, 3)`` in metres on the centre lines, at most ``LONGEST_STEP`` apart along each.
+            reach: The distance in metres from the lines within which the terrain lies below them; None for
+                flat terrain below all points.
+            floor: The greatest height in metres of flat terrain.
+        """
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
         span = float((high - low).max()) + 2 * MARGIN
         cell = max(FINEST, span / CELLS)
         x, y = (np.arange(low[i] - MARGIN, high[i] + MARGIN + cell, cell) for i in (0, 1))
-        profile = world.profile_of(road)
-        if not profile.has_shoulders:
-            level = min(world.site.z_floor, float(line[:, 2].min()) - 1.0)
+        if reach is None:
+            level = min(floor, float(line[:, 2].min()) - 1.0)
             away = np.full((len(y), len(x)), np.inf)
             return cls(*_widened(x, y, np.full((len(y), len(x)), level), away), cell)
-        heights, away = _relief(_lowest(road, profile, line), x, y, cell, profile.reach + 1.45 * cell)
+        heights, away = _relief(line, x, y, cell, reach + 1.45 * cell)
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
