@@ -4,6 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Self
 
 from roadgpt.errors import ExportError
@@ -31,9 +32,10 @@ def number(value: float) -> str:
     if not math.isfinite(value):
         raise ExportError(NOT_FINITE)
     text = repr(value)
-    return text[:-2] if text.endswith(".0") and abs(value) < 1e15 else text
+    return text[:-2] if text[-2:] == ".0" and abs(value) < 1e15 else text
 
 
+@lru_cache(maxsize=4096)
 def escaped(text: str) -> str:
     """Returns text with special characters escaped, for use between tags or in an attribute.
 

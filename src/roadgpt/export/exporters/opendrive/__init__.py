@@ -8,7 +8,7 @@ import json
 from pathlib import Path
 
 from roadgpt.export.exporters.opendrive.junctions import network_document
-from roadgpt.export.exporters.opendrive.lanes import CrossSections
+from roadgpt.export.exporters.opendrive.lanes import RoadParts
 from roadgpt.export.exporters.opendrive.roads import REVISION, header, road_element
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
@@ -64,4 +64,4 @@ def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
     x, y = road.centreline()[:, :2].T
     reach = world.profile_of(road).reach
     bounds = (x.min() - reach, y.min() - reach, x.max() + reach, y.max() + reach)
-    return root.extended(header(bounds, revision), road_element(road, ROAD, CrossSections(world)))
+    return root.extended(header(bounds, revision), road_element(road, ROAD, RoadParts(world)))

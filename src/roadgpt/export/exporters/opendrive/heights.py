@@ -22,6 +22,14 @@ def elevations(road: Road) -> list[XmlElement]:
     return _elements("elevation", "s", stations, table)
 
 
+def level_height(road: Road) -> float | None:
+    """Returns the height in metres of a level road, such as those of junctions; None for any other road."""
+    profile = road.elevation
+    if isinstance(profile, GradeProfile) and len(profile.stations) == 2 and not any(profile.grades):
+        return profile.z0
+    return None
+
+
 def rows(name: str, station: str, profile: CubicProfile, length: float) -> list[XmlElement]:
     """Returns one XML element for each cubic of a profile, up to the end of the road; the first is at station
     0.
@@ -57,8 +65,8 @@ def _table(road: Road) -> tuple[Array, Array]:
     """Returns stations ``(n,)``, and for each station the four coefficients ``(n, 4)`` of the height as a
     cubic of the distance from it."""
     profile, length = road.elevation, road.length
-    if isinstance(profile, GradeProfile) and len(profile.stations) == 2 and not any(profile.grades):
-        return np.zeros(1), np.array([[profile.z0, 0.0, 0.0, 0.0]])  # level, as all roads of junctions
+    if (level := level_height(road)) is not None:
+        return np.zeros(1), np.array([[level, 0.0, 0.0, 0.0]])
     if isinstance(profile, GradeProfile):
         stations = _within(profile.stations[:-1], length)
         half = profile.vertical_curvature(stations) / 2

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.extent import bounds_of
-from roadgpt.export.exporters.opendrive.lanes import CrossSections
+from roadgpt.export.exporters.opendrive.lanes import RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
 from roadgpt.export.exporters.opendrive.roads import REVISION, Place, RoadLink, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
@@ -30,10 +30,10 @@ def network_document(network: Network, world: World, revision: int = REVISION) -
     starts = starts_of([_curve(each) for each in network.roads])
     reach = max(each.profile.reach for each in network.roads)
     bounds = bounds_of([start for own in starts for start in own], reach)
-    signals, sections = Signals.of(network), CrossSections(world)
+    signals, parts = Signals.of(network), RoadParts(world)
     root = XmlElement("OpenDRIVE").extended(header(bounds, revision))
     for member, own in zip(network.roads, starts, strict=True):
-        made = road_element(member.road, member.id, sections, _place(network, member, own))
+        made = road_element(member.road, member.id, parts, _place(network, member, own))
         root.extended(made.extended(*signals.on_road(member.id)))
     root.extended(*signals.controllers())
     for junction in network.junctions:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from roadgpt.export.exporters.opendrive.heights import rows
+from roadgpt.export.exporters.opendrive.heights import elevations, level_height, rows
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
@@ -24,11 +24,12 @@ LaneLinks = Mapping[int, tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class CrossSections:
-    """Writes the lanes of the roads of one file. Equal elements are made once and shared."""
+class RoadParts:
+    """Writes what many roads of one file have in common. Equal elements are made once and shared."""
 
     world: World
     _made: dict[object, XmlElement] = field(default_factory=dict)
+    _level: dict[float, XmlElement] = field(default_factory=dict)
 
     @cached_property
     def road_type(self) -> XmlElement:
@@ -36,6 +37,16 @@ class CrossSections:
         made = XmlElement("type", {"s": 0, "type": "rural"}, is_shared=True)
         made.add("speed", {"max": speed_kmh(self.world), "unit": "km/h"})
         return made
+
+    def heights(self, road: Road) -> XmlElement:
+        """Returns the element ``elevationProfile`` of a road."""
+        level = level_height(road)
+        if level is None or level not in self._level:
+            made = XmlElement("elevationProfile", is_shared=level is not None).extended(*elevations(road))
+            if level is None:
+                return made
+            self._level[level] = made
+        return self._level[level]
 
     def lanes(self, road: Road, links: LaneLinks | None = None) -> XmlElement:
         """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.

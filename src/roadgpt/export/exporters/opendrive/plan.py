@@ -87,7 +87,7 @@ def _starts(plan: PieceCurve, steps: Sequence[tuple[float, float, float]]) -> li
 
 
 def _pieces(plan: PieceCurve, starts: Sequence[Start] | None) -> Iterator[XmlElement]:
-    if starts is None or not all(_is_tellable(piece) for piece in plan.pieces):
+    if starts is None or not all(map(_is_tellable, plan.pieces)):
         pieces = [part for piece in plan.pieces for part in _tellable(piece)]
         stations = np.r_[0.0, np.cumsum([piece.length for piece in pieces])][:-1]
         points, headings = plan.at(stations).tolist(), plan.heading(stations).tolist()
@@ -96,7 +96,8 @@ def _pieces(plan: PieceCurve, starts: Sequence[Start] | None) -> Iterator[XmlEle
             for s, (x, y), heading, piece in zip(stations.tolist(), points, headings, pieces, strict=True)
         ]
     kept = [start for start in starts if start.piece.length > SHORTEST] or list(starts[:1])
-    kept[0] = kept[0]._replace(s=0.0)
+    if kept[0].s:
+        kept[0] = kept[0]._replace(s=0.0)
     ends = [start.s for start in kept[1:]] + [plan.length]
     for (s, x, y, heading, piece), end in zip(kept, ends, strict=True):
         # up to the next piece, so that lengths add up even where a piece was left out

@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from roadgpt.export.exporters.opendrive.heights import elevations
 from roadgpt.export.exporters.opendrive.lanes import (
-    CrossSections,
     LaneLinks,
+    RoadParts,
     lateral_profile,
 )
 from roadgpt.export.exporters.opendrive.plan import Start, geometries
@@ -60,13 +59,13 @@ class Place:
     """The starts of the pieces of its reference line, if they have been computed already."""
 
 
-def road_element(road: Road, number: int, sections: CrossSections, place: Place | None = None) -> XmlElement:
+def road_element(road: Road, number: int, parts: RoadParts, place: Place | None = None) -> XmlElement:
     """Returns the element ``road`` with its geometry and its lanes.
 
     Args:
         road: The road.
         number: Its id.
-        sections: What writes the lanes of all roads of the file.
+        parts: What writes the parts that roads of the file have in common.
         place: Where the road is in its network; None for a single road.
     """
     body = XmlElement(
@@ -83,7 +82,6 @@ def road_element(road: Road, number: int, sections: CrossSections, place: Place 
         body.add("link").extended(*(XmlElement(name, attributes) for name, attributes in place.links))
     else:
         place = Place()
-    body.extended(sections.road_type)
+    body.extended(parts.road_type)
     body.add("planView").extended(*geometries(road.plan, place.starts))
-    body.add("elevationProfile").extended(*elevations(road))
-    return body.extended(*lateral_profile(road), sections.lanes(road, place.lane_links))
+    return body.extended(parts.heights(road), *lateral_profile(road), parts.lanes(road, place.lane_links))

@@ -4,11 +4,13 @@ Source: ASAM OpenDRIVE 1.8.1, signals; its catalogue of signals gives type 10000
 are those of the German road traffic regulations (StVO): 205 give way, 206 stop, 306 priority road.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from roadgpt.export.markup import XmlElement
+from roadgpt.geometry import CubicProfile
 from roadgpt.network import Arm, Network
+from roadgpt.road.profile import Lane
 
 BEFORE = 1.0  # m, from a sign to the junction
 STOP_LINE = 0.5  # m, width of a stop line (Germany, RMS-1)
@@ -88,8 +90,8 @@ class Signals:
         member = self.network.road(end.road)
         at_end = end.contact == "end"
         s = max(member.road.length - BEFORE, 0.0) if at_end else min(BEFORE, member.road.length)
-        rims = member.profile.rims(s)
-        t = float(rims.right) - BESIDE if at_end else float(rims.left) + BESIDE
+        rim = _width(member.profile.right if at_end else member.profile.left, s)
+        t = -rim - BESIDE if at_end else rim + BESIDE
         height, width = SIZES[control]
         made = XmlElement(
             "signal",
@@ -123,8 +125,10 @@ class Signals:
         at_end = end.contact == "end"
         width = GIVE_WAY_LINE if signal.arm.control == "yield" else STOP_LINE
         s = max(member.road.length - width / 2, 0.0) if at_end else min(width / 2, member.road.length)
-        edges = member.profile.edges(s)
-        outer = float(edges.right if at_end else edges.left)
+        forward, backward = member.profile.count
+        profile = member.profile
+        width_in = _width(profile.right[:forward] if at_end else profile.left[:backward], s)
+        outer = -width_in if at_end else width_in
         yield XmlElement(
             "object",
             {
@@ -143,3 +147,9 @@ class Signals:
                 "dynamic": "no",
             },
         )
+
+
+def _width(lanes: Sequence[Lane], s: float) -> float:
+    """Returns the width in metres of some lanes together at a station."""
+    widths = [lane.width for lane in lanes]
+    return sum(float(each.height(s)) if isinstance(each, CubicProfile) else each for each in widths)
