@@ -2,6 +2,8 @@
 
 import math
 
+import numpy as np
+
 from roadgpt.check.finding import Finding
 from roadgpt.network import Junction, Network, NetworkRoad, Route
 
@@ -31,7 +33,8 @@ def road_finding(
     ``what`` says it without the place. The station of the Finding is that of the route; None if the road is
     not on the route.
     """
-    x, y, _ = member.road.at(s).tolist()
+    with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
+        x, y, _ = member.road.at(s).tolist()
     along = station_on(route, member, s)
     where = f"on road {member.id}" if along is None else f"at s = {along:.0f} m"
     near = f", near ({x:.0f}, {y:.0f})" if math.isfinite(x) and math.isfinite(y) else ""

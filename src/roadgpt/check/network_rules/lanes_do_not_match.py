@@ -29,9 +29,8 @@ def _wrong(network: Network, junction: Junction, each: Connection, lane: int, ow
     ends = {arm.end for arm in junction.arms}
     for end in (each.incoming, each.outgoing):
         if end not in ends:
-            return (
-                f"connecting road {each.road} leads to the {end.contact} of road {end.road}, which is no arm"
-            )
+            joined = f"connecting road {each.road} meets the {end.contact} of road {end.road}"
+            return f"{joined}, which is no arm; join it to an arm"
     start, finish = RoadEnd(each.road, "start"), RoadEnd(each.road, "end")
     if lane not in lanes_into(network, each.incoming):
         return f"road {each.incoming.road} has no lane {lane} that leads into it; name a lane that does"

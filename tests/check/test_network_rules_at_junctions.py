@@ -1,0 +1,264 @@
+"""Rules of junctions: a network that passes and one that fails, with the place and the numbers it says."""
+
+import math
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from network.changing import (
+    WORLD,
+    passing,
+    raised,
+    with_heights,
+    with_junction,
+    with_plan,
+    with_road,
+)
+from roadgpt import plugins
+from roadgpt.check import Finding
+from roadgpt.geometry import CubicProfile, GradeProfile, Piece
+from roadgpt.network import Connection, Network, RoadEnd, Route
+from roadgpt.road import Profile, Road, World
+from roadgpt.road.profile import Lane
+
+
+def findings(rule: str, network: Network | Route, world: World = WORLD) -> tuple[Finding, ...]:
+    route = network if isinstance(network, Route) else None
+    found: tuple[Finding, ...] = plugins.find("network_rules", rule)(
+        route.network if route else network, route, world
+    )
+    return found
+
+
+def the_finding(rule: str, network: Network | Route, world: World = WORLD) -> Finding:
+    (found,) = findings(rule, network, world)
+    assert found.rule == rule
+    return found
+
+
+def radius_of_points(points: np.ndarray) -> float:
+    """The smallest radius of the circles through each three points (n, 2) that turn right."""
+    a, b, c = points[:-2], points[1:-1], points[2:]
+    cross = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
+    sides = [np.hypot(*(p - q).T) for p, q in ((a, b), (b, c), (a, c))]
+    with np.errstate(divide="ignore"):
+        radius = sides[0] * sides[1] * sides[2] / (2 * np.abs(cross))
+    return float(radius[cross < 0].min())
+
+
+class TestTightTurns:
+    @pytest.mark.parametrize("kind", ["crossroads", "star", "roundabout"])
+    def test_the_kerb_is_that_of_circles_through_its_points(self, kind: str) -> None:
+        route = passing(kind, 1, kerb=2, radius=5.5)
+        network = route.network
+        first = route.legs[1].road
+        road = network.road(first).road
+        s = np.linspace(0, road.length, 4000)
+        edge = road.at(s, network.road(first).profile.edges(s).right)[:, :2]
+        least = radius_of_points(edge)
+        found = the_finding("kerb_too_tight", route)
+        assert least < 3
+        assert float(re.search(r"radius of ([\d.]+) m", found.sentence)[1]) <= least + 0.06  # type: ignore[index]
+
+    @pytest.mark.parametrize("kerb", [3.01, 6.0, 20.0])
+    def test_a_kerb_that_was_asked_for_is_wide_enough(self, kerb: float) -> None:
+        for kind in ("t_junction", "y_junction", "crossroads", "star"):
+            assert findings("kerb_too_tight", passing(kind, 1, kerb=kerb)) == ()
+
+    def test_a_kerb_that_is_too_tight_is_said_with_its_radius(self) -> None:
+        found = the_finding(
+            "kerb_too_tight", passing("t_junction", "straight", arms=[{"angle": 0}, {"angle": 90}], kerb=2)
+        )
+        assert "the T-junction near" in found.sentence
+        assert "tighter than 3 m; ask for a kerb with a larger radius" in found.sentence
+
+    @pytest.mark.parametrize(("radius", "is_wrong"), [(7.01, False), (6.99, True)])
+    def test_a_kerb_is_measured_on_its_edge(self, radius: float, is_wrong: bool) -> None:
+        """A right turn along an arc, with a lane 4 m wide."""
+        network = passing("crossroads").network
+        junction = network.junctions[0]
+        ends = [arm.end for arm in junction.arms]
+        right = next(
+            each for each in junction.connections if (each.incoming, each.outgoing) == (ends[0], ends[1])
+        )
+        damaged = with_road(
+            network, right.road, lambda each: with_plan(each, pieces=(Piece(10.0, -1 / radius, -1 / radius),))
+        )
+        assert bool(findings("kerb_too_tight", damaged)) == is_wrong
+
+    @pytest.mark.parametrize(("radius", "is_wrong"), [(7.01, False), (6.99, True)])
+    @pytest.mark.parametrize("turn", [1, 0])
+    def test_a_connection_is_measured_in_the_middle_of_its_lane(
+        self, turn: int, radius: float, is_wrong: bool
+    ) -> None:
+        """With lanes 4 m wide, the middle is 2 m inside the reference line of a right turn, outside of a left."""
+        network = passing("crossroads").network
+        k = -1 / radius if turn else 1 / (radius - 4)
+        number = network.junctions[0].connections[0].road
+        damaged = with_road(network, number, lambda each: with_plan(each, pieces=(Piece(3.0, k, k),)))
+        found = findings("connection_too_tight", damaged)
+        assert bool(found) == is_wrong
+        if is_wrong:
+            assert "has a radius of 5.0 m in its middle, tighter than 5 m" in found[0].sentence
+
+    def test_a_lane_that_widens_bends_more(self) -> None:
+        """The middle of a straight lane that widens from 2 m to 8 m, against circles through its points."""
+        network = passing("crossroads").network
+        number = network.junctions[0].connections[0].road
+        profile = Profile((), (Lane("driving", CubicProfile.smooth([(0.0, 2.0), (8.0, 8.0)])),), 0, "none")
+        plan = with_plan(network.road(number), pieces=(Piece(8.0),)).road.plan
+        road = Road(plan, GradeProfile(0.0, (0.0, 8.0), (0.0, 0.0)), profile=profile)
+        damaged = with_road(network, number, lambda each: replace(each, road=road))
+        s = np.linspace(0, 8, 8001)
+        least = radius_of_points(road.at(s, profile.middle(s))[:, :2])
+        found = the_finding("connection_too_tight", damaged)
+        assert f"radius of {least:.1f} m" in found.sentence
+
+
+def tilted(network: Network, ax: float, ay: float) -> Network:
+    """The network in a plane with these slopes along x and y."""
+    for member in network.roads:
+        road = member.road
+        s = np.linspace(0, road.length, max(2, math.ceil(road.length / 0.1)))
+        grade = ax * np.cos(road.heading(s)) + ay * np.sin(road.heading(s))
+        x, y, z = road.at(0.0)
+        heights = GradeProfile(z + ax * x + ay * y, tuple(s.tolist()), tuple(grade.tolist()))
+        network = with_road(network, member.id, lambda each, own=heights: with_heights(each, own))  # type: ignore[misc]
+    return network
+
+
+class TestJunctionNotLevel:
+    @pytest.mark.parametrize(("by", "is_wrong"), [(0.0005, False), (0.002, True)])
+    def test_a_step(self, by: float, is_wrong: bool) -> None:
+        network = passing("crossroads").network
+        damaged = with_road(network, 1, lambda each: raised(each, by))
+        assert bool(findings("junction_not_level", damaged)) == is_wrong
+        if is_wrong:
+            assert (
+                "differ by 0.002 m where they are joined"
+                in the_finding("junction_not_level", damaged).sentence
+            )
+
+    def test_a_junction_in_an_inclined_plane_passes(self) -> None:
+        for kind in ("crossroads", "star", "t_junction"):
+            assert findings("junction_not_level", tilted(passing(kind).network, 0.02, -0.01)) == ()
+
+    def test_an_arm_of_another_grade(self) -> None:
+        network = tilted(passing("crossroads").network, 0.02, 0.0)
+        arm = next(
+            arm
+            for arm in network.junctions[0].arms
+            if arm.end.contact == "start" and abs(arm.direction) < 0.1
+        )
+        z = network.road(arm.end.road).road.at(0.0)[2]
+        level = GradeProfile(float(z), (0.0, 60.0), (0.0, 0.0))
+        damaged = with_road(network, arm.end.road, lambda each: with_heights(each, level))
+        assert "the grade of a road differs by" in the_finding("junction_not_level", damaged).sentence
+
+    def test_a_hump_inside_a_junction(self) -> None:
+        network = passing("crossroads").network
+        number = network.junctions[0].connections[1].road
+        n = network.road(number).road.length
+        hump = GradeProfile(0.0, (0.0, n / 4, n / 2, 3 * n / 4, n), (0.0, 0.1, 0.0, -0.1, 0.0))
+        damaged = with_road(network, number, lambda each: with_heights(each, hump))
+        assert "above or below a plane" in the_finding("junction_not_level", damaged).sentence
+
+
+class TestLanesDoNotMatch:
+    @pytest.mark.parametrize(("by", "is_wrong"), [(0.0009, False), (0.0011, True)])
+    @pytest.mark.parametrize("axis", ["x", "y"])
+    def test_a_connecting_road_beside_its_arm(self, axis: str, by: float, is_wrong: bool) -> None:
+        network = passing("crossroads").network
+        number = network.junctions[0].connections[0].road
+        plan = network.road(number).road.plan
+        damaged = with_road(network, number, lambda each: with_plan(each, **{axis: getattr(plan, axis) + by}))
+        assert bool(findings("lanes_do_not_match", damaged)) == is_wrong
+
+    @pytest.mark.parametrize(("width", "is_wrong"), [(4.0009, False), (4.0011, True)])
+    def test_a_width(self, width: float, is_wrong: bool) -> None:
+        network = passing("crossroads").network
+        number = network.junctions[0].connections[0].road
+        profile = Profile((), (Lane("driving", width),), 0, "none")
+        damaged = with_road(network, number, lambda each: replace(each, road=each.road.with_profile(profile)))
+        assert bool(findings("lanes_do_not_match", damaged)) == is_wrong
+        if is_wrong:
+            assert "their edges are 0.001 m apart" in the_finding("lanes_do_not_match", damaged).sentence
+
+    def test_a_kink(self) -> None:
+        network = passing("crossroads").network
+        number = network.junctions[0].connections[0].road
+        heading = network.road(number).road.plan.heading0  # type: ignore[attr-defined]
+        damaged = with_road(network, number, lambda each: with_plan(each, heading0=heading + 0.002))
+        assert findings("lanes_do_not_match", damaged)
+
+    @pytest.mark.parametrize(
+        ("lanes", "what"),
+        [(((-2, -1),), "has no lane -2"), (((1, -1),), "has no lane 1"), (((-1, -2),), "no lane -2 along")],
+    )
+    def test_a_lane_that_does_not_exist(self, lanes: tuple[tuple[int, int], ...], what: str) -> None:
+        network = passing("crossroads").network
+        number = network.junctions[0].id
+        damaged = with_junction(
+            network,
+            number,
+            lambda each: replace(
+                each, connections=(replace(each.connections[0], lanes=lanes), *each.connections[1:])
+            ),
+        )
+        assert what in the_finding("lanes_do_not_match", damaged).sentence
+
+    def test_an_end_that_is_no_arm(self) -> None:
+        network = passing("crossroads").network
+        damaged = with_junction(
+            network,
+            network.junctions[0].id,
+            lambda each: replace(
+                each,
+                connections=(
+                    replace(each.connections[0], incoming=RoadEnd(1, "start")),
+                    *each.connections[1:],
+                ),
+            ),
+        )
+        assert (
+            "meets the start of road 1, which is no arm"
+            in the_finding("lanes_do_not_match", damaged).sentence
+        )
+
+
+class TestUnreachable:
+    def kept(self, network: Network, keep: object) -> Network:
+        return with_junction(
+            network,
+            network.junctions[0].id,
+            lambda each: replace(each, connections=tuple(filter(keep, each.connections))),  # type: ignore[arg-type]
+        )
+
+    def test_a_lane_without_a_way_on(self) -> None:
+        network = passing("crossroads").network
+
+        def keep(each: Connection) -> bool:
+            return each.incoming.road != 1
+
+        found = the_finding("unreachable", self.kept(network, keep))
+        assert "lane -1 of road 1 leads into it and has no way on" in found.sentence
+        assert "at the crossroads near" in found.sentence
+
+    def test_a_lane_that_no_connection_reaches(self) -> None:
+        network = passing("crossroads").network
+        found = the_finding("unreachable", self.kept(network, lambda each: each.outgoing.road != 1))
+        assert "no way leads to lane 1 of road 1" in found.sentence
+
+    def test_one_way_less_is_no_matter(self) -> None:
+        network = passing("crossroads").network
+        first = network.junctions[0].connections[0]
+        assert findings("unreachable", self.kept(network, lambda each: each is not first)) == ()
+
+    def test_a_road_apart(self) -> None:
+        network = passing("crossroads").network
+        alone = replace(with_plan(network.road(1), y=400.0), id=99)
+        found = the_finding("unreachable", replace(network, roads=(*network.roads, alone)))
+        assert found.sentence.startswith("on road 99, near (100, 400): the road meets no junction")
+        assert findings("unreachable", Network((network.road(1),))) == ()
