@@ -17,7 +17,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
 from roadgpt.report.places import MarkedPlace, places_of
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, plan_points
 from roadgpt.report.text_width import inches
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Severity, severity
@@ -50,7 +50,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     """
     road, world = run.road, run.world
     assert road is not None
-    centre = road.at(stations_of(road))[:, :2]
+    centre = plan_points(road)
     is_part = frame is not None
     frame = frame or (THESIS if scale == "thesis" else _frame(run, centre))
     across = SIDE * min(1.0, frame.width / frame.height)

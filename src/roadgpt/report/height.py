@@ -18,6 +18,7 @@ from roadgpt.report.canvas import (
     add_axes,
     new_figure,
 )  # fmt: skip
+from roadgpt.report.junctions import shade_junctions
 from roadgpt.report.places import name_places, places_of
 from roadgpt.report.plan_view import stations_of
 from roadgpt.run import Run
@@ -61,6 +62,7 @@ def height_profile(run: Run, scale: Scale = "equal") -> Figure:
     axes.set_ylabel(label)
     axes.grid(color=FAINT, lw=0.8)
     axes.set_axisbelow(True)
+    shade_junctions(axes, run.road)
     low, high = axes.get_ylim()
     axes.fill_between(s, z, low, color=EARTH, lw=0)
     # on the thesis' axes a level road lies on the frame; it is drawn over the frame to be visible

@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.report.birds_eye import THESIS, Scale
 from roadgpt.report.canvas import FAINT, HALO, INK, SOFT, dress, in_our_style, new_figure
 from roadgpt.report.height import EARTH, SURFACE, THESIS_X, THESIS_Z
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, plan_points, stations_of
 from roadgpt.run import Run
 
 WIDTH, LEFT, RIGHT, BOTTOM, TOP, BETWEEN = 10.6, 0.7, 0.25, 0.62, 0.62, 0.95  # inches
@@ -63,8 +63,7 @@ def _axes(figure: Figure, left: float, foot: float, wide: float) -> Axes:
 
 def _plan(run: Run) -> Array:
     assert run.road is not None
-    points: Array = run.road.at(stations_of(run.road))[:, :2]
-    return points
+    return plan_points(run.road)
 
 
 def _heights(run: Run) -> Array:

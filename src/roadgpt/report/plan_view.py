@@ -8,6 +8,8 @@ from matplotlib.collections import LineCollection
 from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
+from roadgpt.report.network_view import draw_network, draw_network_from_far, lines_of
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
 
@@ -69,11 +71,26 @@ def stations_of(road: Road) -> Array:
     return np.linspace(0.0, road.length, count + 1)
 
 
+def plan_points(road: Road) -> Array:
+    """Returns points, shape ``(n, 2)``, along the centre line of a road, and for a route along those of all
+    roads of its network."""
+    points: Array = road.at(stations_of(road))[:, :2]
+    if isinstance(road, Route):
+        return np.concatenate([points, lines_of(road)[:, :2]])
+    return points
+
+
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is the number
-    of metres per inch of the picture.
+    of metres per inch of the picture. Of a route, draws the whole network.
     """
     s, profile = stations_of(road), world.profile_of(road)
+    if isinstance(road, Route):
+        if float(profile.width(0.0)) / per_inch * POINTS < THINNEST_LANE:
+            draw_network_from_far(axes, road, THINNEST_LANE)
+        else:
+            draw_network(axes, road, per_inch)
+        return
     if profile.has_shoulders:
         _ribbon(axes, road, s, profile.rims(s), VERGE, 1)
     _ribbon(axes, road, s, profile.edges(s), ASPHALT, 2)

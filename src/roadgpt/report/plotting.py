@@ -6,10 +6,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from roadgpt.errors import UsageError
-from roadgpt.network import NetworkDesign, made_from
+from roadgpt.network import NetworkDesign, Route, made_from
 from roadgpt.report.birds_eye import driven_path, mark
 from roadgpt.report.places import places_of
-from roadgpt.report.plan_view import draw_ends, draw_road, stations_of
+from roadgpt.report.plan_view import draw_ends, draw_road, plan_points, stations_of
 from roadgpt.road import Design, Road, World
 from roadgpt.run import Run
 
@@ -40,7 +40,7 @@ def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None 
     ax.set_aspect("equal", adjustable="datalim")
     s = stations_of(road)
     edges = np.concatenate([road.at(s, t) for t in world.profile_of(road).edges(s)])[:, :2]
-    ax.update_datalim(edges)
+    ax.update_datalim(np.concatenate([edges, plan_points(road)]) if isinstance(road, Route) else edges)
     ax.margins(MARGIN)
     ax.autoscale_view()
     draw_road(ax, road, world, _metres_per_inch(ax))

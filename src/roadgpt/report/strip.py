@@ -17,6 +17,7 @@ from roadgpt.report.canvas import (
     add_axes,
     new_figure,
 )  # fmt: skip
+from roadgpt.report.junctions import shade_junctions
 from roadgpt.report.places import name_places, places_of
 from roadgpt.report.plan_view import stations_of
 from roadgpt.report.text_width import POINTS
@@ -46,6 +47,7 @@ def strip(run: Run) -> Figure:
         axes.grid(color=FAINT, lw=0.8)
         axes.set_axisbelow(True)
         panel(axes, run, s)
+        shade_junctions(axes, run.road, "foot" if panel is _grade else None)
         axes.yaxis.set_label_coords(-0.84 / (WIDTH - LEFT - RIGHT), 0.5)
         for place in places_of(run):
             axes.axvline(place.s, color=place.colour, lw=1.2, ls=(0, (4, 3)), zorder=4)

@@ -1,0 +1,122 @@
+"""Draws a network from above, to scale: the paved area, markings, islands, and the route as a tint."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+from matplotlib.markers import MarkerStyle
+from matplotlib.patches import PathPatch
+from matplotlib.path import Path
+
+from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
+from roadgpt.network.ground import ground_of
+from roadgpt.network.markings import JunctionSign, signs, strokes
+from roadgpt.network.polygon import Area
+from roadgpt.network.surface import NetworkSurface
+
+VERGE, ASPHALT, PAINT = "#dcd9c3", "#b9bdc3", "#ffffff"
+TINT, ARROW = "#8fb3d6", "#0072b2"
+GRASS, KERB = "#cfdcc0", "#e9e6dc"
+FAR_ASPHALT, FAR_ROUTE = "#a7adb5", "#4d86b8"
+LINE_POINTS, STOP_POINTS = 1.1, 2.2  # points, least width of a line on paper
+SIGNS = {"stop": "#c1272d", "yield": "#c1272d", "priority": "#e0a800", "lights": "#2b2f36"}
+SHAPES = {"stop": "8", "yield": "v", "priority": "D", "lights": "s"}
+SIGN_SIZE = 4.2  # points
+NEAR = 30.0  # m per inch; signs are not drawn on smaller scales
+ARROWS, ARROW_POINTS = 20.0, 7.0  # m between the arrows on the route; points
+HEAD = Path([(1.0, 0.0), (-0.7, 0.75), (-0.3, 0.0), (-0.7, -0.75), (1.0, 0.0)], closed=True)
+ARROW_INCHES = 0.5  # least distance between arrows
+STEP = 0.5  # m between the points of the edges of the route
+
+
+def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
+    """Draws the network of a route, and the lane that the route follows; ``per_inch`` is the number of metres
+    per inch of the picture.
+    """
+    network = route.network
+    surface = NetworkSurface.of(network)
+    if surface.shoulder > 0:
+        _fill(axes, ground_of(route), VERGE, 1)
+    _fill(axes, network.paved, ASPHALT, 2)
+    for area in surface.areas:
+        for island in area.kerbed:
+            _fill(axes, island, KERB, 2.1)
+        for island in area.green if surface.shoulder > 0 else ():
+            _fill(axes, island, GRASS, 2.1)
+    _draw_route(axes, route, per_inch)
+    least = per_inch / 72
+    for kind, width in (("edge", LINE_POINTS), ("lane", LINE_POINTS), ("stop", STOP_POINTS)):
+        found = [
+            stroke for stroke in strokes(network) if kind == stroke.kind.replace("give_way", "stop")
+        ]  # fmt: skip
+        if found:
+            points = max(width, found[0].width / least)
+            lines = [stroke.points[:, :2] for stroke in found]
+            axes.add_collection(
+                LineCollection(lines, colors=PAINT, linewidths=points, zorder=3, capstyle="butt")
+            )
+    if per_inch <= NEAR:
+        for sign in signs(network):
+            _draw_sign(axes, sign)
+
+
+def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
+    """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker one."""
+    lines = [each.road.centreline()[:, :2] for each in route.network.roads]
+    axes.add_collection(LineCollection(lines, colors=FAR_ASPHALT, linewidths=points, zorder=2))
+    line = route.centreline()
+    axes.plot(line[:, 0], line[:, 1], color=FAR_ROUTE, lw=points, zorder=2.2)
+
+
+def lines_of(route: Route, step: float = 2.0) -> Array:
+    """Returns points ``(n, 3)`` on the reference lines of all roads of a network, ``step`` metres apart."""
+    return np.concatenate([each.road.centreline(step) for each in route.network.roads])
+
+
+def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
+    axes.add_patch(PathPatch(path_of(area), fc=colour, ec="none", zorder=layer))
+
+
+def path_of(area: Area) -> Path:
+    """Returns an area as a path of matplotlib; its holes stay empty."""
+    import shapely
+    from shapely.geometry.polygon import orient
+
+    rings = []
+    for part in shapely.get_parts(area):
+        whole = orient(part)
+        rings += [np.asarray(ring.coords, float)[:, :2] for ring in (whole.exterior, *whole.interiors)]
+    codes = []
+    for ring in rings:
+        codes += [Path.MOVETO, *[Path.LINETO] * (len(ring) - 2), Path.CLOSEPOLY]
+    return Path(np.concatenate(rings), codes)
+
+
+def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
+    """Tints the lane of the route, and draws arrows on it."""
+    assert route.profile is not None
+    s = np.linspace(0.0, route.length, max(2, int(route.length / STEP)) + 1)
+    left, right = route.profile.lane(s)
+    ring = np.concatenate([route.at(s, left), route.at(s, right)[::-1]])[:, :2]
+    pieces = [
+        np.concatenate([ring[i : i + 2], ring[len(ring) - i - 2 : len(ring) - i]]) for i in range(len(s) - 1)
+    ]
+    path = Path.make_compound_path(*[Path(np.r_[piece, piece[:1]], closed=True) for piece in pieces])
+    axes.add_patch(PathPatch(path, fc=TINT, ec=TINT, lw=0.3, zorder=2.2))
+    count = max(1, int(route.length / max(ARROWS, ARROW_INCHES * per_inch)))
+    middle = (np.arange(count) + 0.5) * route.length / count
+    places = route.at(middle, route.profile.middle(middle))[:, :2]
+    for (x, y), heading in zip(places, route.heading(middle), strict=True):
+        marker = MarkerStyle(HEAD).rotated(rad=float(heading))
+        axes.plot(
+            x, y, marker=marker, ms=ARROW_POINTS, mfc="white", mec=ARROW, mew=0.8, zorder=7.5, ls="none"
+        )
+
+
+def _draw_sign(axes: Axes, sign: JunctionSign) -> None:
+    colour = SIGNS[sign.control]
+    hollow = "white" if sign.control == "yield" else colour
+    axes.plot(
+        *sign.place[:2], SHAPES[sign.control], ms=SIGN_SIZE, mfc=hollow, mec=colour, mew=1.0, zorder=4,
+        ls="none",
+    )  # fmt: skip

@@ -1,0 +1,177 @@
+"""Pictures of routes: the whole network is seen, with its islands and lines, and junctions have names."""
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.image import imread
+from matplotlib.text import Text
+
+from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
+from roadgpt.report import birds_eye, draw, height_profile, strip
+from roadgpt.report.junctions import junction_stretches
+from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
+from roadgpt.report.plotting import plot
+from roadgpt.road import CrossSection, World
+from roadgpt.run import Run, Setup, prove
+
+TWO = {
+    "starting_point": [20, 90, 0],
+    "theta": 0,
+    "road_segment1": {"distance": 70, "direction": "straight", "incline": 3, "turn_degrees": 0},
+    "junction1": {"after": 1, "kind": "crossroads", "take": "left", "control": "stop"},
+    "road_segment2": {"distance": 40, "direction": "straight", "incline": 5, "turn_degrees": 0},
+    "junction2": {"after": 2, "kind": "roundabout", "take": 3, "radius": 16},
+    "road_segment3": {"distance": 60, "direction": "left", "incline": 0, "turn_degrees": 30},
+}
+
+
+def design() -> NetworkDesign:
+    return read_network_design(TWO)[0]
+
+
+@pytest.fixture(scope="module")
+def route() -> Route:
+    found = made_from(design(), World())
+    assert isinstance(found, Route)
+    return found
+
+
+@pytest.fixture(scope="module")
+def alone(route: Route) -> Run:
+    return replace(prove(route, setup=Setup(drives=False)), source="two.json")
+
+
+@pytest.fixture(scope="module")
+def driven(route: Route) -> Run:
+    return prove(route, 7)
+
+
+def colour(text: str) -> np.ndarray:
+    return np.array([int(text[i : i + 2], 16) for i in (1, 3, 5)])
+
+
+def seen(figure: Figure, places: np.ndarray) -> np.ndarray:
+    """The colours ``(n, 3)`` in bytes that a figure has at places ``(n, 2)`` in metres."""
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())
+    at = figure.axes[0].transData.transform(places)
+    return pixels[len(pixels) - 1 - at[:, 1].astype(int), at[:, 0].astype(int), :3].astype(int)
+
+
+def near(pixels: np.ndarray, wanted: str, within: int = 12) -> np.ndarray:
+    return np.abs(pixels - colour(wanted)).max(axis=1) <= within
+
+
+def test_side_arms_are_asphalt(alone: Run, route: Route) -> None:
+    on_route = {leg.road for leg in route.legs}
+    arms = [each for each in route.network.plain_roads if each.id not in on_route]
+    arms = [each for each in arms if each.id not in route.network.roundabout_of]
+    assert len(arms) == 4
+    places = [
+        each.road.at(np.linspace(4, each.road.length - 4, 9), t)[:, :2] for each in arms for t in (-2, 2)
+    ]
+    assert near(seen(birds_eye(alone), np.concatenate(places)), ASPHALT).all()
+
+
+def test_the_lane_of_the_route_is_tinted_and_the_other_is_not(alone: Run, route: Route) -> None:
+    first = route.network.road(route.legs[0].road).road
+    s = np.linspace(5, 60, 40)
+    figure = birds_eye(alone)
+    assert near(seen(figure, first.at(s, -3.2)[:, :2]), TINT).mean() > 0.8
+    assert near(seen(figure, first.at(s, 2.0)[:, :2]), ASPHALT).all()
+
+
+def test_the_islands_are_not_asphalt(alone: Run, route: Route) -> None:
+    (ring,) = route.network.roundabouts
+    angles = np.linspace(0, 6, 20)
+    places = np.array(ring.centre[:2]) + 9 * np.column_stack([np.cos(angles), np.sin(angles)])
+    assert near(seen(birds_eye(alone), places), GRASS).all()
+    holes = [hole for part in shapely.get_parts(route.network.paved) for hole in part.interiors]
+    small = [shapely.Polygon(hole) for hole in holes if shapely.Polygon(hole).area < 100]
+    assert len(small) == 4
+    dots = np.array([hole.representative_point().coords[0] for hole in small])
+    # a wedge of a metre is few pixels wide, beside white lines
+    assert (
+        near(seen(birds_eye(alone), dots), KERB, 30) | near(seen(birds_eye(alone), dots), PAINT, 30)
+    ).all()
+
+
+def test_no_line_crosses_a_junction(alone: Run, route: Route) -> None:
+    crossing = route.network.junctions[0]
+    inside = shapely.Polygon(route.network.outline(crossing.id)).buffer(-1.5)
+    x0, y0, x1, y1 = inside.bounds
+    grid = np.stack(np.meshgrid(np.arange(x0, x1, 0.3), np.arange(y0, y1, 0.3)), axis=-1).reshape(-1, 2)
+    grid = grid[shapely.contains_xy(inside, grid)]
+    pixels = seen(birds_eye(alone), grid)
+    is_white = near(pixels, PAINT, 8).mean()
+    assert is_white < 0.01  # but for the arrow of the route
+    assert near(pixels, ASPHALT).mean() > 0.5
+
+
+def test_the_stop_line_is_white_where_the_road_ends(alone: Run, route: Route) -> None:
+    first = route.network.road(route.legs[0].road).road
+    t = np.linspace(-3.2, -0.8, 12)
+    line = first.at(np.full(12, first.length - 0.25), t)[:, :2]
+    before = first.at(np.full(12, first.length - 2.5), t)[:, :2]
+    assert near(seen(birds_eye(alone), line), PAINT, 40).mean() > 0.7
+    assert not near(seen(birds_eye(alone), before), PAINT, 40).any()
+
+
+def test_the_frame_shows_the_whole_network(alone: Run, route: Route) -> None:
+    axes = birds_eye(alone).axes[0]
+    (x0, y0), (x1, y1) = route.network.bounds()
+    assert axes.get_xlim()[0] < x0 < x1 < axes.get_xlim()[1]
+    assert axes.get_ylim()[0] < y0 < y1 < axes.get_ylim()[1]
+
+
+def test_from_far_away_all_roads_are_lines(route: Route) -> None:
+    figure = Figure(figsize=(2, 2))
+    axes = figure.add_subplot()
+    axes.set(xlim=(-4000, 4000), ylim=(-4000, 4000))
+    plot(route, axes)
+    assert axes.get_xlim()[0] < 20 < route.network.bounds()[1, 0] < axes.get_xlim()[1]
+
+
+def test_stretches_are_those_where_the_route_is_inside(route: Route) -> None:
+    one, two = junction_stretches(route)
+    assert (one.name, two.name) == ("crossroads", "roundabout")
+    inside = [
+        (a, b)
+        for a, b, leg in zip(route.starts, route.starts[1:], route.legs, strict=False)
+        if route.network.road(leg.road).junction is not None or leg.road in route.network.roundabout_of
+    ]
+    assert (one.start, one.end) == inside[0]
+    assert (two.start, two.end) == (inside[1][0], inside[-1][1])
+    assert one.start == pytest.approx(70)
+
+
+def test_heights_and_curvature_name_the_junctions(driven: Run) -> None:
+    for figure in (height_profile(driven), strip(driven)):
+        names = [text.get_text() for text in figure.findobj(Text)]
+        assert names.count("crossroads") == 1
+        assert names.count("roundabout") == 1
+
+
+def test_a_road_without_junctions_has_no_stretches(driven: Run) -> None:
+    from roadgpt.road import Road
+
+    assert junction_stretches(Road.through([[0, 0], [50, 0], [100, 10], [160, 0]])) == ()
+
+
+@pytest.mark.parametrize("shoulder", [0.0, 3.0])
+def test_all_pictures_are_drawn_twice_the_same(tmp_path: Path, shoulder: float) -> None:
+    world = World(section=CrossSection(shoulder=shoulder))
+    run = prove(made_from(design(), world), 3, world=world)
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        draw(run, tmp_path / name, formats=("png", "svg", "pdf"))
+    for path in sorted((tmp_path / "one").iterdir()):
+        assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes()
+    assert imread(io.BytesIO((tmp_path / "one" / "birds_eye.png").read_bytes())).shape[2] == 4
