@@ -93,7 +93,7 @@ class TestTightTurns:
     def test_a_connection_is_measured_in_the_middle_of_its_lane(
         self, turn: int, radius: float, is_wrong: bool
     ) -> None:
-        """With lanes 4 m wide, the middle is 2 m inside the reference line of a right turn, outside of a left."""
+        """With lanes 4 m wide, the middle is 2 m inside the reference line of a right turn."""
         network = passing("crossroads").network
         k = -1 / radius if turn else 1 / (radius - 4)
         number = network.junctions[0].connections[0].road

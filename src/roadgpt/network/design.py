@@ -21,8 +21,9 @@ from pydantic import BaseModel, Field, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.network.network import Control, Kind
-from roadgpt.road import Segment, read_design
-from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error
+from roadgpt.road import Design, Segment, read_design
+from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
+from roadgpt.road.road import FARTHEST
 
 KEY = re.compile(r"junction(\d{1,4})")
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
@@ -105,8 +106,9 @@ class JunctionDesign(FrozenFields):
         """
         arms = self.all_arms
         if isinstance(self.take, int):
-            if self.take > len(arms) + (self.kind == "roundabout"):
-                raise UsageError(f"take {self.take} is more than the number of arms; give 1 to {len(arms)}")
+            most = len(arms) + (self.kind == "roundabout")
+            if self.take > most:
+                raise UsageError(f"take {self.take} is more than the number of exits; give 1 to {most}")
             return self.take - 1 if self.take <= len(arms) else None
         return _towards(self.kind, self.take, [arm.angle for arm in arms])
 
@@ -186,13 +188,13 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     rest = {key: value for key, value in data.items() if key != "lanes" and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
     numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
+    if not 1 <= len(numbered) <= MOST_JUNCTIONS:
+        raise UsageError(f"the design has {len(numbered)} junctions; give 1 to {MOST_JUNCTIONS}")
     junctions = [_junction(number, raw) for number, raw in numbered]
     junctions.sort(key=lambda each: each.after)
-    try:
-        lanes = None if data.get("lanes") is None else LanesDesign.model_validate(data["lanes"])
-    except ValidationError as error:
-        raise UsageError(f"the lanes of the design cannot be read: {first_error(error)}") from error
-    _check_order([junction.after for junction in junctions], len(design.segments))
+    lanes = None if data.get("lanes") is None else _lanes(data["lanes"])
+    _check_order(junctions, len(design.segments))
+    _check_start(design)
     made = NetworkDesign(
         starting_point=design.starting_point,
         theta=design.theta,
@@ -203,10 +205,38 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     return made, remarks
 
 
-def _check_order(after: Sequence[int], segments: int) -> None:
+def _check_start(design: Design) -> None:
+    """Raises UsageError if the route starts too far away for the digits of its coordinates."""
+    if max(map(abs, (*design.starting_point, design.theta))) > FARTHEST:
+        raise UsageError(f"starting_point or theta is beyond {FARTHEST:,.0f}; give smaller numbers")
+
+
+def _lanes(raw: Any) -> LanesDesign:
+    what = "the lanes of the design"
+    _check_object(what, raw, "forward, backward and width")
+    try:
+        return LanesDesign.model_validate(raw)
+    except ValidationError as error:
+        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+
+
+def _check_object(what: str, raw: Any, fields: str) -> None:
+    """Raises UsageError if parsed JSON is not an object, or has true or false in place of a number."""
+    if not isinstance(raw, Mapping):
+        raise UsageError(f"{what} cannot be read: give an object with {fields}")
+    no_truths(what, raw)
+
+
+def _check_order(junctions: Sequence[JunctionDesign], segments: int) -> None:
+    after = [junction.after for junction in junctions]
     for n, place in enumerate(after):
         if n and place == after[n - 1]:
             raise UsageError(f"two junctions stand after segment {place}; put a segment between them")
+        if n and junctions[n - 1].taken is None:
+            raise UsageError(
+                f"the roundabout after segment {after[n - 1]} leads back on the road of arrival, so no "
+                f"junction can stand after segment {place}; take another exit"
+            )
         if place >= segments:
             raise UsageError(
                 f"a junction stands after segment {place}, and there are {segments}; add a segment behind it "
@@ -216,10 +246,19 @@ def _check_order(after: Sequence[int], segments: int) -> None:
 
 def _junction(number: int, raw: Any) -> JunctionDesign:
     what = f"junction {number}"
+    _check_object(what, raw, "after, kind and take")
+    arms = raw.get("arms", ())
+    if not isinstance(arms, (list, tuple)) or len(arms) > MOST_ARMS:
+        raise UsageError(f"{what} cannot be read: arms: give a list of at most {MOST_ARMS} arms")
+    for n, arm in enumerate(arms, 1):
+        _check_object(f"arm {n} of {what}", arm, "angle")
     try:
         made = JunctionDesign.model_validate(raw)
     except ValidationError as error:
-        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+        said = first_error(error)
+        if error.errors()[0]["loc"][:1] == ("take",) and "take" in raw:
+            said = "take: is unknown; give 'left', 'right', 'straight' or the number of the exit"
+        raise UsageError(f"{what} cannot be read: {said}") from error
     try:
         _check_arms(made)
         taken = made.taken

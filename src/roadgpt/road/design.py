@@ -114,7 +114,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
         segment, said = _segment(number, raw)
         segments.append(segment)
         remarks += said
-    _no_truths("the design", {name: data.get(name) for name in ("starting_point", "theta")})
+    no_truths("the design", {name: data.get(name) for name in ("starting_point", "theta")})
     try:
         design = Design(
             starting_point=data.get("starting_point", ()), theta=data.get("theta"), segments=tuple(segments)
@@ -159,7 +159,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
         missing = [name for name in REQUIRED if name not in raw]
         if missing:
             raise UsageError(f"segment {number} cannot be read: {missing[0]}: {_advice('missing', {})}")
-        _no_truths(f"segment {number}", raw)
+        no_truths(f"segment {number}", raw)
     try:
         segment = Segment.model_validate(raw)
     except ValidationError as error:
@@ -187,7 +187,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
     return segment.model_copy(update={"turn_degrees": turn}), remarks
 
 
-def _no_truths(what: str, data: Mapping[str, Any]) -> None:
+def no_truths(what: str, data: Mapping[str, Any]) -> None:
     """Raises UsageError where true or false is given in place of a number."""
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
@@ -211,6 +211,9 @@ def _advice(kind: str, bounds: Mapping[str, Any]) -> str | None:
         "finite_number": "is not finite; give a finite number",
         "float_type": "is not a number; give one",
         "float_parsing": "is not a number; give one",
+        "less_than": f"is out of range; give less than {bounds.get('lt', 0):g}",
+        "greater_than": f"is out of range; give more than {bounds.get('gt', 0):g}",
+        "int_from_float": "is not a whole number; give one",
         "model_type": "give an object with distance, direction, incline, turn_degrees",
     }
     limits = {"greater_than_equal": ("ge", "or more"), "less_than_equal": ("le", "or less")}
