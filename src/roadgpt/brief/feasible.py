@@ -5,6 +5,7 @@ change.
 from math import inf
 from typing import NamedTuple
 
+from roadgpt.brief.junction_check import check_junction, check_turning_back
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
@@ -55,6 +56,8 @@ def check(
 ) -> None:
     """Checks, from the numbers of a Brief alone, whether some road could satisfy it.
 
+    Of a route with junctions, each junction and each road is checked.
+
     Args:
         brief: the requirements; the Brief need not be in normal form.
         map_size: side of the square map in metres; None skips the check whether the road fits.
@@ -67,6 +70,13 @@ def check(
         BriefError: there is a contradiction or an impossible requirement; the message, one sentence, names
             the first one found.
     """
+    if brief.junctions:
+        for junction in brief.junctions:
+            check_junction(junction)
+        check_turning_back(brief)
+        for stretch in brief.stretches:
+            check(stretch, None, min_radius, max_grade, road_width)
+        return
     _counts(brief)
     _limits_of_every_turn(brief)
     brief = normal(brief)

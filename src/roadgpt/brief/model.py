@@ -3,14 +3,34 @@
 Numbers in a Brief are in everyday units (degrees, metres and percent), so that people can write Briefs.
 """
 
-from collections.abc import Iterator
-from math import inf
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
+from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
-from roadgpt.brief.words import Range
+from roadgpt.brief.junctions import JunctionClause
+
+__all__ = [
+    "OTHER_SIDE",
+    "Amount",
+    "Beside",
+    "Brief",
+    "Clause",
+    "Frozen",
+    "JunctionClause",
+    "Kind",
+    "Sharpness",
+    "Side",
+    "Size",
+    "Slope",
+    "at_least",
+    "at_most",
+    "between",
+    "exactly",
+    "figure",
+    "span",
+]
 
 Side = Literal["left", "right"]
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
@@ -41,78 +61,6 @@ def _known(name: str) -> str:
 
 
 Beside = Annotated[str, AfterValidator(_known)]
-
-
-class Frozen(BaseModel):
-    """Base of immutable values that are compared by content and read from and written to JSON."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """Yields only the fields that differ from their defaults, so that a printed Brief stays readable."""
-        for name, field in type(self).model_fields.items():
-            value = getattr(self, name)
-            if field.is_required() or value != field.get_default(call_default_factory=True):
-                yield name, value
-
-
-class Amount(Frozen):
-    """A number as the description gives it: exact (lo == hi), a lower bound (hi is None), an upper bound (lo
-    is None) or a range.
-    """
-
-    lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
-    hi: Annotated[float | None, Field(allow_inf_nan=False)] = None
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if self.lo is None and self.hi is None:
-            raise ValueError("an amount needs a lower or an upper bound")
-        if self.lo is not None and self.hi is not None and self.lo > self.hi:
-            raise ValueError(f"an amount between {self.lo:g} and {self.hi:g} has its bounds swapped")
-        return self
-
-    def __str__(self) -> str:
-        lo, hi = (None if number is None else figure(number) for number in (self.lo, self.hi))
-        if lo is None:
-            return f"at most {hi}"
-        return f"at least {lo}" if hi is None else lo if self.exact else f"{lo} to {hi}"
-
-    @property
-    def exact(self) -> bool:
-        """True if the amount is a single number, not a bound or a range."""
-        return self.lo == self.hi
-
-
-def span(amount: Amount | None) -> Range:
-    """Returns the interval of numbers that an amount allows; None allows every number."""
-    lo, hi = (amount.lo, amount.hi) if amount else (None, None)
-    return Range(-inf if lo is None else lo, inf if hi is None else hi)
-
-
-def figure(number: float) -> str:
-    """Formats a number with at most four decimals and no trailing zeros."""
-    return f"{number:.4f}".rstrip("0").rstrip(".")
-
-
-def exactly(number: float) -> Amount:
-    """Returns the Amount that allows only this number."""
-    return Amount(lo=number, hi=number)
-
-
-def at_least(number: float) -> Amount:
-    """Returns the Amount that allows this number or more."""
-    return Amount(lo=number)
-
-
-def at_most(number: float) -> Amount:
-    """Returns the Amount that allows this number or less."""
-    return Amount(hi=number)
-
-
-def between(low: float, high: float) -> Amount:
-    """Returns the Amount that allows every number from ``low`` to ``high``, both included."""
-    return Amount(lo=low, hi=high)
 
 
 class Clause(Frozen):
@@ -188,8 +136,33 @@ class Brief(Frozen):
     unused: tuple[str, ...] = ()
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0
+    junctions: tuple[JunctionClause, ...] = ()
+    """The junctions that the route passes, in driving order. With junctions, ``stretches`` has the
+    requirements for the roads between them; of the fields above, only ``length``, ``beside``, ``unused`` and
+    ``confidence`` then hold for the whole route.
+    """
+    stretches: "tuple[Brief, ...]" = ()
+    """The roads before, between and after the junctions; one more than there are junctions."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this one; otherwise empty."""
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if self.junctions and len(self.stretches) != len(self.junctions) + 1:
+            count = len(self.junctions)
+            given = len(self.stretches)
+            raise ValueError(
+                f"{count} junctions divide a route into {count + 1} roads, and {given} are given"
+            )
+        if any(stretch.junctions for stretch in self.stretches) or (self.stretches and not self.junctions):
+            raise ValueError("only a route with junctions has stretches, which have no junctions themselves")
+        return self
+
+    @property
+    def is_open(self) -> bool:
+        """Whether nothing is required of the road."""
+        said = {"words": "", "beside": (), "unused": (), "confidence": 1.0, "other": ""}
+        return self.model_copy(update=said) == Brief()
 
     @property
     def friction(self) -> float | None:

@@ -13,12 +13,12 @@ from typing import TypeVar, get_args
 
 from pydantic import ValidationError
 
+from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction, junction_plan, read_junction
 from roadgpt.brief.model import Amount, Brief, Clause, Kind
+from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
 
-NUMBER = r"-?\d+(?:\.\d+)?"
-AMOUNT = re.compile(rf"({NUMBER})?(\.\.)?({NUMBER})?")
 KINDS = frozenset(get_args(Kind))
 WORDS = {
     **dict.fromkeys(("left", "right"), "side"),
@@ -49,6 +49,15 @@ Model = TypeVar("Model", Brief, Clause)
 
 def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
+    if brief.junctions:
+        return _network_plan(brief)
+    wishes = _wishes(brief)
+    line = "; ".join(_clause(clause) for clause in brief.clauses)
+    return f"{line} | {' '.join(wishes)}".strip() if wishes else line
+
+
+def _wishes(brief: Brief) -> list[str]:
+    """Returns the requirements for the whole road as parts of a plan."""
     wishes = _mods(brief, ROAD_KEYS)
     for place in PLACES:
         clause = getattr(brief, place)
@@ -56,12 +65,20 @@ def plan(brief: Brief) -> str:
             wishes.append(f"{place}({_clause(clause)})")
     if brief.beside:
         wishes.append(f"beside({', '.join(brief.beside)})")
-    line = "; ".join(_clause(clause) for clause in brief.clauses)
-    return f"{line} | {' '.join(wishes)}".strip() if wishes else line
+    return wishes
+
+
+def _network_plan(brief: Brief) -> str:
+    parts = [plan(brief.stretches[0])]
+    for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
+        parts += [junction_plan(junction), plan(stretch)]
+    line = f" {BETWEEN} ".join(parts).strip()
+    wishes = _wishes(brief)
+    return f"{line} {WHOLE} {' '.join(wishes)}" if wishes else line
 
 
 def _clause(clause: Clause) -> str:
-    count = [] if clause.count == ONE else [f"x{_amount(clause.count)}"]
+    count = [] if clause.count == ONE else [f"x{amount_text(clause.count)}"]
     return " ".join([clause.kind, *count, *_mods(clause, KEYS)])
 
 
@@ -71,15 +88,8 @@ def _mods(thing: Clause | Brief, keys: dict[str, str]) -> list[str]:
     out = [value for name in fields if (value := getattr(thing, name, None))]
     out += [flag for flag in FLAGS if getattr(thing, flag, False)]
     return out + [
-        f"{key}={_amount(a)}" for key, name in keys.items() if (a := getattr(thing, name)) is not None
+        f"{key}={amount_text(a)}" for key, name in keys.items() if (a := getattr(thing, name)) is not None
     ]
-
-
-def _amount(amount: Amount) -> str:
-    if amount.exact:
-        return _number(amount.lo)
-    low, high = (_number(bound) for bound in (amount.lo, amount.hi))
-    return f"{low}..{high}"
 
 
 def read_plan(line: str) -> Brief:
@@ -91,6 +101,8 @@ def read_plan(line: str) -> Brief:
     """
     if line.lstrip().startswith("!"):
         raise refused(line)
+    if BETWEEN in line:
+        return _read_network(line)
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {
         "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
@@ -103,6 +115,30 @@ def read_plan(line: str) -> Brief:
     return _made(Brief, fields, line)
 
 
+def _read_network(line: str) -> Brief:
+    """Returns the Brief of a plan with junctions."""
+    route, _, whole = line.partition(WHOLE)
+    parts = [part.strip() for part in route.split(BETWEEN)]
+    if len(parts) % 2 == 0 or not all(map(is_junction, parts[1::2])):
+        raise BriefError(
+            f"in a plan with {BETWEEN}, roads and junctions alternate, beginning and ending with a road; a "
+            f"road may be left empty: straight 80 {BETWEEN} crossroads left {BETWEEN} turn right"
+        )
+    asked = read_plan(f"| {whole}") if whole.strip() else Brief()
+    if asked != Brief(length=asked.length, beside=asked.beside):
+        raise BriefError(
+            f"only len and beside can be asked of a whole route, after {WHOLE}; what holds for one of its "
+            "roads stands with this road, after |"
+        )
+    fields: dict[str, object] = {
+        "junctions": tuple(read_junction(part) for part in parts[1::2]),
+        "stretches": tuple(read_plan(part) for part in parts[0::2]),
+        "length": asked.length,
+        "beside": asked.beside,
+    }
+    return _made(Brief, fields, line)
+
+
 def _read_clause(text: str) -> Clause:
     kind, *words = text.split() or [""]
     if kind not in KINDS:
@@ -112,11 +148,11 @@ def _read_clause(text: str) -> Clause:
     fields: dict[str, object] = {"kind": kind}
     for word in words:
         if word.startswith("x") and word[1:2] in "0123456789.":
-            _set(fields, "count", _read_amount(word[1:]))
+            _set(fields, "count", read_amount(word[1:]))
         elif word[0] in "0123456789.":
-            _set(fields, BARE.get(kind, "degrees"), _read_amount(word))
+            _set(fields, BARE.get(kind, "degrees"), read_amount(word))
         elif word[0] == "r" and word[1:2] in "0123456789." and word[1:]:
-            _set(fields, "radius", _read_amount(word[1:]))
+            _set(fields, "radius", read_amount(word[1:]))
         else:
             _read_mod(fields, word, KEYS)
     return _made(Clause, fields, text)
@@ -125,7 +161,7 @@ def _read_clause(text: str) -> Clause:
 def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> None:
     key, equals, value = word.partition("=")
     if equals and key in keys:
-        _set(fields, keys[key], _read_amount(value))
+        _set(fields, keys[key], read_amount(value))
     elif word in FLAGS:
         _set(fields, word, True)
     elif word in WORDS:
@@ -143,27 +179,9 @@ def _set(fields: dict[str, object], name: str, value: object) -> None:
     fields[name] = value
 
 
-def _read_amount(text: str) -> Amount:
-    match = AMOUNT.fullmatch(text)
-    if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):
-        raise BriefError(f"'{text[:40]}' is not a number in a plan; write 3, 3.., ..3 or 3..5")
-    low, high = (float(bound) if bound else None for bound in (match[1], match[3]))
-    try:
-        return Amount(lo=low, hi=high if match[2] else low)
-    except ValidationError as error:
-        raise BriefError(
-            f"the range '{text[:40]}' in a plan is reversed; write the smaller number first"
-        ) from error
-
-
 def _made(model: type[Model], fields: dict[str, object], text: str) -> Model:
     try:
         return model.model_validate(fields)
     except ValidationError as error:
         problem = error.errors()[0]["msg"].removeprefix("Value error, ")
         raise BriefError(f"the plan '{text.strip()[:60]}' is not a Brief: {problem}") from error
-
-
-def _number(value: float | None) -> str:
-    """Returns a number in plain decimals, never with an exponent; an empty string for None."""
-    return "" if value is None else f"{value:.6f}".rstrip("0").rstrip(".")

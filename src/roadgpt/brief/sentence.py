@@ -1,5 +1,6 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
+from roadgpt.brief.junction_sentence import junction_text
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
@@ -10,6 +11,8 @@ WAVY = ("serpentine", "zigzag", "winding", "slalom")
 
 def sentence(brief: Brief) -> str:
     """Returns a sentence that states the requirements of a Brief, such as 'An uphill road with 3 turns.'"""
+    if brief.junctions:
+        return _route_sentence(brief)
     said = normal(brief)
     road = _joined(_exact_metres(said.length), _slope(said), "motorway" if said.motorway else "road")
     if said.clauses:
@@ -18,6 +21,26 @@ def sentence(brief: Brief) -> str:
         road += f" with {_counted(said.turns, 'turn')}"
     text = "; ".join([_article(road) + road, *_wishes(said)])
     return text[0].upper() + text[1:] + "."
+
+
+def _route_sentence(brief: Brief) -> str:
+    """Returns a sentence about a route: its roads and junctions in driving order."""
+    parts = [_stretch(brief.stretches[0])]
+    for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
+        parts += [junction_text(junction), _stretch(stretch)]
+    parts += [text for text in _wishes(brief.model_copy(update={"junctions": (), "stretches": ()})) if text]
+    whole = f"{brief.length} metres in all" if brief.length else ""
+    parts = [part for part in parts if part and not part.endswith("long in all")] + [whole] * bool(whole)
+    text = ", then ".join(parts[: len(parts)])
+    return text[0].upper() + text[1:] + "."
+
+
+def _stretch(brief: Brief) -> str:
+    """Returns the requirements of one road of a route; empty if there are none."""
+    if brief.is_open:
+        return ""
+    text = sentence(brief).removesuffix(".")
+    return text[0].lower() + text[1:] if not text.startswith("S-") else text
 
 
 def _wishes(brief: Brief) -> list[str]:

@@ -16,7 +16,7 @@ from roadgpt import check
 from roadgpt.brief.element import Elements
 from roadgpt.brief.model import Brief
 from roadgpt.campaign.mutation import interpolated, varied
-from roadgpt.design import draft
+from roadgpt.design import draft_road
 from roadgpt.design.elements import as_written, elements_of
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, walk
 from roadgpt.design.variety import PlanShape, shape_of
@@ -106,7 +106,7 @@ def _changed(
 def drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
     """Returns a draft of the planner; None if no valid road could be designed."""
     try:
-        design = draft(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
+        design = draft_road(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
     except DesignError:
         return None
     return validated(design, setting)

@@ -11,7 +11,8 @@ Design. If no road can meet all requirements on this map, the method raises Desi
 advice.
 
 A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts``, False
-if the designer must not be called again when its draft violates a rule; ``geometry``, the kind of geometry
+if the designer must not be called again when its draft violates a rule; ``makes_junctions``, True if it can
+make routes with junctions; ``geometry``, the kind of geometry
 that its designs require, such as "spline" for RoadGPT's original splines. This geometry overrides the user's
 choice.
 """
@@ -23,6 +24,8 @@ from typing import Protocol, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatSettings, instantiate, settings_for
+from roadgpt.errors import DesignError
+from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, World
 
 
@@ -31,8 +34,11 @@ class Designer(Protocol):
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> Design:
+    ) -> Design | NetworkDesign:
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
+
+        If the Brief has junctions, the result is a NetworkDesign. A designer that cannot make one raises
+        DesignError.
 
         Args:
             brief: the requirements for the road.
@@ -55,8 +61,8 @@ def draft(
     seed: int = 0,
     designer: str = "planner",
     chat: ChatSettings | None = None,
-) -> Design:
-    """Returns a Design for a Brief, made by the designer of the given name.
+) -> Design | NetworkDesign:
+    """Returns a Design for a Brief, or a NetworkDesign if the Brief has junctions.
 
     Args:
         brief: the requirements for the road.
@@ -72,7 +78,33 @@ def draft(
         PartError: there is no designer of that name.
         ChatError: the language model could not be asked.
     """
-    return designer_of(designer, chat).draft(brief, world, notes, earlier, seed)
+    made = designer_of(designer, chat)
+    check_designer(made, brief)
+    return made.draft(brief, world, notes, earlier, seed)
+
+
+def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed: int = 0) -> Design:
+    """Returns a Design for a Brief without junctions, made by the default designer.
+
+    The arguments are those of ``draft``.
+
+    Raises:
+        DesignError: no road meets all requirements on this map, or the Brief has junctions.
+    """
+    found = draft(brief, world, (), earlier, seed)
+    if isinstance(found, NetworkDesign):
+        raise DesignError("this takes single roads only; leave the junctions out of the description")
+    return found
+
+
+def check_designer(designer: Designer, brief: Brief) -> None:
+    """Checks that a designer can make what a Brief asks for.
+
+    Raises:
+        DesignError: the Brief has junctions, and the designer makes roads without junctions only.
+    """
+    if brief.junctions and not getattr(designer, "makes_junctions", False):
+        raise DesignError("this designer makes roads without junctions; leave --designer out to have some")
 
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:
@@ -94,4 +126,4 @@ def _made(name: str, chat: ChatSettings | None) -> Designer:
     return cast(Designer, instantiate(plugins.find("designers", name), chat))
 
 
-__all__ = ["Designer", "designer_of", "draft"]
+__all__ = ["Designer", "check_designer", "designer_of", "draft", "draft_road"]

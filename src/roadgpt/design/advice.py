@@ -129,7 +129,7 @@ def no_room(error: NoRoomError, world: World) -> str:
     """Returns the message for a road that does not fit on the map, with a suggestion that was verified by
     drafting a road.
     """
-    from roadgpt.design.designers.planner import fits  # the planner asks for offers, too
+    from roadgpt.design.road_search import fits  # the planner asks for offers, too
 
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):

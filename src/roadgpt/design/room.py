@@ -4,7 +4,7 @@ that is large enough for such roads.
 
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
-from roadgpt.design.designers.planner import sufficient_map
+from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 
 

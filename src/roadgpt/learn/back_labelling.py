@@ -13,7 +13,7 @@ import numpy as np
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.describing import describe
-from roadgpt.design import draft
+from roadgpt.design import draft_road
 from roadgpt.errors import BriefError, DesignError
 from roadgpt.learn.generator import Pair, pairs
 from roadgpt.learn.standard import standard
@@ -80,7 +80,7 @@ def measured_pairs(seed: int, world: World | None = None) -> Iterator[Pair]:
         if wanted.plan.startswith("!"):
             continue
         try:
-            design = draft(read_plan(wanted.plan), place, seed=int(rng.integers(2**31)))
+            design = draft_road(read_plan(wanted.plan), place, seed=int(rng.integers(2**31)))
             pair = described(describe(build(design)), rng)
         except (DesignError, BriefError):
             continue

@@ -6,7 +6,7 @@ all roads, connecting roads, junctions and roundabouts.
 """
 
 from roadgpt.network.design import JunctionDesign, NetworkDesign, has_junctions, read_network_design
-from roadgpt.network.growing import build_route
+from roadgpt.network.growing import build_route, passing_length
 from roadgpt.network.network import (
     Arm,
     Connection,
@@ -43,6 +43,7 @@ __all__ = [
     "build_route",
     "has_junctions",
     "made_from",
+    "passing_length",
     "read_any_design",
     "read_blueprint",
     "read_network_design",

@@ -237,7 +237,12 @@ def _check_order(junctions: Sequence[JunctionDesign], segments: int) -> None:
                 f"the roundabout after segment {after[n - 1]} leads back on the road of arrival, so no "
                 f"junction can stand after segment {place}; take another exit"
             )
-        if place >= segments:
+        if junctions[n].taken is None and place < segments:
+            raise UsageError(
+                f"the roundabout after segment {place} leads back on the road of arrival, so the segments "
+                "behind it are never reached; leave them out or take another exit"
+            )
+        if place >= segments and junctions[n].taken is not None:
             raise UsageError(
                 f"a junction stands after segment {place}, and there are {segments}; add a segment behind it "
                 "for the road on which the route goes on"

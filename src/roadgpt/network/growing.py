@@ -9,9 +9,10 @@ from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
 from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign
 from roadgpt.network.network import Control, Leg, RoadEnd, Roundabout
-from roadgpt.network.ring import build_roundabout, contact_distance, smallest_radius
+from roadgpt.network.ring import around_length, build_roundabout, contact_distance, smallest_radius
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import road_of
+from roadgpt.network.turning import curve_between
 from roadgpt.road import Profile, Segment, World
 from roadgpt.road.road import check_length
 from roadgpt.road.world import OWN
@@ -83,7 +84,7 @@ class _RouteGrowth:
         heading = float(arrival.heading(arrival.length))
         arms, taken = junction.all_arms, junction.taken
         directions = [heading + math.pi, *(heading + math.radians(arm.angle) for arm in arms)]
-        distances = self._distances(junction, directions)
+        distances = contact_distances(junction, directions, float(self.profile.width(0.0)))
         far = distances[0]
         node = (x + far * math.cos(heading), y + far * math.sin(heading), z)
         stubs = [Stub(RoadEnd(self._number, "end"), directions[0], self.profile, arrival.length)]
@@ -115,18 +116,50 @@ class _RouteGrowth:
         self._number = stubs[to].end.road
         self.legs.append(Leg(self._number, -1 if to else 1))
 
-    def _distances(self, junction: JunctionDesign, directions: Sequence[float]) -> list[float]:
-        """Returns the distance in metres from the node to the contact of each arm."""
-        if junction.kind != "roundabout":
-            width = sum(lane.width for lane in self.profile.left if lane.kind == "driving")  # type: ignore[misc]
-            return setbacks([Mouth(each, width, width) for each in directions], junction.kerb)
-        least = smallest_radius(directions)
-        if junction.radius < least:
-            raise UsageError(
-                f"an island with a radius of {junction.radius:g} m is too small for its arms; "
-                f"give a radius of {math.ceil(10 * least) / 10:g} m or more"
-            )
-        return [contact_distance(junction.radius)] * len(directions)
+
+def contact_distances(junction: JunctionDesign, directions: Sequence[float], width: float) -> list[float]:
+    """Returns the distance in metres from the node of a junction to the contact of each arm.
+
+    Args:
+        junction: The junction.
+        directions: The headings of its arms out of the junction in radians, counter-clockwise, first that of
+            the road on which the route arrives.
+        width: The width of every lane in metres.
+
+    Raises:
+        UsageError: The island of a roundabout is too small for its arms.
+    """
+    if junction.kind != "roundabout":
+        return setbacks([Mouth(each, width, width) for each in directions], junction.kerb)
+    least = smallest_radius(directions)
+    if junction.radius < least:
+        raise UsageError(
+            f"an island with a radius of {junction.radius:g} m is too small for its arms; "
+            f"give a radius of {math.ceil(10 * least) / 10:g} m or more"
+        )
+    return [contact_distance(junction.radius)] * len(directions)
+
+
+def passing_length(junction: JunctionDesign, width: float) -> float:
+    """Returns the length in metres of a route inside a junction, from contact to contact.
+
+    Args:
+        junction: The junction.
+        width: The width of every lane in metres.
+
+    Raises:
+        UsageError: The island of a roundabout is too small for its arms.
+    """
+    arms, taken = junction.all_arms, junction.taken
+    directions = [math.pi, *(math.radians(arm.angle) for arm in arms)]
+    distances = contact_distances(junction, directions, width)
+    if junction.kind == "roundabout":
+        angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
+        return around_length(junction.radius, directions, angle)
+    assert taken is not None
+    turn = directions[taken + 1]
+    pieces = curve_between(distances[0], distances[taken + 1], turn)
+    return sum(piece.length for piece in pieces)
 
 
 def _around(builder: Builder, ring: Roundabout, to: int) -> list[Leg]:

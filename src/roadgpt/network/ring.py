@@ -56,6 +56,20 @@ def smallest_radius(directions: Sequence[float]) -> float:
     return (2 * SMALLEST_MOUTH + BETWEEN) / min(gaps)
 
 
+def around_length(radius: float, directions: Sequence[float], angle: float) -> float:
+    """Returns the length in metres of a way through a roundabout, from contact to contact.
+
+    Args:
+        radius: The radius of the central island in metres.
+        directions: The directions of the arms from the centre in radians, counter-clockwise.
+        angle: The angle in radians, counter-clockwise, from the arm of arrival to the arm that is taken.
+    """
+    half = mouth_of(radius, directions) / radius
+    tangents = contact_distance(radius) - radius / math.cos(half), radius * math.tan(half)
+    ramp = sum(piece.length for piece in curve_between(*tangents, half - math.pi / 2))
+    return 2 * ramp + radius * (angle - 2 * half)
+
+
 def build_roundabout(
     builder: Builder,
     centre: tuple[float, float, float],

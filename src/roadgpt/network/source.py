@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from roadgpt.errors import UsageError
 from roadgpt.network.design import NetworkDesign, has_junctions, read_network_design
 from roadgpt.network.growing import build_route
 from roadgpt.network.network_json import legs_from_json, network_from_json
@@ -70,6 +71,8 @@ def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -
         UsageError: The road is too long, or the World asks for lanes that networks do not have.
     """
     if isinstance(blueprint, NetworkDesign):
+        if geometry != "arcs":
+            raise UsageError("a route with junctions is built from arcs; leave out --geometry spline")
         return build_route(blueprint, world).on_ground()
     return world.lay(build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint)
 

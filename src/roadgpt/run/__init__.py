@@ -19,15 +19,15 @@ from roadgpt.brief import NoRoomError, read
 from roadgpt.brief.model import Brief
 from roadgpt.chat import Meter, ReplyError, counting
 from roadgpt.check import Finding, inspect, rules_of
-from roadgpt.design import designer_of
+from roadgpt.design import check_designer, designer_of
 from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
-from roadgpt.network import Blueprint, made_from
-from roadgpt.road import Design, Geometry, Road, World, build, in_short_segments
+from roadgpt.network import Blueprint, NetworkDesign, made_from
+from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
 from roadgpt.run.model import Outcome, Request, Run, Seconds, Setup
@@ -189,7 +189,7 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
 class _Made(NamedTuple):
     """A draft, its road, and the findings: the rules that the road breaks."""
 
-    design: Design
+    design: Design | NetworkDesign
     road: Road
     findings: tuple[Finding, ...]
     rounds: int
@@ -200,6 +200,7 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
     """Returns the first draft that breaks no rule; if every draft breaks one, the last draft."""
     world, setup = request.world, request.setup
     designer = designer_of(setup.designer, setup.chat)
+    check_designer(designer, brief)
     own_geometry: Geometry | None = getattr(designer, "geometry", None)
     kept: _Made | None = None
     notes: tuple[str, ...] = ()
@@ -212,10 +213,10 @@ def _designed(brief: Brief, request: Request, earlier: Sequence[Design], seed: i
             if kept is None:
                 raise
             break
-        if setup.geometry == "spline" and own_geometry is None:
+        if setup.geometry == "spline" and own_geometry is None and isinstance(design, Design):
             # designers draw bends, which a spline keeps only through many nodes
             design = in_short_segments(design)
-        road = world.lay(build(design, own_geometry or setup.geometry))
+        road = made_from(design, world, own_geometry or setup.geometry)
         findings = inspect(road, brief, world, setup.rules)
         kept = _Made(design, road, findings, attempt + 1, getattr(designer, "report", None))
         if not findings:

@@ -9,7 +9,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.campaign.behaviour import behaviour_of
 from roadgpt.campaign.generators.quality_diversity import QualityDiversity
 from roadgpt.campaign.model import Cell, Proposal, Result
-from roadgpt.design import draft
+from roadgpt.design import draft_road
 from roadgpt.errors import DesignError
 from roadgpt.road import Design, Road, World, build
 from roadgpt.run import Request, Setup
@@ -66,7 +66,7 @@ class RoadSearch:
         self._number += 1
         world, brief = self._cell.request.world, self._cell.brief
         assert brief is not None
-        design = proposal.design or draft(brief, world, seed=proposal.seed)
+        design = proposal.design or draft_road(brief, world, seed=proposal.seed)
         road = world.lay(build(design))
         blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
         self._asked[self._number] = road, blank

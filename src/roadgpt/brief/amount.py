@@ -1,0 +1,81 @@
+"""Defines the Amount, a number as a description gives it, and the base of immutable values."""
+
+from collections.abc import Iterator
+from math import inf
+from typing import Annotated, Any, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+from roadgpt.brief.words import Range
+
+
+class Frozen(BaseModel):
+    """Base of immutable values that are compared by content and read from and written to JSON."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """Yields only the fields that differ from their defaults, so that a printed Brief stays readable."""
+        for name, field in type(self).model_fields.items():
+            value = getattr(self, name)
+            if field.is_required() or value != field.get_default(call_default_factory=True):
+                yield name, value
+
+
+class Amount(Frozen):
+    """A number as the description gives it: exact (lo == hi), a lower bound (hi is None), an upper bound (lo
+    is None) or a range.
+    """
+
+    lo: Annotated[float | None, Field(allow_inf_nan=False)] = None
+    hi: Annotated[float | None, Field(allow_inf_nan=False)] = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if self.lo is None and self.hi is None:
+            raise ValueError("an amount needs a lower or an upper bound")
+        if self.lo is not None and self.hi is not None and self.lo > self.hi:
+            raise ValueError(f"an amount between {self.lo:g} and {self.hi:g} has its bounds swapped")
+        return self
+
+    def __str__(self) -> str:
+        lo, hi = (None if number is None else figure(number) for number in (self.lo, self.hi))
+        if lo is None:
+            return f"at most {hi}"
+        return f"at least {lo}" if hi is None else lo if self.exact else f"{lo} to {hi}"
+
+    @property
+    def exact(self) -> bool:
+        """True if the amount is a single number, not a bound or a range."""
+        return self.lo == self.hi
+
+
+def span(amount: Amount | None) -> Range:
+    """Returns the interval of numbers that an amount allows; None allows every number."""
+    lo, hi = (amount.lo, amount.hi) if amount else (None, None)
+    return Range(-inf if lo is None else lo, inf if hi is None else hi)
+
+
+def figure(number: float) -> str:
+    """Formats a number with at most four decimals and no trailing zeros."""
+    return f"{number:.4f}".rstrip("0").rstrip(".")
+
+
+def exactly(number: float) -> Amount:
+    """Returns the Amount that allows only this number."""
+    return Amount(lo=number, hi=number)
+
+
+def at_least(number: float) -> Amount:
+    """Returns the Amount that allows this number or more."""
+    return Amount(lo=number)
+
+
+def at_most(number: float) -> Amount:
+    """Returns the Amount that allows this number or less."""
+    return Amount(hi=number)
+
+
+def between(low: float, high: float) -> Amount:
+    """Returns the Amount that allows every number from ``low`` to ``high``, both included."""
+    return Amount(lo=low, hi=high)

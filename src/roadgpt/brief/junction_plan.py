@@ -1,0 +1,80 @@
+"""Writes and reads the junctions in a plan.
+
+    straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 || len=300
+
+Junctions and the roads between them alternate, separated by ``//``. Each road is a plan of its own. What
+holds for the whole route follows after ``||``.
+"""
+
+from typing import get_args
+
+from pydantic import ValidationError
+
+from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Take, Way
+from roadgpt.brief.plan_amount import amount_text, read_amount
+from roadgpt.errors import BriefError
+
+BETWEEN = "//"
+WHOLE = "||"
+KINDS: frozenset[str] = frozenset(get_args(JunctionKind))
+WORDS = {
+    **dict.fromkeys(get_args(Take), "take"),
+    **dict.fromkeys(get_args(IslandSize), "size"),
+    **dict.fromkeys(get_args(Control), "control"),
+}
+KEYS = ("exit", "arms", "radius")
+SHORT = {"radius": "r"}
+LONG = {short: name for name, short in SHORT.items()}
+WAYS = "ways="
+SKEW = "skew"
+
+
+def junction_plan(junction: JunctionClause) -> str:
+    """Returns a junction as part of a plan, such as "crossroads left lights"."""
+    words: list[str] = [junction.kind]
+    words += [value for name in ("take", "size", "control") if (value := getattr(junction, name))]
+    words += [SKEW] if junction.skew else []
+    words += [f"{WAYS}{'+'.join(junction.ways)}"] if junction.ways else []
+    for name in KEYS:
+        if (amount := getattr(junction, name)) is not None:
+            words.append(f"{SHORT.get(name, name)}={amount_text(amount)}")
+    return " ".join(words)
+
+
+def is_junction(text: str) -> bool:
+    """Returns whether part of a plan begins with a kind of junction."""
+    return (text.split() or [""])[0] in KINDS
+
+
+def read_junction(text: str) -> JunctionClause:
+    """Returns the junction that a part of a plan describes.
+
+    Raises:
+        BriefError: A word or number is not part of the plan language, or is given twice.
+    """
+    kind, *words = text.split()
+    fields: dict[str, object] = {"kind": kind}
+    for word in words:
+        key, equals, value = word.partition("=")
+        name = LONG.get(key, key)
+        if equals and name in KEYS:
+            found: tuple[str, object] = (name, read_amount(value))
+        elif word.startswith(WAYS):
+            found = ("ways", tuple(value.split("+")))
+        elif word == SKEW:
+            found = (SKEW, True)
+        elif word in WORDS:
+            found = (WORDS[word], word)
+        else:
+            known = ", ".join(sorted((*WORDS, SKEW, *(f"{SHORT.get(k, k)}=" for k in KEYS), WAYS)))
+            raise BriefError(f"a plan has no word '{word[:40]}' for a junction; there are {known}")
+        if found[0] in fields:
+            raise BriefError(f"a plan gives {found[0]} of a junction twice: '{word[:40]}'; give it once")
+        fields[found[0]] = found[1]
+    try:
+        return JunctionClause.model_validate(fields)
+    except ValidationError as error:
+        ways = " or ".join(get_args(Way))
+        raise BriefError(
+            f"the junction '{text.strip()[:60]}' in a plan cannot be read; ways are {ways}, joined by +"
+        ) from error

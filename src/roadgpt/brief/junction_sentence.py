@@ -1,0 +1,44 @@
+"""Writes the requirements of a junction as plain English."""
+
+from roadgpt.brief.amount import Amount
+from roadgpt.brief.junctions import CONTROLS, ORDINALS, TAKES, JunctionClause
+
+
+def junction_text(junction: JunctionClause) -> str:
+    """Returns a junction and what the route does there, such as 'at a crossroads with traffic lights turn
+    left'.
+    """
+    adjectives = [junction.size or "", "skew" if junction.skew else ""]
+    noun = " ".join([*filter(None, adjectives), junction.name])
+    place = [f"at {_article(noun)} {noun}"]
+    if junction.arms is not None:
+        place.append(f"with {junction.arms} arms")
+    if junction.radius is not None:
+        place.append(f"whose island has a radius of {junction.radius} metres")
+    if junction.ways:
+        place.append(f"with ways on {_listed(junction.ways)}")
+    if junction.control is not None:
+        place.append(CONTROLS[junction.control])
+    return f"{' '.join(place)} {_way_on(junction)}".strip()
+
+
+def _way_on(junction: JunctionClause) -> str:
+    if junction.exit is not None:
+        return f"take {exit_text(junction.exit)}"
+    return TAKES[junction.take] if junction.take is not None else "go on somewhere"
+
+
+def exit_text(number: Amount) -> str:
+    """Returns the number of an exit as text, such as 'the third exit'."""
+    if number.exact and number.lo is not None and number.lo.is_integer() and 1 <= number.lo <= len(ORDINALS):
+        return f"the {ORDINALS[int(number.lo) - 1]} exit"
+    return f"exit {number}"
+
+
+def _listed(ways: tuple[str, ...]) -> str:
+    said = {"left": "to the left", "right": "to the right", "straight": "straight on"}
+    return " and ".join(said[way] for way in ways)
+
+
+def _article(noun: str) -> str:
+    return "an" if noun[:1].lower() in "aei" else "a"

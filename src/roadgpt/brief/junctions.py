@@ -1,0 +1,87 @@
+"""Defines what a description can ask of a junction on the route, and what its words mean."""
+
+from collections.abc import Mapping
+from typing import Literal
+
+from roadgpt.brief.amount import Amount, Frozen
+from roadgpt.brief.words import Range
+
+JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+Take = Literal[
+    "left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right"
+]
+Way = Literal["left", "right", "straight"]
+Control = Literal["priority", "yield", "stop", "lights", "none"]
+IslandSize = Literal["mini", "normal", "large"]
+
+NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
+    "t_junction": ("T-junction", "side road"),
+    "y_junction": ("Y-junction", "fork"),
+    "crossroads": ("crossroads", "intersection"),
+    "star": ("star junction", "five-way junction"),
+    "roundabout": ("roundabout", "traffic circle"),
+}
+"""The English words for each kind; RoadGPT's own texts use the first one."""
+ARMS: Mapping[JunctionKind, Range] = {
+    "t_junction": Range(3, 3),
+    "y_junction": Range(3, 3),
+    "crossroads": Range(4, 4),
+    "star": Range(5, 6),
+    "roundabout": Range(3, 5),
+}
+"""The number of arms of each kind, with the road on which the route arrives."""
+SIZES: Mapping[IslandSize, Range] = {
+    "mini": Range(13, 25),
+    "normal": Range(26, 45),
+    "large": Range(46, 70),
+}
+"""The outer diameter of a roundabout in metres, for words that say its size.
+
+Mini: below 28 m is "compact" or "mini" in CD 116 Geometric design of roundabouts (National Highways); the
+other limits are usual figures.
+"""
+SIDE = 25.0  # degrees; a smaller change of direction is straight on
+TAKES: Mapping[Take, str] = {
+    "left": "turn left",
+    "right": "turn right",
+    "straight": "go straight on",
+    "back": "turn back the way it came",
+    "sharp_left": "take the sharpest left",
+    "sharp_right": "take the sharpest right",
+    "slight_left": "bear slightly left",
+    "slight_right": "bear slightly right",
+}
+CONTROLS: Mapping[Control, str] = {
+    "priority": "where the route has priority",
+    "yield": "where the route has to give way",
+    "stop": "with a stop sign for the route",
+    "lights": "with traffic lights",
+    "none": "without signs",
+}
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
+
+
+class JunctionClause(Frozen):
+    """A junction that the route passes; a field that is None sets no requirement."""
+
+    kind: JunctionKind
+    take: Take | None = None
+    """Where the route goes on; in a fork, "left" and "right" are the leftmost and the rightmost way."""
+    exit: Amount | None = None
+    """The number of the exit at a roundabout, counted along the ring; the last one leads back."""
+    arms: Amount | None = None
+    """The number of roads that meet, with the one on which the route arrives."""
+    ways: tuple[Way, ...] = ()
+    """The sides to which one can leave, other than back; empty if the description does not say."""
+    control: Control | None = None
+    skew: bool = False
+    """Whether two neighbouring arms of a crossroads are less than 70 degrees apart."""
+    size: IslandSize | None = None
+    """The size of a roundabout, if the description gives a word."""
+    radius: Amount | None = None
+    """The radius of the central island of a roundabout in metres."""
+
+    @property
+    def name(self) -> str:
+        """The kind as text, such as "T-junction"."""
+        return NAMES[self.kind][0]

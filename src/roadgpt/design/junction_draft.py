@@ -1,0 +1,180 @@
+"""Draws the junctions of a route at random, within what is required of each."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import pi
+
+import numpy as np
+
+from roadgpt.brief.amount import span
+from roadgpt.brief.junctions import ARMS, SIDE, SIZES, JunctionClause, Way
+from roadgpt.brief.words import Range, overlap
+from roadgpt.network import JunctionDesign
+from roadgpt.network.design import ASTERN, ArmDesign
+from roadgpt.network.ring import BETWEEN, MOUTH, ring_width
+
+Rng = np.random.Generator
+
+KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
+TIGHT_KERB = 6.0  # m, where there is little room
+STUBS = (20.0, 35.0)  # m, of the arms on which the route does not go on
+SHORT_STUB = 17.0  # m, where there is little room
+STRAIGHT = 14.0  # degrees, that an arm straight ahead may be off
+CLEAR = 40.0  # degrees, least turn of an arm to the left or right
+ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off their usual directions
+SKEW = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
+FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
+STAR = 50.0  # degrees, least gap of a star junction
+RING_GAP = 55.0  # degrees, least gap of a roundabout
+ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is required
+ROUNDS = 200  # draws of the arms of one junction
+
+
+def drawn_junction(clause: JunctionClause, after: int, rng: Rng, haste: float) -> JunctionDesign | None:
+    """Returns a junction that meets its requirements; None if none was found.
+
+    Args:
+        clause: the requirements.
+        after: number of segments of the route before the junction.
+        rng: random number generator.
+        haste: from 0 to 1; the larger it is, the smaller the junction.
+    """
+    for _ in range(ROUNDS):
+        angles = _angles(clause, rng)
+        taken = _taken(clause, angles, rng) if _has_ways(clause, angles) else None
+        if taken is None:
+            continue
+        least, most = STUBS[0] - haste * (STUBS[0] - SHORT_STUB), STUBS[1] - haste * (STUBS[1] - STUBS[0])
+        arms = tuple(
+            ArmDesign(
+                angle=round(angle, 1),
+                length=None if number == taken else round(float(rng.uniform(least, most)), 1),
+            )
+            for number, angle in enumerate(angles)
+        )
+        kerb = float(rng.uniform(*KERBS))
+        return JunctionDesign(
+            after=after,
+            kind=clause.kind,
+            take=taken + 1,
+            control=clause.control or "none",
+            kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
+            radius=round(_radius(clause, angles, rng, haste), 1),
+            arms=arms,
+        )
+    return None
+
+
+def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
+    """Returns the directions of the arms in degrees from the direction of arrival, from right to left."""
+    if clause.kind == "t_junction":
+        usual = ((-90.0, 90.0), (0.0, 90.0), (-90.0, 0.0))[int(rng.integers(3))]
+        return [_near(angle, STRAIGHT if angle == 0 else ACROSS, rng) for angle in usual]
+    if clause.kind == "crossroads":
+        if clause.skew:
+            slant = float(rng.uniform(*SKEW)) * (1 if rng.random() < 0.5 else -1)
+            return sorted([slant - 180 if slant > 0 else slant, 0.0, slant if slant > 0 else slant + 180])
+        across = float(rng.uniform(90 - ACROSS, 90 + ACROSS))
+        return [across - 180, _near(0.0, ACROSS / 2, rng), across]
+    if clause.kind == "y_junction":
+        left, right = (float(gap) for gap in rng.uniform(*FORK, size=2))
+        while not FORK[0] <= 360 - left - right <= FORK[1]:
+            left, right = (float(gap) for gap in rng.uniform(*FORK, size=2))
+        return [-180 + right, 180 - left]
+    return _around(clause, rng)
+
+
+def _near(angle: float, most: float, rng: Rng) -> float:
+    return angle + float(rng.uniform(-most, most))
+
+
+def _around(clause: JunctionClause, rng: Rng) -> list[float]:
+    """Returns the arms of a star junction or a roundabout, spread around it."""
+    counts = overlap(ARMS[clause.kind], span(clause.arms)) or ARMS[clause.kind]
+    asked = span(clause.exit)
+    fewest = max(counts.lo, min(asked.lo if asked.lo < counts.hi else counts.hi, counts.hi))
+    if clause.kind == "roundabout" and clause.arms is None and clause.take is not None:
+        fewest = max(fewest, 4.0 if clause.take == "straight" else 3.0)
+    count = int(rng.integers(int(fewest), int(counts.hi) + 1))
+    if clause.arms is None and clause.kind == "roundabout" and int(fewest) <= 4:
+        count = 4 if rng.random() < 0.6 else count
+    if count == 4 and clause.kind == "roundabout":
+        return [_near(angle, ACROSS, rng) for angle in (-90.0, 0.0, 90.0)]
+    gap = 360 / count
+    least = STAR if clause.kind == "star" else RING_GAP
+    spread = max(0.0, (gap - least) / 2)
+    return [_near(-180 + gap * n, spread, rng) for n in range(1, count)]
+
+
+def sides_of(angles: Sequence[float]) -> list[Way]:
+    """Returns the side to which each arm leads, for directions in degrees."""
+    return ["left" if angle > SIDE else "right" if angle < -SIDE else "straight" for angle in angles]
+
+
+def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
+    """Returns whether no arm is too near to another, and all arms lead where they are required."""
+    apart = all(b - a >= ASTERN + 1 for a, b in pairwise([-180.0, *angles, 180.0]))
+    unclear = [angle for angle in angles if STRAIGHT < abs(angle) < CLEAR]
+    is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
+    has_ways = not clause.ways or sorted(sides_of(angles)) == sorted(clause.ways)
+    return apart and is_clear and has_ways
+
+
+def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | None:
+    """Returns the index of the arm on which the route goes on; None if no arm will do.
+
+    The index is that of the last arm and one more if the route turns back at a roundabout.
+    """
+    count = len(angles)
+    if clause.take == "back":
+        return count
+    exits = span(clause.exit)
+    allowed = [n for n in range(count) if n + 1 in exits]
+    if clause.exit is not None and not allowed:
+        return count if count + 1 in exits else None
+    if clause.take is None:
+        return allowed[int(rng.integers(len(allowed)))]
+    return _towards(clause, angles)
+
+
+def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
+    """Returns the index of the arm in the required direction."""
+    take = clause.take
+    if clause.kind == "y_junction":
+        return len(angles) - 1 if take == "left" else 0
+    sides = sides_of(angles)
+    lefts = [n for n, angle in enumerate(angles) if angle > CLEAR]
+    rights = [n for n, angle in enumerate(angles) if angle < -CLEAR]
+    if take == "straight":
+        ahead = [n for n, angle in enumerate(angles) if abs(angle) <= STRAIGHT]
+        return ahead[0] if len(ahead) == 1 else None
+    if take in ("left", "right"):
+        found = lefts if take == "left" else rights
+        is_only = len(found) == 1 and sides.count(take) == 1
+        return found[0] if is_only else None
+    if take in ("sharp_left", "slight_left"):
+        return (lefts[-1] if take == "sharp_left" else lefts[0]) if lefts else None
+    return (rights[0] if take == "sharp_right" else rights[-1]) if rights else None
+
+
+def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: float) -> float:
+    """Returns the radius of the central island in metres."""
+    if clause.kind != "roundabout":
+        return ISLANDS[0]
+    allowed = span(clause.radius)
+    if clause.size is not None:
+        outer = SIZES[clause.size].drawn_in(0.5, 0.1)
+        allowed = overlap(allowed, _island(outer)) or allowed
+    elif clause.radius is None:
+        allowed = Range(*ISLANDS)
+    gaps = [b - a for a, b in pairwise([-180.0, *angles, 180.0])]
+    usual = (2 * MOUTH + BETWEEN) / (min(gaps) * pi / 180)
+    low, high = max(allowed.lo, 3.0), min(allowed.hi, max(allowed.lo, 3.0) * 1.5 + 5)
+    drawn = low + (high - low) * float(rng.random()) * (1 - haste)
+    return min(max(drawn, min(usual, high)), high) if clause.radius is None else drawn
+
+
+def _island(outer: Range) -> Range:
+    """Returns the radii of islands for outer diameters in metres."""
+    low, high = (each / 2 - ring_width(each / 2 - 5.0) for each in (outer.lo, outer.hi))
+    return Range(low, high)

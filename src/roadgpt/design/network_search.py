@@ -1,0 +1,224 @@
+"""Searches for a route through junctions: tries random drafts until one fits on the map and breaks no rule.
+
+Each road between junctions is drafted like any road, and each junction is drawn within its requirements. The
+sketch of the whole is checked first: nothing may overlap, and it must fit on the map. Then the rules must
+accept the network that is built from it.
+"""
+
+from collections import Counter
+from collections.abc import Sequence
+from itertools import accumulate
+from math import inf
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.amount import Amount, between, exactly, span
+from roadgpt.brief.model import Brief
+from roadgpt.brief.words import ROAD, Range
+from roadgpt.design.junction_draft import drawn_junction
+from roadgpt.design.layout import PlanLine, place
+from roadgpt.design.network_sketch import is_clear, sketched
+from roadgpt.design.road_search import RoadSearch
+from roadgpt.design.variety import Shapes
+from roadgpt.design.writing import start_height
+from roadgpt.errors import DesignError
+from roadgpt.network import JunctionDesign, NetworkDesign, Route, build_route, passing_length
+from roadgpt.plural import plural
+from roadgpt.road import Segment, World
+
+DRAFTS = 400  # for one route, at most
+NO_HASTE = 12  # drafts without haste
+STRETCHES = 12  # drafts of one road between junctions
+BUILT = 60  # drafts that fit and break a rule, after which the search is given up
+LONG = 150.0  # m, of a road that is easier to place if it has several turns
+HURRIED = 1 / 8  # of haste from the start, for each junction beyond the second
+CURVED = 0.4  # share of roads without requirements that have a turn
+SHORTEST = 30.0  # m, of a road without requirements
+ROOM = 360.0  # m of roads without requirements on the usual map, all together
+MOST = 130.0  # m, of one such road
+TURNING = 45.0  # m more for such a road with a turn
+PARTS = 250.0  # m, the usual map
+STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
+
+
+Draft = tuple[PlanLine, tuple[Segment, ...]]
+"""The line and the segments of a road between junctions."""
+
+
+class NetworkSearch:
+    """The search for one route."""
+
+    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
+        """Prepares the search.
+
+        Args:
+            brief: the requirements, with junctions.
+            world: size of the map, and limits that the rules check.
+            rng: random number generator.
+        """
+        self.brief, self.world, self.rng = brief, world, rng
+        self.failed: Counter[str] = Counter()
+
+    def run(self) -> NetworkDesign:
+        """Returns the first draft that is accepted.
+
+        Raises:
+            DesignError: no draft was accepted; the message says why most of them failed.
+        """
+        built, least = 0, HURRIED * max(len(self.brief.junctions) - 2, 0)
+        for number in range(DRAFTS):
+            haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE)) ** 0.5
+            design = self._draft(min(max(haste, least), 1.0))
+            if design is None:
+                continue
+            built += 1
+            route = build_route(design, self.world)
+            findings = check.inspect(route, self.brief, self.world)
+            if not findings and self._has_length(route):
+                return design
+            self.failed[findings[0].sentence if findings else "its length"] += 1
+            if built == BUILT:
+                break
+        raise DesignError(self._advice())
+
+    def _draft(self, haste: float) -> NetworkDesign | None:
+        junctions = self._junctions(haste)
+        drafts = None if junctions is None else self._stretches(junctions, haste)
+        if junctions is None or drafts is None:
+            return None
+        after = accumulate(len(segments) for _, segments in drafts)
+        placed = [
+            junction.model_copy(update={"after": number})
+            for junction, number in zip(junctions, after, strict=False)
+        ]
+        return self._placed(drafts, tuple(placed))
+
+    def _junctions(self, haste: float) -> list[JunctionDesign] | None:
+        found = []
+        for clause in self.brief.junctions:
+            junction = drawn_junction(clause, 1, self.rng, haste)
+            if junction is None:
+                self.failed[f"no {clause.name} has these ways on"] += 1
+                return None
+            found.append(junction)
+        return found
+
+    def _stretches(self, junctions: Sequence[JunctionDesign], haste: float) -> list[Draft] | None:
+        """Returns a draft of each road between the junctions; None if one of them cannot be drafted.
+
+        The roads of which nothing is required are drafted last: they make up the length of the whole route.
+        """
+        briefs = self.brief.stretches
+        free = [n for n, brief in enumerate(briefs) if brief.is_open]
+        found: dict[int, Draft] = {}
+        rest = self._rest(junctions)
+        for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
+            share = None
+            if rest is not None and n in free:
+                left = rest - sum(line.s[-1] for line, _ in found.values())
+                share = left / sum(each not in found for each in free)
+            draft = self._stretch(briefs[n], haste, share)
+            if draft is None:
+                self.failed["one of its roads cannot be drafted"] += 1
+                return None
+            found[n] = draft
+        return [found[n] for n in range(len(briefs))]
+
+    def _rest(self, junctions: Sequence[JunctionDesign]) -> float | None:
+        """Returns the length in metres that the roads between junctions share; None if it is open."""
+        if self.brief.length is None:
+            return None
+        asked = asked_length(self.brief.length)
+        low, high = max(asked.lo, 0.0), min(asked.hi, 1.3 * max(asked.lo, SHORTEST))
+        inside = sum(passing_length(junction, self.world.section.lane_width) for junction in junctions)
+        return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
+
+    def _stretch(self, brief: Brief, haste: float, length: float | None) -> Draft | None:
+        """Returns a draft of a road between junctions; None if no draft was accepted.
+
+        Args:
+            brief: the requirements for the road.
+            haste: from 0 to 1; the larger it is, the shorter the road.
+            length: the length in metres that the road should have; None if it is open.
+        """
+        wanted = brief
+        if length is not None:
+            if length < SHORTEST:
+                return None
+            wanted = Brief(length=between(0.97 * length, 1.03 * length))
+        elif brief.is_open:
+            wanted = self._open(haste)
+        elif brief.length is None and not brief.clauses and brief.turns is None:
+            free = self._open(haste, is_straight=True)
+            wanted = brief.model_copy(update={"length": free.length, "turns": free.turns})
+        search = RoadSearch(wanted, self.world, Shapes().of(()), self.rng)
+        for _ in range(STRETCHES):
+            found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
+            if found is not None:
+                return found
+        self.failed.update(search.failed)
+        return None
+
+    def _open(self, haste: float, is_straight: bool = False) -> Brief:
+        """Returns requirements for a road of which nothing is required: short, and with a turn at most."""
+        count = len(self.brief.stretches)
+        most = min(MOST, ROOM * self.world.site.map_size / PARTS / count)
+        high = SHORTEST + 5 + (most - SHORTEST) * (1 - haste) * float(self.rng.random())
+        if is_straight or self.rng.random() > CURVED * (1 - haste):
+            return Brief(turns=exactly(0), length=between(SHORTEST * (1 - 0.3 * haste), high))
+        return Brief(turns=exactly(1), degrees=between(18, 70), length=between(SHORTEST, high + TURNING))
+
+    def _placed(
+        self,
+        drafts: Sequence[Draft],
+        junctions: tuple[JunctionDesign, ...],
+    ) -> NetworkDesign | None:
+        """Returns the design of a draft, placed on the map; None if it overlaps itself or does not fit."""
+        section = self.world.section
+        turns_back = junctions[-1].taken is None
+        if turns_back and not self.brief.stretches[-1].is_open:
+            self.failed["it turns back, so it cannot go on on another road"] += 1
+            return None
+        driven = drafts[:-1] if turns_back else drafts
+        sketch = sketched([line for line, _ in drafts], junctions, section.lane_width)
+        if not is_clear(sketch, section.lane_width, section.shoulder):
+            self.failed["its roads would overlap"] += 1
+            return None
+        pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng)
+        if pose is None:
+            self.failed["too large"] += 1
+            return None
+        low, high = STARTS_AT
+        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
+        every = tuple(segment for _, segments in driven for segment in segments)
+        return NetworkDesign(
+            starting_point=(pose.x, pose.y, start_height(every, ground)),
+            theta=pose.theta,
+            segments=every,
+            junctions=junctions,
+        )
+
+    def _has_length(self, route: Route) -> bool:
+        return route.length in asked_length(self.brief.length)
+
+    def _advice(self) -> str:
+        """Returns why most drafts failed and what to do, as one sentence."""
+        why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
+        size = self.world.site.map_size
+        if why in ("too large", "its roads would overlap"):
+            count = plural(len(self.brief.junctions), "junction")
+            return (
+                f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "
+                "shorter roads, or give a larger map with --map-size"
+            )
+        return f"no draft of this route was accepted: {why}; leave something out"
+
+
+def asked_length(length: Amount | None) -> Range:
+    """Returns the range of lengths in metres that is allowed for a route."""
+    asked = span(length)
+    if length is None or not length.exact:
+        return asked
+    slack = ROAD["length"].slack(asked.lo)
+    return Range(asked.lo - slack, asked.hi + slack if asked.hi < inf else inf)

@@ -1,0 +1,263 @@
+"""Searches for a road: tries random drafts until one meets the Brief, is valid and unlike earlier roads.
+
+Each draft is checked, the cheapest check first: it must fit on the map, keep clear of itself, differ from
+earlier roads and meet the requirements as measured on its line; then the rules must accept the road that is
+built from it. After the first drafts, straights and turns become a little shorter with every draft.
+Requirements that leave little room are therefore met by a later draft, and only those that cannot be met are
+refused.
+"""
+
+from collections import Counter
+from functools import lru_cache
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.map_fit import check_room
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal
+from roadgpt.brief.outline import Outline, outline
+from roadgpt.brief.refusal import NoRoomError
+from roadgpt.check.bumps import asks_for_bumps
+from roadgpt.design.advice import (
+    FOR_ROOM,
+    LIKELY,
+    advice,
+    larger_map,
+    main_reason,
+    metres_of,
+    roomier,
+    too_fast,
+)
+from roadgpt.design.compose import composed
+from roadgpt.design.grade_correction import corrected_draft
+from roadgpt.design.growth import grown, is_long
+from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, keeps_clear, place, smallest_box, walk
+from roadgpt.design.sequence import drawn_sequence
+from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
+from roadgpt.design.vertical import EASES, Pace
+from roadgpt.design.writing import design_at
+from roadgpt.errors import DesignError, RoadGPTError
+from roadgpt.road import Design, Road, Segment, World, build
+
+DRAFTS = 320  # for one road, at most
+ALIKE = 120  # drafts like earlier roads, after which the least similar one is taken
+ALIKE_STRAIGHTS = 12  # the same for a road without turns, where only the length can differ
+CHOOSY = 1 / 8  # share of these drafts during which roads that only continue an earlier one count as alike
+CROWDED = 400  # earlier roads, above which that share is divided by three
+FINISHED = 100  # drafts that fit and fail a requirement or rule, after which the search is given up
+LAST_RESORTS = 20  # drafts like earlier roads that are finished if there are no others
+TRIALS = (1, 2, 3, 4)  # seeds with which ``fits`` tests whether there is room
+TRIED = 110  # drafts for each of these seeds
+GROWN = 20  # grown drafts of a road of required length, if no composed draft was accepted
+GROWN_ON_TRIAL = 5  # the same in ``fits``
+NO_HASTE = 16  # drafts without haste
+SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its own shoulders
+FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
+SLOWER = (50.0, 30.0)  # km/h, speed limits that may be advised
+EASES_OF_BUMPS = (0.12, 0.08, 0.0)  # shares of comfort that are also tried where a crest or a dip is required
+STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
+
+
+def fits(brief: Brief, world: World) -> bool:
+    """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
+    try:
+        searches = [RoadSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+        return all(search.found(TRIED) is not None for search in searches)
+    except DesignError:
+        return False
+
+
+@lru_cache(maxsize=256)
+def sufficient_map(brief: Brief, world: World) -> float | None:
+    """Returns the side in metres of a map large enough for a road, if the map of the World is too small.
+
+    Returns None if the World's map is large enough, if no larger map would help, or if the route has
+    junctions.
+    """
+    if brief.junctions:
+        return None
+    try:
+        check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
+        searches = [RoadSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+    except NoRoomError:
+        return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
+    except RoadGPTError:
+        return None
+    failed = next((search for search in searches if search.found(TRIED) is None), None)
+    if failed is None or main_reason(failed.failed) not in FOR_ROOM:
+        return None
+    return larger_map(brief, world, fits, roomier(world, failed.boxes))
+
+
+class RoadSearch:
+    """The search for one road."""
+
+    def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:
+        """Prepares the search.
+
+        Args:
+            brief: the requirements for the road.
+            world: size of the map, and limits that the rules check.
+            others: the shapes of earlier roads, from which the road has to differ.
+            rng: random number generator.
+
+        Raises:
+            DesignError: the requirements contradict each other.
+        """
+        self.brief, self.world, self.others, self.rng = brief, world, others, rng
+        self.outline: Outline = outline(brief, world.site.map_size)
+        if self.outline.turns.lo > self.outline.turns.hi:
+            low, high = self.outline.turns.lo, self.outline.turns.hi
+            raise DesignError(
+                f"asked for {low:g} turns, and for {high:g} at most; change one of these numbers"
+            )
+        self.windows = Windows(self.outline, world)
+        self.bumps = asks_for_bumps(brief)
+        self.failed: Counter[str] = Counter()
+        self.failed_on_heights = 0
+        self.boxes: list[float] = []
+
+    def run(self) -> tuple[Design, Road]:
+        """Returns the first draft that is accepted; if all are like earlier roads, one of the least similar.
+
+        Raises:
+            DesignError: no draft was accepted.
+        """
+        found = self.found()
+        if found is None:
+            slower = self._speed_that_would_do()
+            if slower:
+                raise DesignError(too_fast(self.world, slower))
+            raise DesignError(advice(self.brief, self.outline, self.world, self.failed, self.boxes, fits))
+        return found
+
+    def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
+        """Returns the first draft that is accepted, or None."""
+        alike: list[tuple[float, int, PlacedPlan]] = []
+        finished = 0
+        most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
+        choosy = CHOOSY * most_alike / (3 if len(self.others.reach) > CROWDED else 1)
+        grows = is_long(self.outline)
+        growths = GROWN if drafts == DRAFTS else GROWN_ON_TRIAL
+        most = growths if grows else drafts + (growths if self.outline.length else 0)
+        for number in range(most):
+            haste = max(0.0, (number - NO_HASTE) / (drafts - NO_HASTE))
+            is_grown = grows or number >= drafts
+            drafted = self._growth() if is_grown else self._plan(haste)
+            if drafted is None:
+                continue
+            if not is_grown and not keeps_clear(drafted.line, self.world, number < SHOULDERS * drafts):
+                self.failed["over itself"] += 1
+                continue
+            shape = shape_of(drafted.line.s, drafted.line.z)
+            away = nearest(shape, self.others, by_metres=len(alike) < choosy)
+            if away < ENOUGH * min(1.0, 1.5 * (1 - len(alike) / most_alike)):
+                self.failed["like an earlier road"] += 1
+                alike.append((-away, number, drafted))
+                if len(alike) == most_alike:
+                    break
+                continue
+            finished += 1
+            found = self._finished(drafted)
+            if found:
+                return found
+            if finished == FINISHED:
+                break
+        for _, _, drafted in sorted(alike)[:LAST_RESORTS]:
+            found = self._finished(drafted)
+            if found:
+                return found
+        return None
+
+    def _growth(self) -> PlacedPlan | None:
+        """Returns a plan that was drafted turn by turn on the map.
+
+        Returns None if it ran out of room, or if no length is required.
+        """
+        if self.outline.length is None:
+            return None
+        order = drawn_sequence(self.outline, self.rng, plain=True)
+        found = grown(order, self.outline, self.windows, self.world, self.rng)
+        if found is None:
+            self.failed["too large"] += 1
+        return found
+
+    def _speed_that_would_do(self) -> float | None:
+        """Returns a lower speed limit in km/h at which the required slopes are possible.
+
+        Returns None if there is none, or if only a few drafts failed because of their slopes.
+        """
+        if self.failed_on_heights < FAILED_ON_HEIGHTS:
+            return None
+        limits = [kmh for kmh in SLOWER if kmh / 3.6 < self.world.limits.speed_limit]
+        worlds = [self.world.changed(speed_limit=kmh / 3.6) for kmh in limits]
+        return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
+
+    def _plan(self, haste: float) -> PlacedPlan | None:
+        order = drawn_sequence(self.outline, self.rng, plain=haste > 0.5)
+        elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        if elements is None:
+            self.failed["longer than was asked for"] += 1
+            return None
+        line = walk(elements)
+        where = place(line, self.world, self.rng)
+        if where is None:
+            self.failed["too large"] += 1
+            self.boxes.append(smallest_box(line))
+            return None
+        return PlacedPlan(elements, line, where)
+
+    def _finished(self, drafted: PlacedPlan) -> tuple[Design, Road] | None:
+        """Returns the Design and the Road of a plan; None if they violate a requirement or a rule."""
+        segments = self._with_heights(drafted)
+        if segments is None:
+            return None
+        low, high = STARTS_AT
+        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
+        design = design_at(drafted.place, segments, ground)
+        road = build(design)
+        objections = check.inspect(road, self.brief, self.world)
+        if objections:
+            self.failed[objections[0].sentence] += 1
+            return None
+        return design, road
+
+    def stretch(self, haste: float, plain: bool = True) -> tuple[PlanLine, tuple[Segment, ...]] | None:
+        """Returns one draft of a road between junctions, not placed on the map: its line and its segments.
+
+        Returns None if the draft does not meet the requirements, or overlaps itself.
+
+        Args:
+            haste: from 0 to 1; the larger it is, the shorter the road.
+            plain: whether it has as few turns as the requirements allow.
+        """
+        order = drawn_sequence(self.outline, self.rng, plain)
+        elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
+        if elements is None:
+            return None
+        line = walk(elements)
+        if not keeps_clear(line, self.world, with_shoulders=True):
+            return None
+        segments = self._with_heights(PlacedPlan(elements, line, MapPose(0.0, 0.0, 0.0)))
+        return None if segments is None else (line, segments)
+
+    def _with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
+        """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
+        pace = Pace.along(drafted.elements, self.world)
+        tries = [(ease, False) for ease in (*EASES, EASES[-1])]
+        tries += [(ease, True) for ease in EASES_OF_BUMPS] if self.bumps else []
+        for ease, bumps in tries:
+            sloped = drawn_heights(drafted.elements, self.outline, self.windows, self.rng, pace, ease, bumps)
+            for share in dict.fromkeys((1.0, ease)):  # what is not required may be comfortable after all
+                segments, broken = corrected_draft(
+                    sloped, drafted.line, self.outline, self.windows.limit, pace, ease, share, bumps
+                )
+                if not broken:
+                    return segments
+                self.failed[broken[0].sentence] += 1
+                if not any(complaint.on_heights for complaint in broken):
+                    return None
+                self.failed_on_heights += 1
+        return None
