@@ -7,6 +7,7 @@ from roadgpt.scene.mesh import PLAIN
 from roadgpt.scene.textures import linear
 
 CONCRETE, PAINT, GLASS, TRIM, TYRE, RIM, GAP, TAIL, HEAD, PLATE, HIGH = range(PLAIN, PLAIN + 11)
+WHITE, RED, YELLOW, GREEN, BLACK = range(PLAIN + 11, PLAIN + 16)
 
 _COLOURS = {
     CONCRETE: (158, 154, 148),
@@ -20,6 +21,11 @@ _COLOURS = {
     HEAD: (224, 228, 232),
     PLATE: (232, 232, 226),
     HIGH: (70, 12, 14),
+    WHITE: (230, 230, 226),
+    RED: (190, 22, 30),
+    YELLOW: (240, 186, 20),
+    GREEN: (30, 150, 70),
+    BLACK: (36, 38, 40),
 }
 PALETTE = np.array([[*linear(*_COLOURS[kind]), 0.0, 0.0, 0.0] for kind in sorted(_COLOURS)])
 """Shape (n, 6): three columns of linear colour, and three of emitted light."""

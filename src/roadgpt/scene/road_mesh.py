@@ -1,5 +1,6 @@
 """Builds the meshes of the road: carriageway and shoulders as one surface, embankments, and posts."""
 
+from collections.abc import Callable
 from functools import cache
 from itertools import pairwise
 
@@ -27,15 +28,16 @@ POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
     """Returns all patches that belong to the road."""
     profile = world.profile_of(road)
-    s = _stations(road, profile.reach)
+    s = stations_between(road, profile.reach)
     if not profile.has_shoulders:
-        return [*_surface(road, profile, s), *_slab(road, profile, s)]
+        return [*surface(road, profile, s), *slab(road, profile, s)]
     banks = embankments(road, profile, s, terrain.land)
-    slopes = [patch for bank in banks for patch in _slope(bank, terrain)]
-    return [*_surface(road, profile, s), *slopes, *_posts(road, profile)]
+    slopes = [patch for bank in banks for patch in slope(bank, terrain)]
+    return [*surface(road, profile, s), *slopes, *posts(road, profile)]
 
 
-def _stations(road: Road, rim: float) -> Array:
+def stations_between(road: Road, rim: float) -> Array:
+    """Returns stations, at most ``LONGEST`` apart, for lines up to ``rim`` metres beside the centre line."""
     s = stations(road, rim, CHORD)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
     steps = np.repeat(np.diff(s) / parts, parts)
@@ -49,8 +51,9 @@ def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
     ]
 
 
-def _surface(road: Road, profile: Profile, s: Array) -> list[Patch]:
-    """Returns the surface from the right rim to the left one; the surface coordinates are s and t."""
+def surface(road: Road, profile: Profile, s: Array, start: float = 0.0) -> list[Patch]:
+    """Returns the surface from the right rim to the left one; the surface coordinates are ``start`` + s, and
+    t."""
     bounds = [t for _, t in reversed(profile.boundaries(s))]
     offsets = [bounds[0]]
     for one, other in pairwise(bounds):
@@ -61,7 +64,7 @@ def _surface(road: Road, profile: Profile, s: Array) -> list[Patch]:
     rows = np.stack([line(road, s, t) for t in offsets], axis=1)
     light = daylight(_upwards(road, s))
     t = np.sign(np.stack(offsets, axis=1)) * np.linalg.norm(rows - road.at(s)[:, None], axis=-1)
-    return _blocks(rows, attributes(s[:, None], t, light[:, None]), ROAD)
+    return _blocks(rows, attributes(start + s[:, None], t, light[:, None]), ROAD)
 
 
 def _upwards(road: Road, s: Array) -> Array:
@@ -74,7 +77,7 @@ def _upwards(road: Road, s: Array) -> Array:
     return np.asarray(up / np.linalg.norm(up, axis=-1, keepdims=True))
 
 
-def _slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
+def slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
     """Returns an embankment. Where the embankment is low, its foot is as bright as the land there, so that no
     edge is visible."""
     edge, foot, is_left = bank
@@ -89,7 +92,7 @@ def _slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
     return _blocks(rows, attributes(0.0, 0.0, light if is_left else light[:, ::-1]), GRASS)
 
 
-def _slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
+def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
     """Returns sides, underside and ends of a floating road."""
     left, right = (line(road, s, t) for t in profile.edges(s))
     down = np.array([0.0, 0.0, -THICK])
@@ -107,8 +110,9 @@ def _slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
     return out
 
 
-def _posts(road: Road, profile: Profile) -> list[Patch]:
-    """Returns the posts as upright boxes; the second surface coordinate is the height."""
+def posts(road: Road, profile: Profile, is_free: Callable[[Array], bool] = lambda place: True) -> list[Patch]:
+    """Returns the posts as upright boxes; the second surface coordinate is the height. A post is left out
+    where ``is_free`` of its place, shape ``(3,)``, is False."""
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
     model, facing = _post()
@@ -118,6 +122,8 @@ def _posts(road: Road, profile: Profile) -> list[Patch]:
         has_room = sign * (rim - edge) >= POST_FROM_RIM + 0.2
         places = line(road, s, rim - sign * POST_FROM_RIM)
         for place, heading in zip(places[has_room], road.heading(s)[has_room], strict=True):
+            if not is_free(place):
+                continue
             c, n = np.cos(heading), np.sin(heading)
             turn = np.array([[c, n, 0.0], [-n, c, 0.0], [0.0, 0.0, 1.0]])
             values = model.attributes.copy()

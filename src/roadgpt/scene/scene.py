@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 from roadgpt.errors import UsageError
 from roadgpt.export.ego import CAR
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
+from roadgpt.network.surface import NetworkSurface
 from roadgpt.road import Road, World
-from roadgpt.road.land import Land
+from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.scene.camera import Camera, Pose, axes_of
 from roadgpt.scene.car import palette_of, saloon
 from roadgpt.scene.mesh import Mesh
+from roadgpt.scene.network_mesh import StationAxis, land_of, network_patches
 from roadgpt.scene.raster import PLANE, SAMPLES, draw
 from roadgpt.scene.road_mesh import road_patches
 from roadgpt.scene.shade import shade, to_screen
@@ -62,17 +65,24 @@ class Scene:
             ExportError: the road has a number that is not finite.
         """
         road = world.lay(road)
-        land = Land.around(road, world)
+        if isinstance(road, Route):
+            return cls._of_network(road, world)
+        land, profile = Land.around(road, world), world.profile_of(road)
         terrain = LitTerrain(land)
         ground = Mesh.of([*road_patches(road, world, terrain), *terrain.patches()])
-        return cls(
-            road,
-            world,
-            land,
-            ground,
-            plant(road, world, land),
-            LaneBoundaries.of(world.profile_of(road), road.length),
-        )
+        trees = plant(road.centreline(LONGEST_STEP)[:, :2], profile.reach, land)
+        return cls(road, world, land, ground, trees, LaneBoundaries.of(profile, road.length))
+
+    @classmethod
+    def _of_network(cls, route: Route, world: World) -> "Scene":
+        """Builds the scene of a route, with all roads of its network."""
+        parts, land = NetworkSurface.of(route.network), land_of(route, world)
+        terrain = LitTerrain(land)
+        widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
+        axis = StationAxis.of(parts.roads, widest)
+        ground = Mesh.of([*network_patches(route, parts, axis, terrain), *terrain.patches()])
+        lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
+        return cls(route, world, land, ground, plant(lines[:, :2], parts.reach, land), axis.lanes)
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
         """Returns an RGB image ``(height, width, 3)`` of bytes from a camera on a car at ``pose``.

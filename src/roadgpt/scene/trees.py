@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Road, World
-from roadgpt.road.land import LONGEST_STEP, Land
+from roadgpt.road.land import Land
 from roadgpt.scene.light import SUN
 
 SEED = 11
@@ -36,8 +35,14 @@ class Trees:
     """Factor by which the brightness of each tree's picture is multiplied, (n,)."""
 
 
-def plant(road: Road, world: World, land: Land) -> Trees:
-    """Places trees in loose groups on the terrain, except near the road."""
+def plant(line: Array, reach: float, land: Land) -> Trees:
+    """Places trees in loose groups on the terrain, except near roads.
+
+    Args:
+        line: Points ``(n, 2)`` in metres on the centre lines of the roads.
+        reach: The distance in metres from the lines to the outer edges of the shoulders.
+        land: The terrain.
+    """
     rng = np.random.default_rng(SEED)
     x0, x1, y0, y1 = land.x[BORDER], land.x[-BORDER - 1], land.y[BORDER], land.y[-BORDER - 1]
     count = int(min(MOST, (x1 - x0) * (y1 - y0) / EACH))
@@ -49,9 +54,9 @@ def plant(road: Road, world: World, land: Land) -> Trees:
     heights = np.where(looks < BROAD, rng.uniform(6.0, 11.0, count), rng.uniform(8.0, 14.0, count))
     widths = heights * np.where(looks < BROAD, rng.uniform(0.85, 1.1, count), rng.uniform(0.42, 0.5, count))
     tints = rng.uniform(0.8, 1.12, count)
-    away = cKDTree(road.centreline(LONGEST_STEP)[:, :2]).query(spots)[0]
+    away = cKDTree(line).query(spots)[0]
     inside = (spots > (x0, y0)).all(axis=1) & (spots < (x1, y1)).all(axis=1)
-    kept = inside & (away > world.profile_of(road).reach + CLEAR + widths / 2)
+    kept = inside & (away > reach + CLEAR + widths / 2)
     foot = np.column_stack([spots, land.height(spots[:, 0], spots[:, 1]) - 0.15])
     return Trees(foot[kept], np.column_stack([heights, widths])[kept], looks[kept], tints[kept])
 

@@ -1,0 +1,95 @@
+"""Builds the signs and lights of junctions from flat polygons with one colour each."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry.curve import Array
+from roadgpt.network.markings import JunctionSign
+
+SignColour = Literal["grey", "white", "red", "yellow", "green", "black"]
+
+POLE, POLE_SIDES = 0.04, 6  # m, radius of a post
+FOOT = 0.5  # m by which a post reaches into the ground
+LAYER = 0.012  # m between two colours of a sign
+MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.6}
+"""Height in metres of the middle of each sign above the foot of its post."""
+OCTAGON = np.pi / 8 + np.arange(8) * np.pi / 4
+TRIANGLE = np.pi / 2 + np.arange(3) * 2 * np.pi / 3 + np.pi
+DIAMOND = np.arange(4) * np.pi / 2
+BOX, LENS = (0.32, 0.96, 0.25), 0.11  # m: width, height and depth of a traffic light; radius of a lens
+
+
+class SignFace(NamedTuple):
+    """One flat polygon of a sign."""
+
+    colour: SignColour
+    points: Array
+    """Corners ``(n, 3)`` in metres, counter-clockwise as seen from the visible side; the polygon is
+    convex."""
+
+
+def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
+    """Yields the faces of a sign with its post. Those of the front come after those behind them."""
+    top = MIDDLE[sign.control]
+    yield from _tube(sign, POLE, -FOOT, top)
+    if sign.control == "lights":
+        yield from _lights(sign, top)
+        return
+    for layer, (colour, outline) in enumerate(_layers(sign)):
+        ahead = POLE + LAYER * (layer + 1)
+        if not layer:
+            yield SignFace("grey", _placed(sign, outline[::-1], top, ahead))
+        yield SignFace(colour, _placed(sign, outline, top, ahead))
+
+
+def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
+    """Returns the colours of a sign's front from the back to the front, each with its outline ``(n, 2)``."""
+    if sign.control == "stop":
+        bar = np.array([[-0.3, -0.07], [0.3, -0.07], [0.3, 0.07], [-0.3, 0.07]])
+        return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), ("white", bar)]
+    if sign.control == "yield":
+        return [("red", _polygon(TRIANGLE, 0.52)), ("white", _polygon(TRIANGLE, 0.33))]
+    return [("white", _polygon(DIAMOND, 0.45)), ("yellow", _polygon(DIAMOND, 0.33))]
+
+
+def _polygon(angles: Array, radius: float) -> Array:
+    return radius * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def _placed(sign: JunctionSign, outline: Array, height: float, ahead: float) -> Array:
+    """Returns a polygon in a plane that faces the traffic; x of the outline is to the reader's right."""
+    c, s = np.cos(sign.heading), np.sin(sign.heading)
+    right, towards = np.array([s, -c, 0.0]), np.array([-c, -s, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    foot = np.array(sign.place)
+    return np.asarray(foot + outline[:, :1] * right + (outline[:, 1:] + height) * up + ahead * towards)
+
+
+def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterator[SignFace]:
+    angles = np.arange(POLE_SIDES + 1) * 2 * np.pi / POLE_SIDES
+    ring = np.array(sign.place) + np.column_stack(
+        [radius * np.cos(angles), radius * np.sin(angles), 0 * angles]
+    )
+    for one, two in pairwise(ring):
+        down, up = np.array([0, 0, low]), np.array([0, 0, high])
+        yield SignFace("grey", np.array([one + down, two + down, two + up, one + up]))
+
+
+def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
+    """Yields a box with three lenses."""
+    wide, high, deep = BOX
+    x, y = np.array([-1, 1, 1, -1]) * wide / 2, np.array([-1, -1, 1, 1]) * high / 2
+    front = _placed(sign, np.column_stack([x, y]), middle, deep)
+    back = _placed(sign, np.column_stack([x, y]), middle, 0.0)
+    yield SignFace("black", front)
+    yield SignFace("black", back[::-1])
+    for k in range(4):
+        n = (k + 1) % 4
+        yield SignFace("black", np.array([back[k], back[n], front[n], front[k]]))
+    lens = _polygon(np.arange(12) * np.pi / 6, LENS)
+    colours: tuple[SignColour, ...] = ("green", "yellow", "red")
+    for k, colour in enumerate(colours):
+        yield SignFace(colour, _placed(sign, lens + [0.0, (k - 1) * 0.29], middle, deep + LAYER))

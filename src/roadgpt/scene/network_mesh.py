@@ -1,0 +1,238 @@
+"""Builds the meshes of a network: roads, level junctions, islands, lines, signs, and banks around them.
+
+The colours of asphalt and shoulders follow from two coordinates: a station s and an offset t, with the
+offsets of lane boundaries at each station. All roads of a network lie one after another on one axis of
+stations. Two more stretches of this axis stand for junctions: one has boundaries so far away that nothing is
+painted, and on the last one the carriageway ends at t = 0.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
+from roadgpt.geometry.curve import Array
+from roadgpt.network import NetworkRoad, Route
+from roadgpt.network.markings import signs, strokes
+from roadgpt.network.polygon import Area
+from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
+from roadgpt.road import World
+from roadgpt.road.land import LONGEST_STEP, Land
+from roadgpt.road.profile import LINE as PAINTED
+from roadgpt.scene.junction_signs import SignColour, faces_of
+from roadgpt.scene.light import daylight, level_light
+from roadgpt.scene.mesh import GRASS, ROAD, Patch, attributes, grid
+from roadgpt.scene.palette import BLACK, CONCRETE, GREEN, RED, RIM, WHITE, YELLOW
+from roadgpt.scene.road_mesh import posts, slab, slope, stations_between, surface
+from roadgpt.scene.surfaces import INSET, LINE, PERIOD, LaneBoundaries
+from roadgpt.scene.terrain import LitTerrain
+
+FAR = 1e4  # m, of boundaries that nothing comes near
+BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
+LIFT = 0.006  # m by which lines lie above the road
+KERB = 0.12  # m, height of a traffic island
+CHECKS = 8  # squares across the lane at the end of the route
+COLOURS: dict[SignColour, int] = {
+    "grey": RIM, "white": WHITE, "red": RED, "yellow": YELLOW, "green": GREEN, "black": BLACK,
+}  # fmt: skip
+
+
+def land_of(route: Route, world: World) -> Land:
+    """Returns the terrain around a network; it is flat if the roads have no shoulders."""
+    parts = NetworkSurface.of(route.network)
+    lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
+    return Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
+
+
+@dataclass(frozen=True, eq=False)
+class StationAxis:
+    """The axis of stations on which all roads of a network lie, and the boundaries of lanes along it."""
+
+    starts: dict[int, float]
+    """The station at which each road begins, by the id of the road."""
+    plain: float
+    """The first station of the stretch on which nothing is painted."""
+    kerb: float
+    """The first station of the stretch on which the carriageway ends at offset 0."""
+    lanes: LaneBoundaries
+
+    @classmethod
+    def of(cls, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
+        """Returns the axis of roads; ``widest`` is the extent in metres of the widest junction."""
+        starts, rows, at = {}, [], 0.0
+        for each in roads:
+            # a broken line begins with a dash at the start of each road
+            length = PERIOD * (math.ceil(each.road.length / PERIOD) + 1)
+            starts[each.id] = at
+            rows.append(_three(each, np.minimum(np.arange(length), each.road.length)))
+            at += length
+        plain, wide = at, math.ceil(widest) + 2
+        rows.append(np.tile([FAR, 0.9 * FAR, -FAR], (wide, 1)))
+        rows.append(np.tile([0.0, -FAR, -2 * FAR], (4, 1)))
+        marks = np.array([1, 2, 1])
+        offsets = np.ascontiguousarray(np.concatenate(rows))
+        # the marks of start and goal are drawn apart: none is near the ends of this axis
+        lanes = LaneBoundaries(offsets, marks, 1, 1.0, FAR * FAR)
+        return cls(starts, plain, plain + wide, lanes)
+
+
+def _three(member: NetworkRoad, s: Array) -> Array:
+    """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge."""
+    found = [t for _, t in member.profile.boundaries(s)]
+    return np.stack([found[0], np.zeros_like(s), found[-1]], axis=1)
+
+
+def network_patches(
+    route: Route, parts: NetworkSurface, axis: StationAxis, terrain: LitTerrain
+) -> list[Patch]:
+    """Returns all patches that belong to a network."""
+    out: list[Patch] = []
+    for member in parts.roads:
+        out += _road(route, member, axis.starts[member.id], terrain, parts.shoulder > 0)
+    for area in parts.areas:
+        out += _junction(area, axis)
+        if parts.shoulder > 0:
+            out += _banks(area, terrain)
+    for stroke in strokes(route.network):
+        if stroke.kind == "edge" and stroke.road is None:
+            out.append(_kerb_line(stroke.points, axis.kerb))
+        elif stroke.kind in ("stop", "give_way"):
+            out.append(_painted(stroke.points, stroke.width))
+    out += _start_and_goal(route)
+    for sign in signs(route.network):
+        out += [_flat(face.points, COLOURS[face.colour]) for face in faces_of(sign)]
+    return out
+
+
+def _road(
+    route: Route, member: NetworkRoad, start: float, terrain: LitTerrain, has_ground: bool
+) -> list[Patch]:
+    import shapely
+
+    road, profile = member.road, member.profile
+    s = stations_between(road, profile.reach)
+    out = surface(road, profile, s, start)
+    if not has_ground:
+        return [*out, *slab(road, profile, s)]
+    banks = list(embankments(road, profile, s, terrain.land))
+    free = (True, True, *free_ends(route.network, member))
+    out += [
+        patch for bank, is_free in zip(banks, free, strict=True) if is_free for patch in slope(bank, terrain)
+    ]
+    paved = route.network.paved
+
+    def is_beside(place: Array) -> bool:
+        return bool(shapely.distance(paved, shapely.Point(place[:2])) > 0.5)
+
+    return [*out, *posts(road, profile, is_beside)]
+
+
+def _junction(area: JunctionSurface, axis: StationAxis) -> list[Patch]:
+    """Returns the asphalt of a junction, its shoulder and its islands."""
+    out = [_level(area.paved, area.height, ROAD, axis.plain)]
+    if not area.shoulder.is_empty:
+        out.append(_level(area.shoulder, area.height, ROAD, axis.kerb, area.paved))
+        out += [_level(island, area.height, GRASS, 0.0) for island in area.green]
+    for island in area.kerbed:
+        out.append(_level(island, area.height + KERB, CONCRETE, 0.0))
+        ring = np.asarray(island.exterior.coords, float)[:, :2]
+        out.append(_wall(ring if island.exterior.is_ccw else ring[::-1], area.height, KERB))
+    return out
+
+
+def _level(area: Area, height: float, kind: int, station: float, beside: "Area | None" = None) -> Patch:
+    """Returns a level area; with ``beside``, its offsets are the distances from that area."""
+    import shapely
+
+    flat, triangles = triangulated(area)
+    if beside is None:
+        s, t = flat[:, 0] - flat[:, 0].min(), flat[:, 1] - flat[:, 1].min()
+    else:
+        s, t = flat[:, 0] + flat[:, 1], np.asarray(shapely.distance(beside, shapely.points(flat)))
+        s = s - s.min()
+    values = attributes(station + s, t, level_light())
+    if kind != ROAD:
+        values[:, :2] = 0.0
+    points = np.column_stack([flat, np.full(len(flat), height)])
+    return Patch(points, values, triangles, np.full(len(triangles), kind, np.int64))
+
+
+def _wall(ring: Array, foot: float, high: float) -> Patch:
+    """Returns a wall around a closed counter-clockwise ring ``(n, 2)``, seen from outside."""
+    low = np.column_stack([ring, np.full(len(ring), foot)])
+    return _strip(low, low + [0.0, 0.0, high], attributes(0.0, 0.0, np.full((len(ring), 2), 0.7)), CONCRETE)
+
+
+def _strip(right: Array, left: Array, values: Array, kind: int) -> Patch:
+    """Returns a strip between two lines ``(n, 3)``, seen from the side on which they run as their names say;
+    ``values`` ``(n, 2, 3)`` are the attributes of both."""
+    return grid(np.stack([right, left], axis=1), values, kind)
+
+
+def _offset(points: Array, t: float) -> Array:
+    """Returns a line moved to its left by ``t`` metres, each point along the mean of its two normals."""
+    along = np.gradient(points[:, :2], axis=0)
+    left = np.column_stack([-along[:, 1], along[:, 0]])
+    left /= np.maximum(np.linalg.norm(left, axis=1, keepdims=True), 1e-9)
+    return np.column_stack([points[:, :2] + t * left, points[:, 2]])
+
+
+def _kerb_line(points: Array, station: float) -> Patch:
+    """Returns asphalt with an edge line; the carriageway lies to the left of the points."""
+    edge = _offset(points, -PAINTED / 2) + [0.0, 0.0, LIFT]
+    inner = _offset(points, BESIDE - PAINTED / 2) + [0.0, 0.0, LIFT]
+    s = station + np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    values = attributes(s[:, None], np.array([0.0, -BESIDE]), level_light())
+    return _strip(edge, inner, values, ROAD)
+
+
+def _painted(points: Array, width: float, kind: int = WHITE) -> Patch:
+    lift = [0.0, 0.0, LIFT]
+    values = attributes(0.0, 0.0, np.full((len(points), 2), level_light()))
+    return _strip(_offset(points, -width / 2) + lift, _offset(points, width / 2) + lift, values, kind)
+
+
+def _start_and_goal(route: Route) -> list[Patch]:
+    """Returns a white line where the lane of the route begins, and a chequered band where it ends."""
+    assert route.profile is not None
+    left, right = (float(t) for t in route.profile.lane(0.0))
+    out = [_painted(route.at(np.full(2, 0.5), np.array([right + 0.25, left - 0.08])), LINE + 2 * INSET)]
+    left, right = (float(t) for t in route.profile.lane(route.length))
+    bounds = np.linspace(right + 0.25, left - 0.08, CHECKS + 1)
+    for row in range(2):
+        s = route.length - 0.25 - 0.5 * row
+        for k in range(CHECKS):
+            square = route.at(np.full(2, s), bounds[k : k + 2])
+            out.append(_painted(square, 0.5, WHITE if (row + k) % 2 else BLACK))
+    return out
+
+
+def _flat(points: Array, kind: int) -> Patch:
+    """Returns a convex polygon ``(n, 3)``."""
+    corners = np.arange(1, len(points) - 1)
+    triangles = np.stack([np.zeros_like(corners), corners, corners + 1], axis=1)
+    normal = np.cross(points[1] - points[0], points[2] - points[0])
+    light = daylight((normal / np.linalg.norm(normal))[None])[0]
+    values = attributes(0.0, 0.0, np.full(len(points), light))
+    return Patch(points, values, triangles, np.full(len(triangles), kind, np.int64))
+
+
+def _banks(area: JunctionSurface, terrain: LitTerrain) -> list[Patch]:
+    """Returns slopes from the outer edge of a junction's ground down to the land."""
+    import shapely
+
+    whole = shapely.union_all([area.paved, area.shoulder, *area.kerbed, *area.green])
+    out = []
+    for part in shapely.get_parts(whole):
+        ring = shapely.geometry.polygon.orient(shapely.Polygon(part.exterior)).exterior
+        edge = np.column_stack(
+            [np.asarray(ring.coords, float)[:, :2], np.full(len(ring.coords), area.height)]
+        )
+        near = _offset(edge, -OUTSIDE)
+        drop = area.height - np.minimum(terrain.land.height(near[:, 0], near[:, 1]), area.height) + FOOT
+        outward = (near - edge)[:, :2] / OUTSIDE
+        foot = np.column_stack([edge[:, :2] + RUN * drop[:, None] * outward, edge[:, 2] - drop])
+        values = attributes(0.0, 0.0, np.full((len(edge), 2), level_light()))
+        out.append(_strip(foot, edge, values, GRASS))
+    return out
