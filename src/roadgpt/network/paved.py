@@ -38,14 +38,19 @@ def filled(area: Area) -> Area:
 
 
 def ribbon(road: Road) -> "Polygon":
-    """Returns the polygon of a road's carriageway, its first side along the left edge."""
+    """Returns the polygon of a road's carriageway, which begins along the right edge.
+
+    The ends of the centre line are corners of it, because lanes of other roads may end there: rounding would
+    otherwise leave a gap between this road and a corner of another road on its end.
+    """
     from shapely import Polygon
 
     s = stations_of(road)
     assert road.profile is not None
     edges = road.profile.edges(s)
     left, right = road.at(s, edges.left), road.at(s, edges.right)
-    return Polygon(np.concatenate((right[:, :2], left[::-1, :2])))
+    first, last = road.at(s[[0]]), road.at(s[[-1]])
+    return Polygon(np.concatenate((right, last, left[::-1], first))[:, :2])
 
 
 def stations_of(road: Road) -> Array:
