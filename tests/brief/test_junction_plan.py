@@ -1,0 +1,177 @@
+"""Junctions in plans: what is read, written, said and refused."""
+
+from typing import get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from roadgpt.brief import read, sentence
+from roadgpt.brief.amount import Amount, at_least, between, exactly
+from roadgpt.brief.feasible import check
+from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Take, Way
+from roadgpt.brief.model import Brief, Clause
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.errors import BriefError
+
+AMOUNTS = st.one_of(
+    st.integers(1, 6).map(exactly),
+    st.integers(1, 6).map(at_least),
+    st.tuples(st.integers(1, 3), st.integers(4, 6)).map(lambda pair: between(*pair)),
+)
+JUNCTIONS = st.builds(
+    JunctionClause,
+    kind=st.sampled_from(get_args(JunctionKind)),
+    take=st.none() | st.sampled_from(get_args(Take)),
+    exit=st.none() | AMOUNTS,
+    arms=st.none() | AMOUNTS,
+    ways=st.lists(st.sampled_from(get_args(Way)), max_size=3).map(tuple),
+    control=st.none() | st.sampled_from(get_args(Control)),
+    skew=st.booleans(),
+    size=st.none() | st.sampled_from(get_args(IslandSize)),
+    radius=st.none() | AMOUNTS,
+)
+ROADS = st.sampled_from(
+    [
+        Brief(),
+        Brief(slope="up"),
+        Brief(clauses=(Clause(kind="turn", side="left", degrees=exactly(90)), Clause(kind="straight"))),
+        Brief(turns=exactly(3), length=exactly(120)),
+    ]
+)
+
+
+@st.composite
+def routes(draw: st.DrawFn) -> Brief:
+    junctions = draw(st.lists(JUNCTIONS, min_size=1, max_size=4))
+    stretches = draw(st.lists(ROADS, min_size=len(junctions) + 1, max_size=len(junctions) + 1))
+    length = draw(st.none() | AMOUNTS)
+    return Brief(junctions=tuple(junctions), stretches=tuple(stretches), length=length)
+
+
+@given(routes())
+def test_a_plan_with_junctions_reads_back_as_the_same_brief(brief: Brief) -> None:
+    assert read_plan(plan(brief)) == brief
+
+
+def test_junctions_and_roads_alternate() -> None:
+    brief = read_plan("straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 r=16 //")
+    assert brief.junctions == (
+        JunctionClause(kind="crossroads", take="left", control="lights"),
+        JunctionClause(kind="roundabout", exit=exactly(3), arms=exactly(4), radius=exactly(16)),
+    )
+
+
+def test_the_roads_of_a_route_are_plans_of_their_own() -> None:
+    brief = read_plan(
+        "straight 80 // crossroads left // turn x2 right | up // t_junction //|| len=300 beside(wet)"
+    )
+    assert brief.stretches == (
+        Brief(clauses=(Clause(kind="straight", length=exactly(80)),)),
+        Brief(clauses=(Clause(kind="turn", count=exactly(2), side="right"),), slope="up"),
+        Brief(),
+    )
+    assert brief.length == exactly(300)
+    assert brief.beside == ("wet",)
+    assert brief.friction == 0.6
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("straight // turn left // straight", "roads and junctions alternate"),
+        ("// t_junction", "roads and junctions alternate"),
+        ("// t_junction // // ", "roads and junctions alternate"),
+        ("t_junction left", "no clause 't_junction'"),
+        ("// t_junction sideways //", "no word 'sideways' for a junction"),
+        ("// t_junction left right //", "gives take of a junction twice"),
+        ("// roundabout exit=third //", "is not a number in a plan"),
+        ("// crossroads ways=up+down //", "ways are left or right or straight"),
+        ("// t_junction // || up", "only len and beside can be asked of a whole route"),
+        ("// t_junction // || hurry", "no word 'hurry'"),
+        ("// t_junction // straigt", "no clause 'straigt'"),
+    ],
+)
+def test_what_is_no_plan_is_refused_in_one_sentence(line: str, told: str) -> None:
+    with pytest.raises(BriefError, match=told) as caught:
+        read_plan(line)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("// y_junction straight //", "at a Y-junction one can go left or right"),
+        ("// t_junction arms=4 //", "a T-junction has 3 arms, not 4"),
+        ("// roundabout arms=4 exit=6 //", "has no exit 6"),
+        ("// roundabout exit=2 left //", "leave one of them out"),
+        ("// crossroads back //", "only at a roundabout"),
+        ("// crossroads exit=2 //", "has no exit"),
+        ("// crossroads mini //", "has no size"),
+        ("// t_junction r=20 //", "has no radius"),
+        ("// star skew //", "only crossroads are skew"),
+        ("// t_junction right ways=left+straight //", "has none right"),
+        ("// t_junction ways=left+left //", "2 different ways on"),
+        ("// crossroads ways=left+right //", "3 different ways on"),
+        ("// roundabout mini r=30 //", "a mini roundabout is 13 to 25 m wide"),
+        ("// roundabout back // straight", "ends on the road on which it came"),
+        ("// roundabout back // // t_junction //", "ends on the road on which it came"),
+        ("turn left 300 // t_junction //", "300"),
+        ("straight | turns=2 // t_junction // | up flat", "twice"),
+    ],
+)
+def test_a_junction_that_cannot_be_is_refused_with_what_to_change(line: str, told: str) -> None:
+    with pytest.raises(BriefError, match=told):
+        check(read_plan(line))
+
+
+def test_a_road_of_a_route_is_not_bound_by_the_map_alone() -> None:
+    check(read_plan("| len=400 // t_junction //"), map_size=250)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("// t_junction right stop //", "At a T-junction with a stop sign for the route turn right."),
+        (
+            "straight 80 // crossroads left lights // | up",
+            "A road with a straight of 80 metres; no turns, then at a crossroads with traffic lights turn "
+            "left, then an uphill road.",
+        ),
+        (
+            "// roundabout mini arms=3 exit=2 // || len=300",
+            "At a mini roundabout with 3 arms take the second exit, then 300 metres in all.",
+        ),
+        ("// crossroads skew //", "At a skew crossroads go on somewhere."),
+        (
+            "// t_junction straight ways=left+straight priority //",
+            "At a T-junction with ways on to the left and straight on where the route has priority go "
+            "straight on.",
+        ),
+        (
+            "// roundabout exit=2..3 r=16 //",
+            "At a roundabout whose island has a radius of 16 metres take exit 2 to 3.",
+        ),
+    ],
+)
+def test_a_route_is_said_in_driving_order(line: str, said: str) -> None:
+    assert sentence(read_plan(line)) == said
+
+
+def test_a_plan_with_junctions_is_read_by_the_plan_reader() -> None:
+    brief = read("// t_junction right //", reader="plan")
+    assert brief.junctions == (JunctionClause(kind="t_junction", take="right"),)
+    assert brief.words == "// t_junction right //"
+
+
+def test_a_route_needs_one_road_more_than_junctions() -> None:
+    with pytest.raises(ValueError, match="divide a route into 2 roads, and 1 are given"):
+        Brief(junctions=(JunctionClause(kind="star"),), stretches=(Brief(),))
+    with pytest.raises(ValueError, match="only a route with junctions has stretches"):
+        Brief(stretches=(Brief(),))
+
+
+def test_an_amount_of_arms_may_be_open() -> None:
+    check(read_plan("// roundabout arms=3..4 exit=2 //"))
+    check(read_plan("// star arms=5.. //"))
+    assert read_plan("// star arms=5.. //").junctions[0].arms == Amount(lo=5)

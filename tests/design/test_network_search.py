@@ -1,0 +1,230 @@
+"""Routes through junctions that the planner drafts: they are what was asked for, and they fit on the map.
+
+The junctions are measured here on the built network, and by an outside referee on the exported file where it
+is at hand.
+"""
+
+import importlib.util
+import json
+import math
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
+from roadgpt.check.measures import measure
+from roadgpt.design import draft, draft_road
+from roadgpt.design.designers.planner import Planner
+from roadgpt.errors import DesignError
+from roadgpt.export import save
+from roadgpt.network import Junction, NetworkDesign, Route, build_route, read_network_design
+from roadgpt.road import Site, World
+
+SHARED = Path(__file__).resolve().parents[3] / "shared"
+USUAL = World()
+CASES: dict[str, dict[str, Any]] = {
+    "// t_junction right //": {"sequence": [{"kind": "T", "take": "right"}]},
+    "// t_junction straight ways=left+straight priority //": {
+        "sequence": [
+            {
+                "kind": "T",
+                "take": "straight",
+                "exits": ["left", "straight"],
+                "control": "priority",
+                "other_control": "yield",
+            }
+        ]
+    },
+    "| len=80 // crossroads left lights //": {
+        "sequence": [{"kind": "X", "take": "left", "after": 80, "control": "lights", "all_control": "lights"}]
+    },
+    "// crossroads straight skew //": {"sequence": [{"kind": "X", "take": "straight", "skew": True}]},
+    "// y_junction left //": {"sequence": [{"kind": "Y", "take": "left"}]},
+    "// star arms=5 sharp_left //": {
+        "sequence": [{"kind": "star", "arms": 5, "take": "left", "deg": [80, 180]}]
+    },
+    "// star arms=6 //": {"sequence": [{"kind": "star", "arms": 6}]},
+    "// roundabout exit=2 arms=4 //": {"sequence": [{"kind": "roundabout", "exit": 2, "arms": 4}]},
+    "// roundabout straight //": {"sequence": [{"kind": "roundabout", "take": "straight"}]},
+    "// roundabout mini arms=3 back //": {
+        "sequence": [{"kind": "roundabout", "arms": 3, "exit": 3, "size": "mini", "take": "back"}]
+    },
+    "// roundabout large exit=3 //": {"sequence": [{"kind": "roundabout", "size": "large", "exit": 3}]},
+    "// roundabout r=14 arms=4 //": {"sequence": [{"kind": "roundabout", "radius": 14, "arms": 4}]},
+    "turn left // t_junction right stop // straight 60": {
+        "sequence": [
+            {"kind": "turn", "dir": "left"},
+            {"kind": "T", "take": "right", "control": "stop"},
+            {"kind": "straight", "len": [54, 70]},
+        ]
+    },
+    "| turns=3 up // crossroads // | down": {
+        "sequence": [{"kind": "X"}],
+        "between": [{"turns": 3, "grade": "up"}, {"grade": "down"}],
+    },
+    "// t_junction left // // crossroads right // // roundabout exit=1 //": {
+        "sequence": [
+            {"kind": "T", "take": "left"},
+            {"kind": "X", "take": "right"},
+            {"kind": "roundabout", "exit": 1},
+        ]
+    },
+    "| len=225..275 // t_junction straight // || len=500": {
+        "sequence": [{"kind": "T", "take": "straight", "at": [200, 300]}],
+        "length": 500,
+    },
+}
+FIVE = "// t_junction // // crossroads // // roundabout // // y_junction // // t_junction //"
+
+
+@pytest.fixture(scope="module")
+def referee() -> ModuleType:
+    """The outside referee of networks."""
+    path = SHARED / "referee_networks.py"
+    if not path.exists():
+        pytest.skip("the referee of networks is not at hand")
+    sys.path.insert(0, str(SHARED))
+    try:
+        spec = importlib.util.spec_from_file_location("referee_networks", path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(SHARED))
+    return module
+
+
+def drafted(line: str, seed: int, world: World = USUAL) -> Route:
+    """The route of a plan."""
+    design = Planner().draft(read_plan(line), world, (), (), seed)
+    assert isinstance(design, NetworkDesign)
+    return build_route(design, world)
+
+
+@pytest.mark.parametrize("line", CASES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_route_is_what_was_asked_for(line: str, seed: int, referee: ModuleType, tmp_path: Path) -> None:
+    route = drafted(line, seed)
+    assert inspect(route, None, USUAL) == ()
+    save(route, tmp_path, ["opendrive"], USUAL, "x")
+    truth = {"junctions": len(CASES[line]["sequence"]), **CASES[line]}
+    if any(item["kind"] in ("turn", "straight") for item in truth["sequence"]):
+        truth["junctions"] = sum(item["kind"] not in ("turn", "straight") for item in truth["sequence"])
+    way = json.loads((tmp_path / "x.route.json").read_text())
+    holds, measured = referee.check(tmp_path / "x.xodr", way, truth)
+    assert all(holds.values()), (holds, measured["breaks"], measured["junctions"])
+    assert measured["faults"] == []
+
+
+def turned(route: Route, junction: Junction) -> float:
+    """How far the route turns in a junction, in degrees, by the directions of its roads 15 m away from it."""
+    at = next(s for s, passed in route.passed if passed.node == junction.node)
+    after = next(s for s in route.starts if s > at and _is_outside(route, s))
+    points = route.at(np.array([at - 15, at, after, after + 15]))[:, :2]
+    before, behind = points[1] - points[0], points[3] - points[2]
+    angle = math.atan2(
+        before[0] * behind[1] - before[1] * behind[0], before[0] * behind[0] + before[1] * behind[1]
+    )
+    return math.degrees(angle)
+
+
+def _is_outside(route: Route, s: float) -> bool:
+    index = route.starts.index(s)
+    return index < len(route.legs) and route.network.road(route.legs[index].road).junction is None
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    ("line", "low", "high"),
+    [
+        ("// t_junction left //", 40, 140),
+        ("// t_junction right //", -140, -40),
+        ("// crossroads straight //", -25, 25),
+        ("// crossroads right //", -140, -40),
+    ],
+)
+def test_the_route_turns_to_the_side_that_was_asked_for(
+    line: str, low: float, high: float, seed: int
+) -> None:
+    route = drafted(line, seed)
+    ((_, junction),) = route.passed
+    assert low <= turned(route, junction) <= high
+
+
+def test_five_junctions_find_a_place_on_the_usual_map() -> None:
+    for seed in range(6):
+        route = drafted(FIVE, seed)
+        assert [junction.kind for _, junction in route.passed] == [
+            "t_junction",
+            "crossroads",
+            "roundabout",
+            "y_junction",
+            "t_junction",
+        ]
+        (west, south), (east, north) = route.network.bounds()
+        assert min(west, south) > 0
+        assert max(east, north) < USUAL.site.map_size
+
+
+def test_the_roads_of_a_route_meet_their_own_requirements() -> None:
+    route = drafted("turn x2 left deg=60 // crossroads straight // straight 40..50 | down", 5)
+    first, last = (route.network.road(route.legs[n].road).road for n in (0, -1))
+    turns = measure(first.centreline()).turns
+    assert [turn.side for turn in turns] == ["left", "left"]
+    assert [turn.degrees for turn in turns] == pytest.approx([60, 60], abs=6)
+    assert 40 <= last.length <= 60
+    heights = last.at(np.array([0.0, last.length]))[:, 2]
+    assert heights[1] < heights[0]
+
+
+def test_the_same_seed_gives_the_same_route_and_another_seed_another() -> None:
+    line = "// crossroads left // // roundabout exit=2 //"
+    one, same, other = (Planner().draft(read_plan(line), USUAL, (), (), seed).to_json() for seed in (7, 7, 8))
+    assert one == same
+    assert one != other
+
+
+def test_routes_of_one_plan_differ_in_their_junctions() -> None:
+    designs = [Planner().draft(read_plan("// t_junction //"), USUAL, (), (), seed) for seed in range(12)]
+    assert len({design.junctions[0].take for design in designs if isinstance(design, NetworkDesign)}) == 2
+    ways = {
+        tuple(round(arm.angle / 90) for arm in design.junctions[0].all_arms)
+        for design in designs
+        if isinstance(design, NetworkDesign)
+    }
+    assert ways == {(-1, 1), (0, 1), (-1, 0)}
+
+
+def test_a_design_from_a_plan_is_read_back_as_it_was_written() -> None:
+    design = draft(read_plan("// crossroads left stop // // roundabout back //"), USUAL, seed=3)
+    assert isinstance(design, NetworkDesign)
+    again, remarks = read_network_design(json.loads(json.dumps(design.to_json())))
+    assert again == design
+    assert remarks == ()
+
+
+def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
+    small = World(site=Site(map_size=90))
+    with pytest.raises(DesignError, match=r"3 junctions .* found no place on a map of 90 m; .*--map-size"):
+        drafted("// roundabout large // // roundabout large // // roundabout large //", 1, small)
+
+
+def test_a_larger_map_holds_what_a_small_one_does_not() -> None:
+    line = "// roundabout large // // roundabout large // // roundabout large //"
+    route = drafted(line, 1, World(site=Site(map_size=600)))
+    assert len(route.network.roundabouts) == 3
+
+
+def test_single_roads_only_are_drafted_where_junctions_do_not_belong() -> None:
+    with pytest.raises(DesignError, match="single roads only"):
+        draft_road(read_plan("// t_junction //"), USUAL)
+    assert draft_road(Brief(), USUAL, seed=1).segments
+    with pytest.raises(DesignError, match="without junctions"):
+        draft(read_plan("// t_junction //"), USUAL, designer="thesis")

@@ -1,0 +1,321 @@
+"""OpenDRIVE files of networks, read with nothing but an XML parser and the formulas of the standard."""
+
+import math
+import xml.etree.ElementTree as ET
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache, cached_property
+
+import numpy as np
+import pytest
+import shapely
+
+from network.random_designs import random_design
+from roadgpt.export.exporters.opendrive import document
+from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.road import World
+
+WORLD = World()
+SEEDS = range(30)
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(12)
+SIGNS = {
+    "stop": ("DE", "206"),
+    "yield": ("DE", "205"),
+    "priority": ("DE", "306"),
+    "lights": ("OpenDRIVE", "1000001"),
+}
+
+
+def cubic(element: ET.Element, s: float, name: str, station: str) -> float:
+    """The value of the cubic that applies at s."""
+    rows = [[float(row.attrib[key]) for key in (station, *"abcd")] for row in element.findall(name)]
+    s0, a, b, c, d = [row for row in rows if row[0] <= s + 1e-9][-1]
+    return a + b * (s - s0) + c * (s - s0) ** 2 + d * (s - s0) ** 3
+
+
+class WrittenRoad:
+    """A road as the file has it."""
+
+    def __init__(self, element: ET.Element) -> None:
+        self.element = element
+        self.id, self.junction = element.attrib["id"], element.attrib["junction"]
+        self.length = float(element.attrib["length"])
+        self.links = {link.tag: link.attrib for link in element.find("link") or ()}
+        self.lanes = {int(lane.attrib["id"]): lane for lane in element.iter("lane")}
+        self.driven = {n for n, lane in self.lanes.items() if lane.attrib["type"] == "driving"}
+
+    @cached_property
+    def pieces(self) -> list[tuple[list[float], float, float]]:
+        """Station, x, y, heading and length of each piece, and its curvatures."""
+        found = []
+        for piece in self.element.iter("geometry"):
+            (shape,) = piece
+            k0 = float(shape.get("curvStart") or shape.get("curvature") or 0)
+            k1 = float(shape.get("curvEnd") or shape.get("curvature") or 0)
+            assert shape.tag in ("line", "arc", "spiral")
+            found.append(([float(piece.attrib[key]) for key in ("s", "x", "y", "hdg", "length")], k0, k1))
+        return found
+
+    def pose(self, s: float) -> tuple[float, float, float]:
+        """x, y and heading of the reference line, integrated from the definition of the curvature."""
+        (s0, x, y, heading, length), k0, k1 = [p for p in self.pieces if p[0][0] <= s + 1e-9][-1]
+        u = s - s0
+        v = u * (NODES + 1) / 2
+        angle = heading + k0 * v + (k1 - k0) * v**2 / (2 * length)
+        x, y = x + u / 2 * WEIGHTS @ np.cos(angle), y + u / 2 * WEIGHTS @ np.sin(angle)
+        return float(x), float(y), heading + k0 * u + (k1 - k0) * u**2 / (2 * length)
+
+    def height(self, s: float) -> float:
+        return cubic(self.element.find("elevationProfile"), s, "elevation", "s")
+
+    def width(self, lane: int, s: float) -> float:
+        return cubic(self.lanes[lane], s, "width", "sOffset")
+
+    def border(self, lane: int, s: float) -> float:
+        """The offset t of the outer edge of a lane; the edge of lane 0 is the reference line."""
+        sign = 1 if lane > 0 else -1
+        return sign * sum(self.width(n, s) for n in self.lanes if n * sign > 0 and abs(n) <= abs(lane))
+
+    def at(self, s: float, t: float) -> tuple[float, float]:
+        x, y, heading = self.pose(s)
+        return x - t * math.sin(heading), y + t * math.cos(heading)
+
+    def end(self, contact: str) -> float:
+        return 0.0 if contact == "start" else self.length
+
+    def into(self, contact: str) -> set[int]:
+        """The lanes whose traffic leaves the road at this end; traffic keeps to the right."""
+        return {n for n in self.driven if (n < 0) == (contact == "end")}
+
+
+class WrittenMap:
+    """A file with its roads."""
+
+    def __init__(self, text: str) -> None:
+        self.root = ET.fromstring(text)
+        self.roads = {road.attrib["id"]: WrittenRoad(road) for road in self.root.iter("road")}
+        self.junctions = {each.attrib["id"]: each for each in self.root.iter("junction")}
+
+    def ways(self) -> Iterator[tuple[ET.Element, WrittenRoad]]:
+        """Every connection of every junction, with its connecting road."""
+        for junction in self.junctions.values():
+            for connection in junction.iter("connection"):
+                yield connection, self.roads[connection.attrib["connectingRoad"]]
+
+    def meets(self, junction: str) -> set[tuple[str, str]]:
+        """The ends of roads that are linked to a junction."""
+        return {
+            (road.id, contact)
+            for road in self.roads.values()
+            for tag, contact in (("predecessor", "start"), ("successor", "end"))
+            if road.links.get(tag, {}).get("elementType") == "junction"
+            and road.links[tag]["elementId"] == junction
+        }
+
+
+@cache
+def route_of(seed: int) -> Route:
+    return build_route(read_network_design(random_design(seed))[0], WORLD)
+
+
+@cache
+def written(seed: int) -> WrittenMap:
+    return WrittenMap(document(route_of(seed), WORLD).to_text())
+
+
+def turned(heading: float) -> float:
+    """An angle, between -pi and pi."""
+    return math.remainder(heading, 2 * math.pi)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_connecting_roads_join_the_roads_that_they_connect(seed: int) -> None:
+    here = written(seed)
+    for connection, way in here.ways():
+        assert connection.attrib["contactPoint"] == "start"
+        assert way.links["predecessor"]["elementId"] == connection.attrib["incomingRoad"]
+        for tag, s in (("predecessor", 0.0), ("successor", way.length)):
+            link = way.links[tag]
+            assert link["elementType"] == "road"
+            other = here.roads[link["elementId"]]
+            at = other.end(link["contactPoint"])
+            x, y, heading = way.pose(s)
+            x2, y2, heading2 = other.pose(at)
+            is_same_way = (link["contactPoint"] == "end") == (tag == "predecessor")
+            assert (x, y, way.height(s)) == pytest.approx((x2, y2, other.height(at)), abs=1e-6)
+            assert turned(heading - heading2 - (0 if is_same_way else math.pi)) == pytest.approx(0, abs=1e-6)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_lane_leads_through_a_junction_at_its_full_width(seed: int) -> None:
+    here = written(seed)
+    reached: dict[str, set[tuple[str, int]]] = {name: set() for name in here.junctions}
+    left = {name: set() for name in here.junctions}
+    for connection, way in here.ways():
+        pairs = {(int(link.attrib["from"]), int(link.attrib["to"])) for link in connection.iter("laneLink")}
+        assert {own for _, own in pairs} == way.driven
+        for own in way.driven:
+            before, after = (
+                int(way.lanes[own].find(f"link/{tag}").attrib["id"]) for tag in ("predecessor", "successor")
+            )
+            assert (before, own) in pairs
+            for tag, lane, s in (("predecessor", before, 0.0), ("successor", after, way.length)):
+                other, contact = here.roads[way.links[tag]["elementId"]], way.links[tag]["contactPoint"]
+                assert lane in other.into("start" if (tag == "successor") == (contact == "end") else "end")
+                assert way.width(own, s) == pytest.approx(other.width(lane, other.end(contact)), abs=1e-9)
+                assert way.border(own, s) == pytest.approx(
+                    -abs(other.border(lane, other.end(contact))), abs=1e-9
+                )
+                (reached if tag == "successor" else left)[way.junction].add((other.id, lane))
+    for name in here.junctions:
+        ends = here.meets(name)
+        assert left[name] == {(road, n) for road, end in ends for n in here.roads[road].into(end)}
+        out = {"start": "end", "end": "start"}
+        assert reached[name] == {(road, n) for road, end in ends for n in here.roads[road].into(out[end])}
+
+
+def boundary_of(here: WrittenMap, junction: ET.Element) -> list[list[tuple[float, float]]]:
+    """The points of each segment of a junction's boundary."""
+    found = []
+    for segment in junction.find("boundary"):
+        road, data = here.roads[segment.attrib["roadId"]], segment.attrib
+        if data["type"] == "joint":
+            s, first, last = (
+                road.end(data["contactPoint"]),
+                int(data["jointLaneStart"]),
+                int(data["jointLaneEnd"]),
+            )
+            if first * last > 0:  # a joint across lanes of one side begins at their inner edge
+                assert abs(first) == abs(last) == 1
+            found.append([road.at(s, road.border(first, s)), road.at(s, road.border(last, s))])
+        else:
+            ends = [road.end(data[key]) for key in ("sStart", "sEnd")]
+            stations = np.linspace(*ends, max(2, round(road.length / 0.2))).tolist()
+            lane = int(data["boundaryLane"])
+            found.append([road.at(s, road.border(lane, s)) for s in stations])
+    return found
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_boundary_encloses_what_is_paved(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    for name, junction in here.junctions.items():
+        segments = boundary_of(here, junction)
+        for one, two in zip(segments, [*segments[1:], segments[0]], strict=True):
+            assert one[-1] == pytest.approx(two[0], abs=1e-6)
+        ring = shapely.LinearRing([point for segment in segments for point in segment])
+        paved = shapely.Polygon(network.outline(int(name)))
+        assert ring.is_ccw
+        assert shapely.hausdorff_distance(ring, paved.exterior, densify=0.05) < 0.01
+        assert shapely.Polygon(ring).buffer(0).symmetric_difference(paved).area < 0.01 * paved.length
+        joints = [each for each in junction.find("boundary") if each.attrib["type"] == "joint"]
+        assert {(each.attrib["roadId"], each.attrib["contactPoint"]) for each in joints} == here.meets(name)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    wanted = Counter(
+        (str(arm.end.road), arm.end.contact, *SIGNS[arm.control])
+        for junction in network.junctions
+        for arm in junction.arms
+        if arm.control != "none"
+    )
+    found: Counter[tuple[str, ...]] = Counter()
+    for road in here.roads.values():
+        objects = {each.attrib["id"]: each.attrib for each in road.element.iter("object")}
+        for signal in road.element.iter("signal"):
+            data = signal.attrib
+            contact = "end" if data["orientation"] == "+" else "start"
+            (validity,) = signal.findall("validity")
+            lanes = [int(validity.attrib[key]) for key in ("fromLane", "toLane")]
+            assert set(range(lanes[0], lanes[1] + 1)) == road.into(contact)
+            s, t = float(data["s"]), float(data["t"])
+            assert abs(s - road.end(contact)) == pytest.approx(1.0)
+            outermost = max(road.lanes, key=lambda n: n if contact == "start" else -n)
+            side = 1 if contact == "start" else -1
+            assert side * (t - road.border(outermost, s)) == pytest.approx(0.6)
+            found[road.id, contact, data["country"], data["type"]] += 1
+            if data["type"] == "306":  # traffic that has priority does not stop
+                assert data["id"] not in objects
+                continue
+            line = objects.pop(data["id"])
+            assert line["orientation"] == data["orientation"]
+            edge = road.border(max(road.into(contact), key=abs), s)
+            assert float(line["t"]) == pytest.approx(edge / 2)
+            assert float(line["width"]) == pytest.approx(abs(edge))
+            assert abs(float(line["s"]) - road.end(contact)) == pytest.approx(float(line["length"]) / 2)
+        assert not objects
+    assert found == wanted
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_lights_of_a_junction_have_one_controller(seed: int) -> None:
+    here = written(seed)
+    lights = {each.attrib["id"]: each.attrib for each in here.root.iter("signal")}
+    lit = {n for n, each in lights.items() if each["type"] == "1000001"}
+    assert all((each["dynamic"] == "yes") == (n in lit) for n, each in lights.items())
+    controlled = [c.attrib["signalId"] for c in here.root.findall("controller/control")]
+    assert sorted(controlled) == sorted(lit)
+    named = [c.attrib["id"] for c in here.root.findall("junction/controller")]
+    assert sorted(named) == sorted(c.attrib["id"] for c in here.root.findall("controller"))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_route_file_leads_along_lanes_that_are_linked(seed: int) -> None:
+    here = written(seed)
+    legs = route_of(seed).to_route_json()["route"]
+    ways = {
+        (int(c.attrib["incomingRoad"]), int(link.attrib["from"]), int(way.id), int(link.attrib["to"])): way
+        for c, way in here.ways()
+        for link in c.iter("laneLink")
+    }
+    assert len(legs) % 2 == 1
+    for before, inside, after in zip(legs[::2], legs[1::2], legs[2::2], strict=False):
+        way = ways[(*before, *inside)]
+        assert int(way.links["successor"]["elementId"]) == after[0]
+        assert int(way.lanes[inside[1]].find("link/successor").attrib["id"]) == after[1]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_header_tells_the_box_around_all_lanes(seed: int) -> None:
+    here = written(seed)
+    points = np.array(
+        [
+            road.at(s, road.border(lane, s))
+            for road in here.roads.values()
+            for s in np.linspace(0, road.length, max(2, round(road.length)))
+            for lane in (min(road.lanes), max(road.lanes))
+        ]
+    )
+    told = [float(here.root.find("header").attrib[side]) for side in ("west", "south", "east", "north")]
+    real = [*points.min(axis=0), *points.max(axis=0)]
+    beyond = np.array([1, 1, -1, -1]) * (np.array(real) - told)
+    assert (beyond > -1e-3).all()
+    assert (beyond < 0.2).all()
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_roundabouts_are_groups_of_junctions(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    told = [
+        [each.attrib["junction"] for each in group.iter("junctionReference")]
+        for group in here.root.iter("junctionGroup")
+        if group.attrib["type"] == "roundabout"
+    ]
+    assert told == [list(map(str, ring.junctions)) for ring in network.roundabouts]
+    ids = [*here.roads, *here.junctions, *(each.attrib["id"] for each in here.root.iter("signal"))]
+    assert len(ids) == len(set(ids))
+
+
+def test_version_1_7_differs_by_its_number_and_the_boundaries() -> None:
+    new, old = (ET.fromstring(document(route_of(3), WORLD, minor).to_text()) for minor in (8, 7))
+    assert new.find("header").attrib.pop("revMinor") == "8"
+    assert old.find("header").attrib.pop("revMinor") == "7"
+    bounded = [junction for junction in new.iter("junction") if junction.find("boundary") is not None]
+    assert len(bounded) == len(list(new.iter("junction"))) > 0
+    for junction in bounded:
+        junction.remove(junction.find("boundary"))
+    assert ET.canonicalize(ET.tostring(new), strip_text=True) == ET.canonicalize(
+        ET.tostring(old), strip_text=True
+    )
