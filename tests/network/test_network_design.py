@@ -1,0 +1,304 @@
+"""Designs with junctions: what is written is read, and what is wrong is said in one sentence."""
+
+import copy
+import json
+import math
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from network.changing import WORLD, built, design
+from network.random_designs import random_design
+from roadgpt.errors import UsageError
+from roadgpt.network import JunctionDesign, NetworkDesign, build_route, has_junctions, read_network_design
+from roadgpt.network.design import ArmDesign
+from roadgpt.network.growing import controls_of
+from roadgpt.road import CrossSection, World
+
+ARMS = [{"angle": -90}, {"angle": 0}, {"angle": 90}]
+GOOD = design(60.0, {"kind": "crossroads", "take": "left", "arms": ARMS}, 60.0)
+
+
+def said(data: Any) -> str:
+    with pytest.raises(UsageError) as error:
+        built(data)
+    sentence = str(error.value)
+    assert "\n" not in sentence
+    assert "pydantic" not in sentence
+    return sentence
+
+
+def changed(**fields: Any) -> dict[str, Any]:
+    """The good design with other fields of its junction; None for a field that is left out."""
+    data = copy.deepcopy(GOOD)
+    junction = {**data["junction1"], **fields}
+    data["junction1"] = {key: value for key, value in junction.items() if value is not None}
+    return data
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=30, deadline=None)
+def test_what_is_written_is_read(seed: int) -> None:
+    design_, _ = read_network_design(random_design(seed))
+    written = json.loads(json.dumps(design_.to_json()))
+    again, remarks = read_network_design(written)
+    assert again == design_
+    assert remarks == ()
+    assert again.to_json() == design_.to_json()
+
+
+def test_the_order_of_the_fields_is_no_matter() -> None:
+    data = random_design(5)
+    assert read_network_design(dict(reversed(data.items())))[0] == read_network_design(data)[0]
+
+
+def test_has_junctions() -> None:
+    assert has_junctions(GOOD)
+    assert not has_junctions({key: value for key, value in GOOD.items() if key != "junction1"})
+    assert not has_junctions({"junctions": []})
+    assert not has_junctions([1])
+
+
+@pytest.mark.parametrize("name", ["after", "kind", "take"])
+def test_a_missing_field(name: str) -> None:
+    assert said(changed(**{name: None})) == f"junction 1 cannot be read: {name}: is missing; add it"
+
+
+@pytest.mark.parametrize(
+    ("fields", "wanted"),
+    [
+        ({"kind": "motorway"}, "kind: is unknown; give 't_junction'"),
+        ({"kind": 3}, "kind: is unknown"),
+        ({"take": "back"}, "take: is unknown; give 'left', 'right', 'straight' or the number of the exit"),
+        ({"take": 0}, "take: is unknown; give 'left'"),
+        ({"take": 1.5}, "take: is unknown; give 'left'"),
+        ({"take": math.nan}, "take: is unknown; give 'left'"),
+        ({"take": True}, "take: is not a number"),
+        ({"take": 4}, "take 4 is more than the number of exits; give 1 to 3"),
+        ({"after": True}, "after: is not a number"),
+        ({"after": 0}, "after: is out of range; give 1 or more"),
+        ({"after": 10**30}, "after: is out of range; give 500 or less"),
+        ({"after": 1.5}, "after: is not a whole number"),
+        ({"after": 2}, "a junction stands after segment 2, and there are 2; add a segment behind it"),
+        ({"kerb": 0.5}, "kerb: is out of range; give 1 or more"),
+        ({"kerb": 1e308}, "kerb: is out of range; give 100 or less"),
+        ({"kerb": math.nan}, "kerb: is not finite"),
+        ({"kerb": math.inf}, "kerb: is not finite"),
+        ({"kerb": "wide"}, "kerb: is not a number"),
+        ({"kerb": True}, "kerb: is not a number"),
+        ({"radius": 0}, "radius: is out of range"),
+        ({"control": "maybe"}, "control: is unknown; give 'priority'"),
+        ({"colour": "red"}, "colour: is not a field of a design; remove it"),
+        ({"arms": ARMS[:2]}, "a crossroads has 3 arms besides the road of arrival, and 2 are given"),
+        ({"arms": {"angle": 3}}, "arms: give a list"),
+        ({"arms": [-90, 0, 90]}, "arm 1 of junction 1 cannot be read: give an object with angle"),
+        ({"arms": [*ARMS[:2], {}]}, "angle: is missing; add it"),
+        ({"arms": [*ARMS[:2], {"angle": False}]}, "angle: is not a number"),
+        ({"arms": [*ARMS[:2], {"angle": math.nan}]}, "angle: is out of range"),
+        ({"arms": [*ARMS[:2], {"angle": 180}]}, "angle: is out of range; give less than 180"),
+        ({"arms": [*ARMS[:2], {"angle": 24.9}]}, "arms at 0 and 24.9 degrees are less than 25 degrees apart"),
+        ({"arms": [*ARMS[:2], {"angle": 156}]}, "arms at 156 and 180 degrees are less than 25 degrees apart"),
+        ({"arms": [{"angle": -156}, *ARMS[1:]]}, "arms at -180 and -156 degrees are less than 25"),
+        ({"arms": [*ARMS[:2], {"angle": 90, "length": 30}]}, "so leave out length"),
+        ({"arms": [{"angle": -90, "length": 0}, *ARMS[1:]]}, "length: is out of range"),
+        ({"arms": [{"angle": -90, "length": 99_999}, *ARMS[1:]]}, "give one of up to 50 km"),
+        ({"arms": [{"angle": -90, "control": "go"}, *ARMS[1:]]}, "control: is unknown"),
+        ({"arms": [{"angle": a} for a in range(-160, 161, 40)]}, "arms: give a list of at most 7"),
+        ({"kind": "roundabout", "take": 5}, "take 5 is more than the number of exits; give 1 to 4"),
+        ({"kind": "roundabout", "take": 1, "radius": 1}, "is too small for its arms; give a radius of"),
+        ({"kind": "t_junction", "arms": [{"angle": 30}, {"angle": 90}]}, "2 arms lead left; give the number"),
+        ({"kind": "t_junction", "take": "right", "arms": ARMS[1:]}, "no arm leads right; give the number"),
+    ],
+)  # fmt: skip
+def test_a_junction_that_is_wrong(fields: dict[str, Any], wanted: str) -> None:
+    assert wanted in said(changed(**fields))
+
+
+def test_arms_25_degrees_apart_are_built() -> None:
+    route = built(changed(take=3, arms=[{"angle": 0}, {"angle": 25}, {"angle": 50}]))
+    assert math.degrees(float(route.heading(route.length))) == pytest.approx(50)
+
+
+@pytest.mark.parametrize("value", [None, 5, [], "x", True])
+def test_a_junction_that_is_no_object(value: Any) -> None:
+    wanted = "junction 1 cannot be read: give an object with after, kind and take"
+    assert said({**GOOD, "junction1": value}) == wanted
+
+
+@pytest.mark.parametrize(
+    ("lanes", "wanted"),
+    [
+        (5, "give an object with forward, backward and width"),
+        ({"width": 1.9}, "width: is out of range; give 2 or more"),
+        ({"width": True}, "width: is not a number"),
+        ({"width": math.nan}, "width: is not finite"),
+        ({"forward": 2}, "forward: is out of range; give 1 or less"),
+        ({"backward": 0}, "backward: is out of range; give 1 or more"),
+        ({"wide": 3}, "wide: is not a field"),
+    ],
+)
+def test_lanes_that_are_wrong(lanes: Any, wanted: str) -> None:
+    sentence = said({**GOOD, "lanes": lanes})
+    assert sentence.startswith("the lanes of the design cannot be read: ")
+    assert wanted in sentence
+
+
+@pytest.mark.parametrize(
+    ("fields", "wanted"),
+    [
+        ({"junction2": GOOD["junction1"]}, "two junctions stand after segment 1; put a segment between them"),
+        ({"junctionx": GOOD["junction1"]}, "has a field 'junctionx' that is unknown"),
+        ({"starting_point": [1, 2]}, "starting_point.2: is missing"),
+        ({"starting_point": [True, 2, 3]}, "starting_point: is not a number"),
+        ({"starting_point": [1e300, 2, 3]}, "beyond 1,000,000; give smaller numbers"),
+        ({"theta": 1e300}, "beyond 1,000,000; give smaller numbers"),
+        ({"theta": math.nan}, "theta: is not finite"),
+        ({"road_segment1": {"distance": 60_000, "direction": "straight"}}, ""),
+    ],
+)
+def test_a_design_that_is_wrong(fields: dict[str, Any], wanted: str) -> None:
+    assert wanted in said({**GOOD, **fields})
+
+
+def test_too_many_junctions_and_none() -> None:
+    many = design(*[part for _ in range(101) for part in (30.0, {"kind": "t_junction", "take": 1})], 30.0)
+    assert said(many) == "the design has 101 junctions; give 1 to 100"
+    none = {key: value for key, value in GOOD.items() if key != "junction1"}
+    assert said(none) == "the design has 0 junctions; give 1 to 100"
+
+
+def test_nothing_stands_behind_a_way_back() -> None:
+    back = {"kind": "roundabout", "take": 4}
+    for behind in ((), ({"kind": "crossroads", "take": 2}, 40.0)):
+        sentence = said(design(60.0, back, 30.0, *behind))
+        assert sentence.startswith("the roundabout after segment 1 leads back on the road of arrival")
+    assert built(design(60.0, back)).legs[-1] == (1, 1)
+
+
+def test_a_world_with_other_lanes_is_refused() -> None:
+    with pytest.raises(UsageError, match="leave out --lanes, --bank"):
+        build_route(read_network_design(GOOD)[0], World(section=CrossSection(lanes="2+1", bank="auto")))
+
+
+def test_the_lanes_are_those_of_the_design_or_else_of_the_world() -> None:
+    wide = World(section=CrossSection(lane_width=3.1, shoulder=1.0))
+    without = {key: value for key, value in GOOD.items() if key != "lanes"}
+    for data, width in ((GOOD, 4.0), (without, 3.1), ({**GOOD, "lanes": {}}, 4.0)):
+        profile = build_route(read_network_design(data)[0], wide).network.road(1).profile
+        assert [lane.width for lane in profile.right] == [width, 1.0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "angles"),
+    [
+        ("t_junction", [-90, 90]),
+        ("y_junction", [-60, 60]),
+        ("crossroads", [-90, 0, 90]),
+        ("star", [-108, -36, 36, 108]),
+        ("roundabout", [-90, 0, 90]),
+    ],
+)
+def test_the_usual_arms(kind: Any, angles: list[float]) -> None:
+    junction = JunctionDesign(after=1, kind=kind, take=1)
+    assert [arm.angle for arm in junction.all_arms] == angles
+    route = built(design(60.0, {"kind": kind, "take": 1}, 60.0))
+    first = route.network.nodes[0][1]
+    directions = (
+        [arm.direction for arm in first[0].arms]
+        if kind != "roundabout"
+        else [each.arms[0].direction for each in first]
+    )
+    found = sorted((math.degrees(each) + 180) % 360 - 180 for each in directions[1:])
+    assert found == pytest.approx(angles, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("kind", "angles", "take", "index"),
+    [
+        ("t_junction", (), "left", 1),
+        ("t_junction", (), "right", 0),
+        ("t_junction", (0, 90), "straight", 0),
+        ("t_junction", (-90, 20), "straight", 1),
+        ("t_junction", (-26, 90), "right", 0),
+        ("y_junction", (), "left", 1),
+        ("y_junction", (), "right", 0),
+        ("y_junction", (-10, 40), "right", 0),  # in a fork the rightmost arm is on the right
+        ("y_junction", (-40, 10), "left", 1),
+        ("y_junction", (-40, 10), "straight", 1),
+        ("crossroads", (), "left", 2),
+        ("crossroads", (), "straight", 1),
+        ("crossroads", (), "right", 0),
+        ("crossroads", (), 3, 2),
+        ("star", (), 1, 0),
+        ("star", (), 4, 3),
+        ("star", (-120, -60, 0, 60), "straight", 2),
+        ("star", (-120, -60, 0, 60), "left", 3),
+        ("roundabout", (), 1, 0),
+        ("roundabout", (), "left", 2),
+        ("roundabout", (), 4, None),
+        ("roundabout", (-60, 60), 3, None),
+    ],
+)
+def test_the_arm_that_is_taken(kind: Any, angles: tuple[float, ...], take: Any, index: int | None) -> None:
+    arms = tuple(ArmDesign(angle=angle) for angle in angles)
+    assert JunctionDesign(after=1, kind=kind, take=take, arms=arms).taken == index
+
+
+@pytest.mark.parametrize(
+    ("kind", "take"), [("star", "left"), ("star", "right"), ("star", "straight"), ("t_junction", "straight")]
+)
+def test_an_arm_that_is_not_clear(kind: Any, take: Any) -> None:
+    with pytest.raises(UsageError, match="give the number of the exit as take"):
+        _ = JunctionDesign(after=1, kind=kind, take=take).taken
+
+
+def test_arms_are_sorted_from_the_right() -> None:
+    arms = tuple(ArmDesign(angle=angle) for angle in (90, -90, 0))
+    assert [arm.angle for arm in JunctionDesign(after=1, kind="crossroads", take=1, arms=arms).all_arms] == [
+        -90,
+        0,
+        90,
+    ]
+
+
+CONTROLS = [
+    ("crossroads", "none", ("none", "none", "none", "none")),
+    ("crossroads", "lights", ("lights", "lights", "lights", "lights")),
+    ("crossroads", "priority", ("priority", "yield", "priority", "yield")),
+    ("crossroads", "yield", ("yield", "priority", "yield", "priority")),
+    ("crossroads", "stop", ("stop", "priority", "stop", "priority")),
+    ("t_junction", "yield", ("yield", "priority", "priority")),
+    ("t_junction", "priority", ("priority", "priority", "yield")),
+    ("star", "stop", ("stop", "stop", "priority", "priority", "priority")),
+    ("roundabout", "none", ("yield", "yield", "yield", "yield")),
+    ("roundabout", "stop", ("stop", "yield", "yield", "yield")),
+    ("roundabout", "priority", ("yield", "yield", "yield", "yield")),
+    ("roundabout", "lights", ("lights", "lights", "lights", "lights")),
+]
+
+
+@pytest.mark.parametrize(("kind", "control", "wanted"), CONTROLS)
+def test_the_signs_of_all_arms(kind: Any, control: Any, wanted: tuple[str, ...]) -> None:
+    """Arms from the right; the route takes the first one. A star has no arm opposite within 40 degrees but
+    those at 36 degrees on both sides, of which the right one counts.
+    """
+    junction = JunctionDesign(after=1, kind=kind, take=1, control=control)
+    if kind == "star":
+        wanted = ("stop", "priority", "stop", "priority", "priority")
+    assert controls_of(junction) == wanted
+
+
+def test_an_arm_may_have_a_sign_of_its_own() -> None:
+    arms = (ArmDesign(angle=-90, control="stop"), ArmDesign(angle=90))
+    junction = JunctionDesign(after=1, kind="t_junction", take="left", control="yield", arms=arms)
+    assert controls_of(junction) == ("yield", "stop", "priority")
+
+
+def test_a_design_says_what_it_is() -> None:
+    made, _ = read_network_design(GOOD)
+    assert isinstance(made, NetworkDesign)
+    assert repr(made) == "NetworkDesign(120 m of road, junctions: crossroads)"
+    assert [len(stretch) for stretch in made.stretches] == [1, 1]
+    assert built(GOOD, WORLD).network.nodes[0][0] == "crossroads"
