@@ -123,6 +123,16 @@ class TestLeavesMap:
         assert found.y == pytest.approx(top, abs=0.01)
         assert found.s is None
 
+    def test_on_the_route_the_station_is_given(self) -> None:
+        """Straight on, and 30 m beyond the border."""
+        route = built(
+            design(60.0, {"kind": "crossroads", "take": "straight"}, 100.0, start=(350.0, 250.0, 0.0))
+        )
+        assert route.at(route.length)[0] > 510
+        found = the_finding("leaves_map", route)
+        assert found.s == pytest.approx(route.length, abs=0.01)
+        assert (found.x, abs((found.y or 0) - 250)) == pytest.approx((route.at(route.length)[0], 4), abs=0.01)
+
     @pytest.mark.parametrize(("y", "count"), [(4.02, 0), (3.99, 1)])
     def test_half_the_road_counts(self, y: float, count: int) -> None:
         """Straight on through a T whose third road leads away from the border; the road is 8 m wide."""

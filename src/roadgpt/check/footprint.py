@@ -122,9 +122,9 @@ class Footprint:
         return found
 
     @cached_property
-    def _edges(self) -> tuple[Array, Array, Indices]:
-        """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, and the index
-        of the first point of each road, with ``n`` behind the last one.
+    def _edges(self) -> tuple[Array, Array, Array, Indices]:
+        """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, their stations
+        on their roads, and the index of the first point of each road, with ``n`` behind the last one.
         """
         index, u = self._stations()
         owner = self._pieces.owner[index]
@@ -143,6 +143,7 @@ class Footprint:
         return (
             np.stack((x - right * sin, y + right * cos), axis=1),
             np.stack((x - left * sin, y + left * cos), axis=1),
+            s,
             first,
         )
 
@@ -169,27 +170,31 @@ class Footprint:
     @cached_property
     def bounds(self) -> Array:
         """The smallest x and y and the largest x and y of each carriageway ``(n, 4)``, within ``SLACK``."""
-        right, left, first = self._edges
+        right, left, _, first = self._edges
         low = np.minimum.reduceat(np.minimum(right, left), first[:-1])
         high = np.maximum.reduceat(np.maximum(right, left), first[:-1])
         return np.concatenate((low, high), axis=1)
 
-    def outermost(self, n: int, side: int) -> tuple[float, float]:
-        """Returns the point (x, y) in metres at which the carriageway of the road with index ``n`` reaches
-        one of its bounds; ``side`` is the index of the bound in ``bounds``.
+    def outermost(self, n: int, side: int) -> tuple[float, float, float]:
+        """Returns the point (x, y) at which the carriageway of the road with index ``n`` reaches one of its
+        bounds, and the station of the road there, in metres.
+
+        ``side`` is the index of the bound in a row of ``bounds``.
         """
-        right, left, first = self._edges
-        points = np.concatenate((right[first[n] : first[n + 1]], left[first[n] : first[n + 1]]))
+        right, left, s, first = self._edges
+        here = slice(first[n], first[n + 1])
+        points = np.concatenate((right[here], left[here]))
         along = points[:, side % 2]
-        x, y = points[int(along.argmin() if side < 2 else along.argmax())].tolist()
-        return x, y
+        worst = int(along.argmin() if side < 2 else along.argmax())
+        x, y = points[worst].tolist()
+        return x, y, float(np.tile(s[here], 2)[worst])
 
     @cached_property
     def polygons(self) -> NDArray[Any]:
         """The carriageway of each road as a polygon of shapely, in the order of ``network.roads``."""
         import shapely
 
-        right, left, first = self._edges
+        right, left, _, first = self._edges
         points = np.concatenate((right, left))
         n = len(right)
         order = np.concatenate([np.r_[a:b, n + b - 1 : n + a - 1 : -1] for a, b in pairwise(first.tolist())])

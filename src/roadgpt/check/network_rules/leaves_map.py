@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.check.finding import Finding
 from roadgpt.check.footprint import SLACK, footprint
-from roadgpt.check.network_places import owner_of, station_near
+from roadgpt.check.network_places import owner_of, station_on
 from roadgpt.network import Network, Route
 from roadgpt.road import World
 
@@ -25,11 +25,11 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     for name, (far, n) in worst.items():
         side = int(beyond[n].argmax())
         edge, axis = (0.0, size)[side // 2], "xy"[side % 2]
-        x, y = footprint(network).outermost(n, side)
+        x, y, along = footprint(network).outermost(n, side)
         sentence = (
             f"near ({x:.0f}, {y:.0f}): {name} leaves the map by {max(far - SLACK, 0):.1f} m at "
             f"{axis} = {edge:g}; the map runs from 0 to {size:g} m"
         )
-        s = station_near(route, network.roads[n], x, y)
+        s = station_on(route, network.roads[n], along)
         found.append(Finding("leaves_map", sentence, s, x, y))
     return tuple(found)
