@@ -79,10 +79,10 @@ def test_the_roads_of_a_route_are_plans_of_their_own() -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("straight // turn left // straight", "roads and junctions alternate"),
-        ("// t_junction", "roads and junctions alternate"),
-        ("// t_junction // // ", "roads and junctions alternate"),
-        ("t_junction left", "no clause 't_junction'"),
+        ("straight // turn left // t_junction", "junction is missing between 'straight' and 'turn left'"),
+        ("straight // ", "needs a junction"),
+        ("turn left; t_junction left", "no clause 't_junction'"),
+        ("t_junction left; straight", "no word 'left;' for a junction"),
         ("// t_junction sideways //", "no word 'sideways' for a junction"),
         ("// t_junction left right //", "gives take of a junction twice"),
         ("// roundabout exit=third //", "is not a number in a plan"),
@@ -175,3 +175,19 @@ def test_an_amount_of_arms_may_be_open() -> None:
     check(read_plan("// roundabout arms=3..4 exit=2 //"))
     check(read_plan("// star arms=5.. //"))
     assert read_plan("// star arms=5.. //").junctions[0].arms == Amount(lo=5)
+
+
+@pytest.mark.parametrize(
+    ("short", "full"),
+    [
+        ("roundabout exit=2", "// roundabout exit=2 //"),
+        (
+            "t_junction left // crossroads right // straight 60",
+            "// t_junction left // // crossroads right // straight 60",
+        ),
+        ("turn left // star || len=300", "turn left // star // || len=300"),
+    ],
+)
+def test_a_road_of_which_nothing_is_asked_may_be_left_out(short: str, full: str) -> None:
+    assert read_plan(short) == read_plan(full)
+    assert "// //" not in plan(read_plan(full))

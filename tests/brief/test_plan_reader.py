@@ -62,7 +62,7 @@ def test_a_plan_becomes_the_road_that_it_describes() -> None:
         ("turn | beside(moon)", "'moon' is none of the things beside a road"),
         ("turn | beside()", "'' is none of the things beside a road"),
         ("!contradiction turns sides", "contradicts itself about the number of turns and left and right"),
-        ("!impossible roundabout", "no such road can be built: a roundabout"),
+        ("!impossible roundabout", "a roundabout can be asked for only in a plan so far"),
         ("!impossible turns roundabouts", "a plan has no refusal '!impossible turns roundabouts'"),
         ("!nonsense turns", "a plan has no refusal"),
         ("!perhaps", "a plan has no refusal '!perhaps'"),
@@ -100,7 +100,10 @@ def test_what_is_no_single_road_is_asked_about(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr("roadgpt.brief.reader_of", lambda name, chat: OfARoundabout())
     with pytest.raises(NotBuiltError) as refusal:
         read("a turn, then a roundabout, in the rain", "model")
-    assert str(refusal.value).startswith("a roundabout cannot be built yet; the road without it: --plan")
+    assert str(refusal.value).startswith(
+        "a roundabout can be asked for only in a plan so far, such as --plan 'roundabout exit=2'; the road "
+        "without it: --plan"
+    )
     assert refusal.value.plan == "turn | beside(rain)"
     assert read(refusal.value.plan, "plan").beside == ("roundabout", "rain")  # a plan is built as it stands
 

@@ -162,7 +162,9 @@ def read(
         check(brief, *limits)
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
-        raise NotBuiltError(f"{missing} cannot be built yet; the road without it", plan(rest), rest)
+        raise NotBuiltError(
+            f"{missing} {beside.why_not(brief.beside)}; the road without it", plan(rest), rest
+        )
     return brief.model_copy(update={"motorway": True}) if says_motorway(words) else brief
 
 

@@ -57,6 +57,12 @@ NOT_BUILT = {
 NETWORKS = ("junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "loop")
 """Names of the things that are not a single road. If a description asks for one of them, ``brief.read``
 raises NotBuiltError, which proposes the road without it."""
+IN_PLANS = {
+    "junction": "t_junction left",
+    "crossroads": "crossroads straight",
+    "roundabout": "roundabout exit=2",
+}
+"""The things among ``NETWORKS`` that plans can ask for, though the reader of words cannot: with examples."""
 NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
@@ -89,6 +95,14 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
             yield SAID_OTHERWISE[name]
     if said := surface_remark(names, friction):
         yield said
+
+
+def why_not(names: Iterable[str]) -> str:
+    """Returns why a road with those things among the names that are not a single road is not built."""
+    examples = [IN_PLANS.get(name) for name in names if name in NETWORKS]
+    if examples and all(examples):
+        return f"can be asked for only in a plan so far, such as --plan '{examples[0]}'"
+    return "cannot be built yet"
 
 
 def networks_in(names: Iterable[str]) -> str:

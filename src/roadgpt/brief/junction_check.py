@@ -75,9 +75,10 @@ def _check_take(junction: JunctionClause, name: str) -> None:
         raise BriefError(f"at a {name} one can go {' or '.join(possible)}, not {take}; change one of them")
     if not ways:
         return
-    needed = ARMS[junction.kind].lo - 1
-    if len(ways) != needed or len(set(ways)) != len(ways) or (possible and not {*ways} <= {*possible}):
-        raise BriefError(f"a {name} has {needed:g} different ways on, other than {' and '.join(ways)}")
+    arms = ARMS[junction.kind]
+    needed = Range(arms.lo - 1, arms.hi - 1)
+    if len(ways) not in needed or len(set(ways)) != len(ways) or (possible and not {*ways} <= {*possible}):
+        raise BriefError(f"a {name} has {needed} different ways on, other than {' and '.join(ways)}")
     if take in ("left", "right", "straight") and take not in ways:
         raise BriefError(f"a {name} with ways on {_said(ways)} has none {take}; change one of them")
 

@@ -2,8 +2,8 @@
 
     straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 || len=300
 
-Junctions and the roads between them alternate, separated by ``//``. Each road is a plan of its own. What
-holds for the whole route follows after ``||``.
+Junctions and the roads between them alternate, separated by ``//``. Each road is a plan of its own; a road of
+which nothing is required is left out. What holds for the whole route follows after ``||``.
 """
 
 from typing import get_args

@@ -6,7 +6,7 @@ from typing import Literal
 from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.words import Range
 
-JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"]
 Take = Literal[
     "left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right"
 ]
@@ -20,14 +20,19 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
     "crossroads": ("crossroads", "intersection"),
     "star": ("star junction", "five-way junction"),
     "roundabout": ("roundabout", "traffic circle"),
+    "junction": ("junction",),
 }
-"""The English words for each kind; RoadGPT's own texts use the first one."""
+"""The English words for each kind; RoadGPT's own texts use the first one.
+
+A "junction" is of any kind but a roundabout, because the description names none.
+"""
 ARMS: Mapping[JunctionKind, Range] = {
     "t_junction": Range(3, 3),
     "y_junction": Range(3, 3),
     "crossroads": Range(4, 4),
     "star": Range(5, 6),
     "roundabout": Range(3, 5),
+    "junction": Range(3, 6),
 }
 """The number of arms of each kind, with the road on which the route arrives."""
 SIZES: Mapping[IslandSize, Range] = {

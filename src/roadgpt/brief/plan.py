@@ -72,7 +72,7 @@ def _network_plan(brief: Brief) -> str:
     parts = [plan(brief.stretches[0])]
     for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
         parts += [junction_plan(junction), plan(stretch)]
-    line = f" {BETWEEN} ".join(parts).strip()
+    line = f" {BETWEEN} ".join(part for part in parts if part)
     wishes = _wishes(brief)
     return f"{line} {WHOLE} {' '.join(wishes)}" if wishes else line
 
@@ -101,7 +101,7 @@ def read_plan(line: str) -> Brief:
     """
     if line.lstrip().startswith("!"):
         raise refused(line)
-    if BETWEEN in line:
+    if BETWEEN in line or is_junction(line):
         return _read_network(line)
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {
@@ -118,12 +118,21 @@ def read_plan(line: str) -> Brief:
 def _read_network(line: str) -> Brief:
     """Returns the Brief of a plan with junctions."""
     route, _, whole = line.partition(WHOLE)
-    parts = [part.strip() for part in route.split(BETWEEN)]
-    if len(parts) % 2 == 0 or not all(map(is_junction, parts[1::2])):
-        raise BriefError(
-            f"in a plan with {BETWEEN}, roads and junctions alternate, beginning and ending with a road; a "
-            f"road may be left empty: straight 80 {BETWEEN} crossroads left {BETWEEN} turn right"
-        )
+    junctions: list[str] = []
+    roads = [""]
+    for part in filter(None, map(str.strip, route.split(BETWEEN))):
+        if is_junction(part):
+            junctions.append(part)
+            roads.append("")
+        elif roads[-1]:
+            raise BriefError(
+                f"a junction is missing between '{roads[-1][:40]}' and '{part[:40]}': roads and junctions "
+                f"alternate, as in straight 80 {BETWEEN} crossroads left {BETWEEN} turn right"
+            )
+        else:
+            roads[-1] = part
+    if not junctions:
+        raise BriefError(f"a plan with {BETWEEN} needs a junction, such as crossroads left")
     asked = read_plan(f"| {whole}") if whole.strip() else Brief()
     if asked != Brief(length=asked.length, beside=asked.beside):
         raise BriefError(
@@ -131,8 +140,8 @@ def _read_network(line: str) -> Brief:
             "roads stands with this road, after |"
         )
     fields: dict[str, object] = {
-        "junctions": tuple(read_junction(part) for part in parts[1::2]),
-        "stretches": tuple(read_plan(part) for part in parts[0::2]),
+        "junctions": tuple(map(read_junction, junctions)),
+        "stretches": tuple(map(read_plan, roads)),
         "length": asked.length,
         "beside": asked.beside,
     }

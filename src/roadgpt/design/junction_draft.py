@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi
+from typing import Literal
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from roadgpt.network.design import ASTERN, ArmDesign
 from roadgpt.network.ring import BETWEEN, MOUTH, ring_width
 
 Rng = np.random.Generator
+BuiltKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+ANY: tuple[BuiltKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
+"""The kinds of a junction whose kind is not said; T-junctions are twice as frequent."""
 
 KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
 TIGHT_KERB = 6.0  # m, where there is little room
@@ -30,16 +34,18 @@ ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is requi
 ROUNDS = 200  # draws of the arms of one junction
 
 
-def drawn_junction(clause: JunctionClause, after: int, rng: Rng, haste: float) -> JunctionDesign | None:
+def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) -> JunctionDesign | None:
     """Returns a junction that meets its requirements; None if none was found.
 
     Args:
-        clause: the requirements.
+        asked: the requirements.
         after: number of segments of the route before the junction.
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the junction.
     """
     for _ in range(ROUNDS):
+        kind = _kind(asked, rng)
+        clause = asked.model_copy(update={"kind": kind})
         angles = _angles(clause, rng)
         taken = _taken(clause, angles, rng) if _has_ways(clause, angles) else None
         if taken is None:
@@ -55,7 +61,7 @@ def drawn_junction(clause: JunctionClause, after: int, rng: Rng, haste: float) -
         kerb = float(rng.uniform(*KERBS))
         return JunctionDesign(
             after=after,
-            kind=clause.kind,
+            kind=kind,
             take=taken + 1,
             control=clause.control or "none",
             kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
@@ -63,6 +69,15 @@ def drawn_junction(clause: JunctionClause, after: int, rng: Rng, haste: float) -
             arms=arms,
         )
     return None
+
+
+def _kind(asked: JunctionClause, rng: Rng) -> BuiltKind:
+    """Returns the kind of a junction; where the description names none, one of those that have its arms."""
+    if asked.kind != "junction":
+        return asked.kind
+    arms = span(asked.arms)
+    kinds: list[BuiltKind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    return kinds[int(rng.integers(len(kinds)))]
 
 
 def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
@@ -141,7 +156,7 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
     """Returns the index of the arm in the required direction."""
     take = clause.take
     if clause.kind == "y_junction":
-        return len(angles) - 1 if take == "left" else 0
+        return {"left": len(angles) - 1, "right": 0}.get(take or "")
     sides = sides_of(angles)
     lefts = [n for n, angle in enumerate(angles) if angle > CLEAR]
     rights = [n for n, angle in enumerate(angles) if angle < -CLEAR]
