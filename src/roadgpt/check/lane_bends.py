@@ -1,26 +1,28 @@
 """Measures how tightly lines beside a centre line bend, such as the middle or the edge of a lane."""
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.geometry import CubicProfile, PieceCurve
+from roadgpt.geometry.curve import Array
 from roadgpt.network import NetworkRoad
 
 GRID = np.linspace(0.0, 1.0, 33)  # of a piece whose lane varies in width
 INSIDE = 1e-9  # m from the end of a road, so that the width is that before its end
 
 
-class Bend(NamedTuple):
+class LaneBend(NamedTuple):
     """Where a line bends most: the station of the centre line and the radius of the line, in metres."""
 
     s: float
     radius: float
 
 
-def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> Bend | None:
+def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> LaneBend | None:
     """Returns the tightest bend of a line through the right lane of a connecting road.
 
     The line is at ``share`` of the width of the lane to the right of the centre line: 0.5 for the middle of
@@ -38,11 +40,14 @@ def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -
     plan, width = member.road.plan, member.profile.right[0].width
     assert isinstance(plan, PieceCurve)
     if isinstance(width, CubicProfile):
-        rows: Iterable[tuple[float, float]] = _sampled(plan, width, share)
+        s, curvature = _sampled(member, share)
+        bends = -curvature if only_right else np.abs(curvature)
+        worst = int(bends.argmax())
+        at, bend = float(s[worst]), float(bends[worst])
     else:
         rows = _exact(plan, -share * width)
-    s, bend = max(((s, -k if only_right else abs(k)) for s, k in rows), key=lambda row: row[1])
-    return Bend(s, 1 / bend) if bend > 0 else None
+        at, bend = max(((s, -k if only_right else abs(k)) for s, k in rows), key=lambda row: row[1])
+    return LaneBend(at, 1 / bend) if bend > 0 else None
 
 
 def _exact(plan: PieceCurve, t: float) -> Iterator[tuple[float, float]]:
@@ -55,16 +60,27 @@ def _exact(plan: PieceCurve, t: float) -> Iterator[tuple[float, float]]:
         s += piece.length
 
 
-def _sampled(plan: PieceCurve, width: CubicProfile, share: float) -> list[tuple[float, float]]:
+def _sampled(member: NetworkRoad, share: float) -> tuple[Array, Array]:
     """Returns stations and curvatures of a curve at ``share`` of a width that varies."""
-    rows = np.array([(piece.length, piece.k0, piece.k1) for piece in plan.pieces])
-    length, k0, k1 = rows.T[..., None]
-    k = (k0 + (k1 - k0) * GRID).ravel()
-    s = ((np.cumsum(length)[:, None] - length) + length * GRID).ravel()
-    at = np.minimum(s, plan.length - INSIDE)
-    d, d1, d2 = (-share * f(at) for f in (width.height, width.grade, width.vertical_curvature))
-    slope = np.repeat((k1 - k0) / length, len(GRID), axis=1).ravel()
+    s, k, slope, *widths = _frames(member)
+    d, d1, d2 = (-share * each for each in widths)
     along = 1 - d * k
-    across = (along * (d2 + along * k) + d1 * (d1 * k + d * slope + d1 * k)) / np.hypot(along, d1) ** 3
-    bend = np.where(along > 0, across, np.copysign(np.inf, k))
-    return list(zip(s.tolist(), bend.tolist(), strict=True))
+    with np.errstate(divide="ignore", invalid="ignore"):  # where the curve folds
+        bend = (along * (d2 + along * k) + d1 * (2 * d1 * k + d * slope)) / np.hypot(along, d1) ** 3
+    return s, np.where(along > 0, bend, np.copysign(np.inf, k))
+
+
+@lru_cache(maxsize=128)
+def _frames(member: NetworkRoad) -> tuple[Array, Array, Array, Array, Array, Array]:
+    """Returns stations of a connecting road, its curvature there and the change of it per metre, and the
+    width of its lane with its first and second derivative.
+    """
+    plan, width = member.road.plan, member.profile.right[0].width
+    assert isinstance(plan, PieceCurve)
+    assert isinstance(width, CubicProfile)
+    length, k0, k1 = np.array([(piece.length, piece.k0, piece.k1) for piece in plan.pieces]).T[..., None]
+    k = (k0 + (k1 - k0) * GRID).ravel()
+    s = (np.cumsum(length)[:, None] - length + length * GRID).ravel()
+    slope = np.repeat((k1 - k0) / length, len(GRID), axis=1).ravel()
+    at = np.minimum(s, plan.length - INSIDE)
+    return s, k, slope, width.height(at), width.grade(at), width.vertical_curvature(at)
