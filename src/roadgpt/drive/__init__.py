@@ -19,7 +19,8 @@ from roadgpt import plugins
 from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
 from roadgpt.drive.loading import driver_of
-from roadgpt.drive.view import CameraSpec, Command, View
+from roadgpt.drive.passages import route_of
+from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
@@ -38,6 +39,7 @@ __all__ = [
     "Drive",
     "Driver",
     "Ended",
+    "JunctionAhead",
     "Simulator",
     "View",
     "simulate",
@@ -63,7 +65,8 @@ class Simulator(Protocol):
     """Simulates a car and its physics.
 
     A simulator that cannot apply some field of the World, such as "friction", lists the field's name in an
-    attribute ``ignores``. If a user sets one of these fields, an error is raised.
+    attribute ``ignores``. If a user sets one of these fields, an error is raised. A simulator that cannot
+    drive routes through junctions has an attribute ``single_roads_only`` that is True.
     """
 
     def simulate(
@@ -109,7 +112,7 @@ def simulate(
     Raises:
         PartError: there is no simulator or driver of that name.
         UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
-            world or the superelevation of the road.
+            world, the superelevation of the road, or the junctions of a route.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
         SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
     """
@@ -126,7 +129,7 @@ def simulate(
 
 
 def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -> None:
-    """Checks that the simulator can apply every setting of the world, and the superelevation of the road.
+    """Checks that the simulator can apply every setting of the world, and can drive on the road.
 
     Args:
         simulator: the simulator or its class.
@@ -136,10 +139,12 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
 
     Raises:
         UsageError: the simulator cannot apply a field that the world sets, or the superelevation of the road;
-            the message says which.
+            the message says which. Or the road is a route, and the simulator has no junctions.
     """
     from roadgpt.road import World
 
+    if road is not None and route_of(road) is not None and getattr(simulator, "single_roads_only", False):
+        raise UsageError("this simulator cannot build junctions yet; drive in the simulator mujoco")
     values, usual = world.values(), World().values()
     ignored = getattr(simulator, "ignores", ())
     profile = None if road is None else road.profile

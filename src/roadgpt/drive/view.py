@@ -3,7 +3,27 @@
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
+    from roadgpt.network import Route
     from roadgpt.road import Road, World
+
+
+class JunctionAhead(NamedTuple):
+    """A junction that the route passes, as a driver sees it."""
+
+    distance: float
+    """Distance in metres along the route from the car's centre of gravity to the junction; 0 inside it."""
+    kind: str
+    """"t_junction", "y_junction", "crossroads", "star" or "roundabout"."""
+    turn: float
+    """Change of direction in radians from the road of arrival to the road of departure, left positive, in
+    (-pi, pi]."""
+    exit: int
+    """Number of the road on which the route leaves, counted counter-clockwise from the road of arrival. At a
+    roundabout it is the number of the exit."""
+    control: str
+    """What applies to the car: "priority", "yield", "stop", "lights" or "none". Lights are always green."""
+    length: float
+    """Length in metres of the way through the junction that is still ahead."""
 
 
 class View(NamedTuple):
@@ -47,6 +67,14 @@ class View(NamedTuple):
     image: Any = None
     """The driver's camera image, shape (height, width, 3), uint8; None if the driver has no attribute
     ``camera``."""
+    route: "Route | None" = None
+    """The road as a way through a network of roads; None on a single road."""
+    junctions: tuple[JunctionAhead, ...] = ()
+    """The junctions on the route that the car has not left yet, nearest first."""
+    lanes_left: int = 0
+    """Number of driving lanes to the left of the lane that the car is to follow, oncoming lanes included."""
+    lanes_right: int = 0
+    """Number of driving lanes to the right of this lane."""
 
 
 class CameraSpec(NamedTuple):

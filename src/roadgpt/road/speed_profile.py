@@ -139,13 +139,22 @@ def lane_speed(
     return np.array(plan_speed(lane, limits))
 
 
-def plan_speed(line: PathGeometry, limits: DrivingLimits) -> list[float]:
+def plan_speed(
+    line: PathGeometry, limits: DrivingLimits, highest: Sequence[float] | None = None
+) -> list[float]:
     """Returns the speed in m/s at every station of the path.
 
     The wheel load takes slopes, crests, dips and superelevation into account. Without superelevation it is
     ``g cos(slope angle) + v^2 * vertical curvature`` per unit of mass.
+
+    Args:
+        line: The path.
+        limits: The limits that the driver respects.
+        highest: The highest speed in m/s at each station, besides these limits; None for no other.
     """
     top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
+    if highest is not None:
+        top = [min(speed, most) for speed, most in zip(top, highest, strict=True)]
     _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)
     _sweep(line, top, limits.lateral, limits.traction, limits.power, forward=True)
     return top

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.drive.driving_line import FloatArray, line_along, pursuit_curvature, stations
+from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -39,6 +40,10 @@ class BeamngLike:
     All recordings have the same speed limit and a dry two-lane road without superelevation. Three properties
     of the driver are therefore assumptions: it cuts more at a higher speed limit (``eagerness``), it always
     plans for a dry road (``assumed_friction``), and its planned speed takes superelevation into account.
+
+    No recording has a junction. Inside junctions and roundabouts it drives as people do
+    (``roadgpt.drive.turning``): its middle keeps 1.5 m from both edges of its lane, it is as fast as drivers
+    are on the radius of its line, and it stops at stop signs.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
@@ -96,7 +101,9 @@ class BeamngLike:
             min(self.risk, most), min(BRAKING, most), min(TRACTION, most), world.limits.speed_limit
         )
         # Like BeamNG's plan, this one considers slopes but not crests. Superelevation is an assumption.
-        self._line, self._speed = line, plan_speed(replace(line, crest=[0.0] * len(line.crest)), limits)
+        level = replace(line, crest=[0.0] * len(line.crest))
+        self._line, self._speed = line, plan_speed(level, limits, highest_speeds(road, line))
+        self._signs = StopSigns(road)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
         """Returns the curvature of the lane's middle in 1/m at the stations of the line, smoothed so that
@@ -113,7 +120,8 @@ class BeamngLike:
         middle = profile.middle(s)
         cut = self.cut * (world.limits.speed_limit / USUAL) ** self.eagerness
         offset: FloatArray = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
-        return offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
+        kept = offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
+        return kept_in_lane(road, world, s, kept, PURSUIT_CUTS * bend)
 
     def _kept_on(self, profile: "Profile", s: FloatArray, bend: FloatArray, offset: FloatArray) -> FloatArray:
         """Returns the offsets, moved away from edges of the carriageway that have no shoulder."""
@@ -140,8 +148,10 @@ class BeamngLike:
         here, _ = line.place(view.s)
         error = self._speed[here] - v
         if error > 0:
-            return Command(steer, min(self.throttle * error, 1.0), 0.0)
-        return Command(steer, 0.0, min(-self.brake * error, 1.0))
+            command = Command(steer, min(self.throttle * error, 1.0), 0.0)
+        else:
+            command = Command(steer, 0.0, min(-self.brake * error, 1.0))
+        return self._signs.obeyed(view, command)
 
 
 def _smoothed(values: FloatArray, step: float) -> FloatArray:

@@ -6,7 +6,9 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING
 
+from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
+from roadgpt.drive.passages import passages
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:
@@ -16,6 +18,8 @@ EVERY = 2  # control steps from one image to the next: 25 images a second
 SPACING = 2.0  # m between the places at which the lane is looked at
 SPEED_GAIN = 2.0  # 1/s, acceleration per speed error
 LEAST_AHEAD = 1.0  # m; nearer places say nothing about a crest
+TAKEN_OVER = 50.0  # m before a junction, from which the person at the wheel drives
+GIVEN_BACK = 10.0  # m behind a junction, from which the lane centring steers again
 STRAIGHT = 1e-6  # 1/m; a smaller curvature limits no speed
 TURN = 2 * math.pi
 
@@ -31,6 +35,11 @@ class LaneCentring:
     metres to either side of the car's axis and in front of any crest. A tight bend leaves the image early,
     so the car slows down for it late. It then needs more lateral acceleration than its steering gives, and
     leaves its lane on the outside of the bend.
+
+    Lane centring is not made for the turns of junctions (comma.ai's openpilot lists intersections among its
+    limitations, because its steering torque is limited). So from 50 m before a junction or roundabout until
+    10 m behind it, the person at the wheel drives, as the driver ``reference`` does, and longer if the car is
+    too fast for the bends that the camera sees.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -77,7 +86,10 @@ class LaneCentring:
 
     def start(self, road: "Road", world: "World", seed: int) -> None:
         """Computes the middle of the lane, and forgets the last road."""
-        del seed  # the same road is driven the same way every time
+        self._by_person = [(way.start - TAKEN_OVER, way.end + GIVEN_BACK) for way in passages(road)]
+        self._person, self._is_person = Reference(), False
+        if self._by_person:
+            self._person.start(road, world, seed)
         s = stations(road)
         middle = world.profile_of(road).middle(s)
         self._line = line_along(road, middle)
@@ -88,7 +100,17 @@ class LaneCentring:
         self._waiting: deque[float] = deque()
 
     def steer(self, view: View) -> Command:
-        """Steers for an image of ``lag`` seconds ago, and drives as fast as the bends in sight allow."""
+        """Steers for an image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
+
+        Near junctions, returns what the person at the wheel does.
+        """
+        command = self._centred(view)
+        is_near = any(first <= view.s <= last for first, last in self._by_person)
+        self._is_person = is_near or (self._is_person and view.speed > self._speed)
+        return self._person.steer(view) if self._is_person else command
+
+    def _centred(self, view: View) -> Command:
+        """Returns what the lane centring and the cruise control do."""
         if self._steps % EVERY == 0:
             self._look(view)
         self._steps += 1

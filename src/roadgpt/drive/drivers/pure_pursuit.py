@@ -4,6 +4,7 @@ import math
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along, pedals, pursuit_curvature, stations
+from roadgpt.drive.turning import StopSigns, highest_speeds
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import DrivingLimits, plan_speed
 
@@ -14,7 +15,8 @@ if TYPE_CHECKING:
 class PurePursuit:
     """Steers along a circle to a point ahead in the middle of the lane; ignores tyre slip.
 
-    It cuts bends at low speed and runs wide at high speed: a weak baseline.
+    It cuts bends at low speed and runs wide at high speed: a weak baseline. In junctions it drives no faster
+    than people do, and it stops at stop signs (``roadgpt.drive.turning``).
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.95 times the friction.
@@ -36,10 +38,12 @@ class PurePursuit:
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, 0.95 * world.site.friction)
         limits = DrivingLimits(lateral, lateral, lateral, world.limits.speed_limit)
-        self._line, self._speed = line, plan_speed(line, limits)
+        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
+        self._signs = StopSigns(road)
 
     def steer(self, view: View) -> Command:
         """Steers towards a point of the lane's middle ahead of the car, and follows the planned speed."""
         line = self._line
         bend = pursuit_curvature(line, view, max(self.headway * view.speed, self.nearest))
-        return Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))
+        command = Command(math.atan(self.wheelbase * bend), *pedals(line, self._speed, view.s, view.speed))
+        return self._signs.obeyed(view, command)

@@ -5,6 +5,7 @@ import math
 from typing import TYPE_CHECKING
 
 from roadgpt.drive.driving_line import line_along, pedals, stations
+from roadgpt.drive.turning import StopSigns, highest_speeds
 from roadgpt.drive.view import Command, View
 from roadgpt.road.speed_profile import GRAVITY, DrivingLimits, plan_speed
 
@@ -21,7 +22,8 @@ class Reference:
     accurate path tracking and stability at the limits of handling", Vehicle System Dynamics 53 (2015): the
     steady-state steering angle for the bend ahead, plus feedback on the lateral error at a point ahead of the
     car, with the slip angle taken into account. The planned speed respects the friction circle, and takes
-    grades, crests and superelevation into account.
+    grades, crests and superelevation into account. In junctions it drives no faster than people do, and it
+    stops at stop signs (``roadgpt.drive.turning``).
 
     Args:
         risk: planned lateral acceleration in bends, in g; at most 0.72 times the friction.
@@ -64,7 +66,8 @@ class Reference:
         line = line_along(road, world.profile_of(road).middle(stations(road)))
         lateral = min(self.risk, FRICTION_USED * world.site.friction)
         limits = DrivingLimits(lateral, BRAKING * lateral, TRACTION * lateral, world.limits.speed_limit)
-        self._line, self._speed = line, plan_speed(line, limits)
+        self._line, self._speed = line, plan_speed(line, limits, highest_speeds(road, line))
+        self._signs = StopSigns(road)
 
     def steer(self, view: View) -> Command:
         """Steers for the bend ahead and against the lateral error; follows the planned speed."""
@@ -80,7 +83,7 @@ class Reference:
         drift = self.to_rear * bend - self.slip * lateral
         steer = self.wheelbase * bend + self.understeer * lateral
         steer -= self.gain * (error + (self.ahead + self.headway * v) * (turned + drift))
-        return Command(steer, *pedals(line, self._speed, view.s, v))
+        return self._signs.obeyed(view, Command(steer, *pedals(line, self._speed, view.s, v)))
 
 
 FRICTION_USED = 0.72  # share of the friction that bends may need; the rest is for corrections

@@ -23,12 +23,14 @@ from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation import protocol
 from roadgpt.drive.loading import load_driver
+from roadgpt.drive.passages import Outlook
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
 LOOK = 1.0  # s between two checks that the parent process still exists
 ALONE = 90.0  # s that compiled code may keep Python from running these checks; longer than a driver may take
+STATION = View._fields.index("s")
 MOST_SAID, MOST_TRACE = 4_000, 40_000  # characters of an error's message and traceback
 
 
@@ -75,6 +77,7 @@ class _DriverHost:
         self._road: Any = None
         self._world: Any = None
         self._picture: Any = None
+        self._outlook: Any = None
 
     def make(self, spec: str, *surroundings: Any) -> dict[str, Any]:
         """Creates a driver; ``surroundings`` are the folder, environment and module path of RoadGPT's
@@ -87,7 +90,7 @@ class _DriverHost:
 
     def show(self, road: Road, world: World) -> dict[str, Any]:
         """Keeps the road and the world for the views to come."""
-        self._road, self._world = road, world
+        self._road, self._world, self._outlook = road, world, Outlook(road, world)
         return {}
 
     def start(self, seed: int) -> dict[str, Any]:
@@ -101,12 +104,13 @@ class _DriverHost:
         if image is not None and not isinstance(image, str):
             self._picture = image
         picture = None if image is None else self._picture
-        view = View._make((*place, self._road, self._world, *motion, picture))
+        ahead = self._outlook.at(place[STATION])
+        view = View._make((*place, self._road, self._world, *motion, picture, *ahead))
         return {"command": self._guard.ask(view)}
 
     def forget(self) -> None:
         """Discards the driver; if it has left threads running, ends the process."""
-        self._guard = self._road = self._world = self._picture = None
+        self._guard = self._road = self._world = self._picture = self._outlook = None
         if not self._start.is_alone():
             os._exit(0)
 

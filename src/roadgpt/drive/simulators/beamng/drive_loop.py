@@ -14,6 +14,7 @@ from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
 from roadgpt.drive.drive_monitor import STUCK_WAY, DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.marking_monitor import POSE
+from roadgpt.drive.passages import Outlook
 from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.tracking import LOCK, CarSample, RoadTracker, interpolate_samples
 from roadgpt.drive.view import View
@@ -50,6 +51,7 @@ class DriveLoop:
         self.loaded, self.road, self.world, self.guard = loaded, road, world, guard
         self.track = RoadTracker(road, world, loaded.body)
         self.monitor = DriveMonitor(road, world, loaded.body.box(LOCK))
+        self.outlook = Outlook(road, world)
         self.samples: list[Sample] = []
         self.has_left = False
 
@@ -101,7 +103,8 @@ class DriveLoop:
     def _view(self, here: Sample, image: FloatArray | None) -> View:
         now, dt = here.car, 1.0 / self.loaded.settings.rate
         state = (now.time, now.x, now.y, now.z, now.heading, now.speed, now.yaw_rate, here.s, here.t)
-        return View(*state, self.road, self.world, here.steer, dt, now.vx, now.vy, image)
+        ahead = self.outlook.at(here.s)
+        return View(*state, self.road, self.world, here.steer, dt, now.vx, now.vy, image, *ahead)
 
     def _keep(self, now: CarSample, command: tuple[float, float, float]) -> None:
         self.samples.append(self._sample(now, command))

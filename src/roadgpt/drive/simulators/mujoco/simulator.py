@@ -8,6 +8,7 @@ from roadgpt.drive.camera_sensor import CameraSensor, camera_of
 from roadgpt.drive.drive import COLUMNS, Columns, Drive
 from roadgpt.drive.drive_monitor import DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
+from roadgpt.drive.passages import Outlook
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car
 from roadgpt.drive.simulators.mujoco.vehicle import CONTROL, Vehicle
 from roadgpt.drive.view import View
@@ -38,6 +39,7 @@ class MujocoSimulator:
         guard, camera = DriverGuard(driver), camera_of(driver)
         vehicle = Vehicle.on(road, world, self.car)
         sensor = None if camera is None else CameraSensor(camera, road, world)
+        outlook, station = Outlook(road, world), _NAMES.index("s")
         monitor = DriveMonitor(road, world, self.car.box, keep_driving)
         with guard.watched():
             guard.start(road, world, seed)
@@ -48,7 +50,9 @@ class MujocoSimulator:
                 now = vehicle.row.tolist()
                 *place, steer, vx, vy = (now[i] for i in _SEEN)
                 image = None if sensor is None else sensor.see(vehicle.see())
-                view = View._make((step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image))
+                ahead = outlook.at(now[station])
+                here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)
+                view = View._make((*here, *ahead))
                 vehicle.move(*guard.ask(view))
                 look()
                 rows.append(vehicle.row.tobytes())

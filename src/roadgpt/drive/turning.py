@@ -1,0 +1,125 @@
+"""How people drive through junctions: how fast they turn, where in their lane, and that they stop at stop
+signs. All drivers of RoadGPT do the same inside junctions; on roads without junctions they use none of this.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from roadgpt.drive.driving_line import FULL_BRAKE, DrivingLine, FloatArray, pedals_for
+from roadgpt.drive.passages import passages
+from roadgpt.drive.view import Command, View
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+SPEED, EXPONENT = 8.6164, 0.3673
+"""Speed in km/h at a radius of 1 m, and the exponent with which it grows with the radius.
+
+Source: NCHRP Report 672, Roundabouts: An Informational Guide, 2nd ed. (2010), equation 6-2 (superelevation
+-2 %), in the metric units of the first edition (FHWA-RD-00-067). The equation rests on the side friction that
+drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Establishing Speed Zones).
+"""
+GENTLE = 200.0  # m, a radius from which nobody slows down inside a junction
+EDGE = 1.5  # m, from the middle of a car to the edge of its lane on the fastest path: NCHRP 672, 6.7.2
+BLEND = 10.0  # m before and behind a junction, over which the line of the road becomes that of the junction
+
+FRONT = 2.25  # m, from the centre of gravity to the front of RoadGPT's saloon
+BEFORE_LINE = 1.0  # m, from its front to the stop line, where it stops
+CREEP = 1.0  # m/s, planned speed there: the slowest that is planned
+BRAKING = 3.4  # m/s^2, with which most drivers brake without effort: AASHTO Green Book, stopping distance
+HALTED = 0.05  # m/s, below which it stands; a verdict asks for less than 0.1
+REACH = 4.0  # m before the line, within which it has to stand: as in CARLA's test of stop signs
+LEAST_BRAKE = 0.25  # of the pedal
+NEAR, ROLL_UP = 10.0, 1.0  # m, m/s^2: a car that stands so near before its stopping place rolls up to it
+
+
+def turning_speed(curvature: float) -> float:
+    """Returns the speed in m/s at which people drive through a bend of a junction or roundabout.
+
+    On a radius of 10 m it is 20 km/h (3.1 m/s^2 to the side), on 15 m 23 km/h (2.8), on 30 m 30 km/h (2.3).
+
+    Args:
+        curvature: Curvature of the driven line in 1/m.
+    """
+    if abs(curvature) * GENTLE < 1:
+        return math.inf
+    return SPEED / 3.6 / math.pow(abs(curvature), EXPONENT)
+
+
+def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
+    """Returns the speeds in m/s that bends in junctions and stop signs allow, one for each station of a line.
+
+    The result is None on a road without junctions.
+    """
+    ways = passages(road)
+    if not ways:
+        return None
+    found = [math.inf] * len(line.x)
+    for way in ways:
+        first, last = line.place(way.start)[0], line.place(way.end)[0] + 1
+        found[first : last + 1] = map(turning_speed, line.curvature[first : last + 1])
+        if way.stop_line is not None:
+            stop = line.place(way.stop_line - FRONT - BEFORE_LINE)[0]
+            for i in range(stop + 1):
+                braking = math.sqrt(CREEP**2 + 2 * BRAKING * (stop - i) * line.step)
+                found[i] = min(found[i], braking)
+    return found
+
+
+def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
+    """Returns 1 for each station inside a junction, and less within ``BLEND`` metres before and behind."""
+    share = np.zeros(s.shape)
+    for way in passages(road):
+        away = np.clip(np.maximum(way.start - s, s - way.end) / BLEND, 0.0, 1.0)
+        share = np.maximum(share, (1 - away) ** 2 * (1 + 2 * away))
+    return share
+
+
+def kept_in_lane(
+    road: "Road", world: "World", s: FloatArray, offset: FloatArray, inwards: FloatArray
+) -> FloatArray:
+    """Returns the offsets of a planned line, changed in junctions so that the car keeps to its lane.
+
+    In a junction the middle of the car stays ``EDGE`` metres from both edges of its lane, or in the middle of
+    a lane that is narrower than that.
+
+    Args:
+        road: The road or route; without junctions, the offsets are returned unchanged.
+        world: The World.
+        s: Stations of the line in metres, ``(n,)``.
+        offset: Offsets of the line in metres to the left of the centre line, ``(n,)``.
+        inwards: How far in metres to the left of its line the car drives, because it cuts bends, ``(n,)``.
+    """
+    if not passages(road):
+        return offset
+    profile = world.profile_of(road)
+    middle, room = profile.middle(s), np.maximum(profile.width(s) / 2 - EDGE, 0.0)
+    driven = middle + np.clip(offset + inwards - middle, -room, room)
+    kept: FloatArray = offset + share_of_junction(road, s) * (driven - inwards - offset)
+    return kept
+
+
+class StopSigns:
+    """Makes a driver stop at the stop signs of a route: it stands once before each line, then drives on."""
+
+    def __init__(self, road: "Road") -> None:
+        """Prepares the stop lines of a route; on a road without stop signs, no command is changed."""
+        self._lines = [way.stop_line for way in passages(road) if way.stop_line is not None]
+
+    def obeyed(self, view: View, command: Command) -> Command:
+        """Returns the command, with the brakes applied where the car has to stop before a line."""
+        if not self._lines:
+            return command
+        left = self._lines[0] - view.s - FRONT
+        if left > BEFORE_LINE + view.speed * view.dt:
+            if left < NEAR and view.speed < CREEP / 2:  # it stood too early, where its plan still brakes
+                grade = float(view.road.grade(view.s))
+                return Command(command.steer, *pedals_for(ROLL_UP, grade, view.speed))
+            return command
+        if (view.speed < HALTED and left < REACH) or left < -REACH:
+            del self._lines[0]
+            return command
+        needed = view.speed**2 / 2 / max(left, BEFORE_LINE / 2)
+        return Command(command.steer, 0.0, min(max(needed / FULL_BRAKE, LEAST_BRAKE), 1.0))

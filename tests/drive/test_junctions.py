@@ -1,0 +1,200 @@
+"""How drivers drive through junctions, and what they see of them. Numbers are worked out on paper."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from roadgpt import plugins
+from roadgpt.drive import Command, Drive, JunctionAhead, View, simulate
+from roadgpt.drive.passages import Outlook
+from roadgpt.drive.simulators.beamng import BeamngSimulator
+from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane, turning_speed
+from roadgpt.errors import UsageError
+from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.road import CrossSection, Limits, Road, World
+from roadgpt.verdict import judge
+
+WORLD = World(limits=Limits(speed_limit=50 / 3.6))
+DRIVERS = ("beamng_like", "lane_centring", "pure_pursuit", "reference")
+
+
+def route(*junctions: dict[str, Any], world: World = WORLD) -> Route:
+    """A route with 60 m of straight road before, between and behind its junctions."""
+    data: dict[str, Any] = {"starting_point": [0, 0, 0], "theta": 0}
+    turns_back = junctions[-1]["take"] == 4  # on the road of arrival, which has no segments of its own
+    for n in range(len(junctions) + (not turns_back)):
+        data[f"road_segment{n + 1}"] = {
+            "distance": 60.0, "direction": "straight", "incline": 0, "turn_degrees": 0
+        }  # fmt: skip
+        if n < len(junctions):
+            data[f"junction{n + 1}"] = {"after": n + 1, **junctions[n]}
+    return build_route(read_network_design(data)[0], world).on_ground()
+
+
+CROSS = {"kind": "crossroads", "take": "left", "control": "stop", "kerb": 8}
+ROUND = {"kind": "roundabout", "take": 3, "radius": 16}
+
+
+def test_people_turn_at_the_speeds_of_the_published_equation() -> None:
+    # NCHRP 672, equation 6-2 in its own units: V = 3.4614 R^0.3673, mph and feet
+    for feet in (30.0, 50.0, 100.0, 200.0):
+        mph = 3.4614 * feet**0.3673
+        assert turning_speed(-1 / (feet * 0.3048)) == pytest.approx(mph * 0.44704, rel=1e-3)
+    assert turning_speed(0.0) == turning_speed(1 / 300) == math.inf
+
+
+def test_a_driver_sees_the_junctions_that_are_still_ahead() -> None:
+    way = route(CROSS, ROUND)
+    outlook = Outlook(way, WORLD)
+    seen, (first, second), left, right = outlook.at(12.5)
+    assert seen is way
+    assert isinstance(first, JunctionAhead)
+    assert first.distance == pytest.approx(47.5)
+    assert (first.kind, first.exit, first.control) == ("crossroads", 3, "stop")
+    assert first.turn == pytest.approx(math.pi / 2)
+    # a quarter of an arc with clothoids: shorter than the way around the corner, longer than straight across
+    reach = math.dist(way.plan.at(60.0), way.plan.at(60.0 + first.length))
+    assert reach < first.length < reach * math.sqrt(2)
+    assert (second.kind, second.exit, second.control) == ("roundabout", 3, "yield")
+    assert second.turn == pytest.approx(math.pi / 2)  # the third of four arms lies to the left
+    assert second.distance == pytest.approx(47.5 + first.length + 60)
+    assert (left, right) == (1, 0)
+
+    inside = outlook.at(61.0)
+    assert inside[1][0].distance == 0.0
+    assert inside[1][0].length == pytest.approx(first.length - 1.0)
+    assert inside[2:] == (0, 0)
+    assert len(outlook.at(60.0 + first.length + 0.01)[1]) == 1
+    assert outlook.at(way.length)[1] == ()
+
+
+def test_exits_are_counted_as_drivers_do() -> None:
+    for kind, number, turn in (("crossroads", 1, -90), ("crossroads", 2, 0), ("t_junction", 2, 90)):
+        (ahead,) = Outlook(route({"kind": kind, "take": number}), WORLD).at(0.0)[1]
+        assert ahead.exit == number
+        assert math.degrees(ahead.turn) == pytest.approx(turn, abs=1e-6)
+    (back,) = Outlook(route({"kind": "roundabout", "take": 4, "radius": 16}), WORLD).at(0.0)[1]
+    assert back.exit == 4
+    assert abs(math.degrees(back.turn)) == pytest.approx(180)
+
+
+def test_on_a_single_road_a_driver_sees_no_junctions_but_its_lanes() -> None:
+    road = Road.through([[0, 0], [50, 0], [100, 0]])
+    assert Outlook(road, WORLD).at(50.0) == (None, (), 1, 0)
+    wide = World(section=CrossSection(lanes="3+1"))  # the car keeps to the rightmost lane
+    assert Outlook(wide.lay(road), wide).at(50.0) == (None, (), 3, 0)
+
+
+def test_a_view_of_sixteen_values_is_still_a_view() -> None:
+    given = (0.0,) * 9 + (None, WORLD) + (0.0,) * 4 + (None,)
+    view = View(*given)  # type: ignore[arg-type]
+    assert (view.route, view.junctions, view.lanes_left, view.lanes_right) == (None, (), 0, 0)
+
+
+class Watches:
+    """Drives like the reference, and keeps what it saw."""
+
+    def __init__(self) -> None:
+        self._own = plugins.find("drivers", "reference")()
+        self.seen: list[View] = []
+
+    def start(self, road: Road, world: World, seed: int) -> None:
+        self._own.start(road, world, seed)
+
+    def steer(self, view: View) -> Command:
+        self.seen.append(view)
+        command: Command = self._own.steer(view)
+        return command
+
+
+def test_views_follow_the_car() -> None:
+    way, driver = route(CROSS), Watches()
+    simulate(way, WORLD, driver)
+    first = driver.seen[0]
+    assert first.route is way
+    assert first.junctions[0].distance == pytest.approx(60 - first.s)
+    assert driver.seen[-1].junctions == ()
+    distances = [view.junctions[0].distance for view in driver.seen if view.junctions]
+    assert distances[-1] == 0.0
+    assert all(a >= b - 0.01 for a, b in pairwise(distances))
+
+
+FILE = """
+from roadgpt.drive import Command
+class Old:
+    def steer(self, view):
+        if view.route is None or len(view.junctions) != 1 or view.junctions[0].kind != "crossroads":
+            raise ValueError("saw nothing")
+        return Command(0.0, 0.3, 0.0)
+"""
+
+
+def test_a_driver_in_its_own_process_sees_them_too(tmp_path: Path) -> None:
+    (tmp_path / "old.py").write_text(FILE, encoding="utf-8")
+    drive = simulate(route(CROSS), WORLD, f"{tmp_path / 'old.py'}:Old")
+    assert drive.ended == "out_of_lane"  # it went straight on
+
+
+def slowest_near(drive: Drive, station: float, reach: float) -> float:
+    front = drive["s"] + drive.car.ahead + drive.car.length / 2
+    near = (front > station - reach) & (front < station)
+    return float(drive["speed"][near].min())
+
+
+@pytest.mark.parametrize("name", DRIVERS)
+@pytest.mark.parametrize("friction", [1.0, 0.6])
+def test_all_drivers_stop_at_the_sign_and_turn_as_people_do(name: str, friction: float) -> None:
+    world = WORLD.changed(friction=friction)
+    way = route(CROSS, ROUND, world=world)
+    drive = simulate(way, world, name)
+    verdict = judge(way, drive, world)
+    assert verdict.kept, verdict.description
+    assert slowest_near(drive, 60.0, 4.0) < 0.1
+    inside = np.zeros(len(drive), bool)
+    for each in Outlook(way, world).at(0.0)[1]:
+        inside |= (drive["s"] > each.distance) & (drive["s"] < each.distance + each.length)
+    lateral = np.abs(drive["speed"] * drive["yaw_rate"])[inside]
+    assert 1.5 < lateral.max() < 5.0  # people accept 3 m/s^2 here, and drivers follow their plan with errors
+    assert drive.max_outside < (0.25 if name == "beamng_like" else 0.05)
+
+
+def test_only_a_stop_sign_stops_them() -> None:
+    for control in ("none", "yield", "priority", "lights"):
+        drive = simulate(route({**CROSS, "control": control}), WORLD, "reference")
+        assert slowest_near(drive, 60.0, 4.0) > 3.0
+
+
+def test_a_car_that_stands_too_early_rolls_up_to_the_line() -> None:
+    way = route(CROSS)
+    signs, brakes = StopSigns(way), Command(0.1, 0.0, 0.5)
+    view = View(0.0, 0, 0, 0, 0, 0.0, 0, 60 - 9.0, -2, way, WORLD, 0.0, 0.02, 0.0, 0.0)
+    assert signs.obeyed(view, brakes).throttle > 0
+    assert signs.obeyed(view, brakes).steer == 0.1
+    far = view._replace(s=30.0, speed=10.0)
+    assert signs.obeyed(far, brakes) is brakes
+
+
+def test_lines_in_junctions_keep_one_and_a_half_metres_from_the_edges() -> None:
+    way = route({"kind": "crossroads", "take": "left"})
+    s = np.linspace(0, way.length, 400)
+    profile = WORLD.profile_of(way)
+    line = profile.middle(s) + 3.0  # far to the left
+    kept = kept_in_lane(way, WORLD, s, line, np.zeros(s.shape))
+    end = 60 + Outlook(way, WORLD).at(0.0)[1][0].length
+    inside = (s >= 60) & (s <= end)
+    assert kept[inside] == pytest.approx(profile.lane(s[inside]).left - 1.5)
+    away = (s < 50) | (s > end + 10)
+    assert kept[away] == pytest.approx(line[away])
+    assert np.abs(np.diff(kept)).max() < 0.2  # without jumps
+    single = Road.through([[0, 0], [50, 0], [100, 0]])
+    assert kept_in_lane(single, WORLD, s, line, line) is line
+    assert highest_speeds(single, None) is None  # type: ignore[arg-type]
+
+
+def test_beamng_refuses_routes_in_one_sentence() -> None:
+    with pytest.raises(UsageError, match=r"^this simulator cannot build junctions yet; [^.]*mujoco$"):
+        simulate(route(CROSS), WORLD, "reference", simulator=BeamngSimulator)  # type: ignore[arg-type]
