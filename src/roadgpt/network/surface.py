@@ -117,7 +117,7 @@ def _area_of(
         else:
             green += [part for part in shapely.get_parts(rest) if part.area > 0]
     used = shapely.union_all([network.paved, beside, *kerbed])
-    shoulder = polygons(shapely.difference(wide, used))
+    shoulder = polygons(shapely.difference(wide, used)) if width > 0 else shapely.MultiPolygon()
     height = junctions[0].node[2]
     numbers = tuple(each.id for each in junctions)
     return JunctionSurface(kind, height, numbers, paved, shoulder, tuple(kerbed), tuple(green))

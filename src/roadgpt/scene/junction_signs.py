@@ -19,6 +19,8 @@ MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.6}
 OCTAGON = np.pi / 8 + np.arange(8) * np.pi / 4
 TRIANGLE = np.pi / 2 + np.arange(3) * 2 * np.pi / 3 + np.pi
 DIAMOND = np.arange(4) * np.pi / 2
+LETTER = np.array([[-0.05, -0.12], [0.05, -0.12], [0.05, 0.12], [-0.05, 0.12]])
+LETTERS = (-0.24, -0.08, 0.08, 0.24)  # m from the middle of a stop sign to its letters, drawn as bars
 BOX, LENS = (0.32, 0.96, 0.25), 0.11  # m: width, height and depth of a traffic light; radius of a lens
 
 
@@ -39,7 +41,7 @@ def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
         yield from _lights(sign, top)
         return
     for layer, (colour, outline) in enumerate(_layers(sign)):
-        ahead = POLE + LAYER * (layer + 1)
+        ahead = POLE + LAYER * (min(layer, 2) + 1)
         if not layer:
             yield SignFace("grey", _placed(sign, outline[::-1], top, ahead))
         yield SignFace(colour, _placed(sign, outline, top, ahead))
@@ -48,8 +50,8 @@ def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
 def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
     """Returns the colours of a sign's front from the back to the front, each with its outline ``(n, 2)``."""
     if sign.control == "stop":
-        bar = np.array([[-0.3, -0.07], [0.3, -0.07], [0.3, 0.07], [-0.3, 0.07]])
-        return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), ("white", bar)]
+        letters: list[tuple[SignColour, Array]] = [("white", LETTER + [x, 0.0]) for x in LETTERS]
+        return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), *letters]
     if sign.control == "yield":
         return [("red", _polygon(TRIANGLE, 0.52)), ("white", _polygon(TRIANGLE, 0.33))]
     return [("white", _polygon(DIAMOND, 0.45)), ("yellow", _polygon(DIAMOND, 0.33))]

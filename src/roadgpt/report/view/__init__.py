@@ -27,6 +27,7 @@ SCRIPTS = (
     "trip.js",
     "grain.js",
     "ribbon.js",
+    "network.js",
     "land.js",
     "signs.js",
     "car.js",

@@ -6,20 +6,19 @@ import numpy as np
 
 from roadgpt.brief import sentence
 from roadgpt.check.describing import describe
-from roadgpt.errors import ExportError, UsageError
-from roadgpt.export.edges import stations
+from roadgpt.errors import UsageError
 from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
-from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
-from roadgpt.road import Profile, Road, World
+from roadgpt.report.view.columns import FINE, MILLIMETRES, road_columns, rounded
+from roadgpt.report.view.network import network_values
+from roadgpt.road import Road, World
 from roadgpt.road.profile import LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 
-CHORD = 0.01  # m, largest distance between the road and the drawn lines
 MOST_STEPS = 6000  # of a drive; 2 minutes are complete, longer ones are thinned
-MILLIMETRES, FINE = 3, 5  # digits
 DRIVE = {
     "time": 3,
     "x": MILLIMETRES,
@@ -52,6 +51,7 @@ def scene(run: Run) -> dict[str, Any]:
     """
     if run.road is None:
         raise UsageError(f"there is no road to show: {run.description}")
+    more = {"network": network_values(run.road)} if isinstance(run.road, Route) else {}
     return {
         "title": run.title,
         "outcome": outcome_of(run),
@@ -66,6 +66,7 @@ def scene(run: Run) -> dict[str, Any]:
         "severe": SCALE,
         "drive": _drive(run),
         "places": _places(run),
+        **more,
     }
 
 
@@ -78,44 +79,15 @@ def _words(road: Road) -> str:
 
 
 def _road(road: Road, world: World) -> dict[str, Any]:
+    """Returns the values of a road; for a route, its edges stand for its rims, as the ground is the
+    network's."""
     profile = world.profile_of(road)
-    try:
-        s = stations(road, profile.reach, CHORD)
-    except ExportError as error:
-        raise UsageError("the road has a number that is not finite; check it before it is shown") from error
-    points = road.at(s)
-    return {
-        "length": road.length,
-        "s": _rounded(s, MILLIMETRES),
-        "x": _rounded(points[:, 0], MILLIMETRES),
-        "y": _rounded(points[:, 1], MILLIMETRES),
-        "z": _rounded(points[:, 2], MILLIMETRES),
-        "heading": _rounded(np.unwrap(road.heading(s)), FINE),
-        "curvature": _rounded(road.curvature(s), FINE),
-        "grade": _rounded(road.grade(s), FINE),
-        "lanes": _lanes(profile, s),
-    }
-
-
-def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
-    """Returns the cross-section at the stations ``s``; offsets that are constant are given as one number."""
-    rims, edges = profile.rims(s), profile.edges(s)
-    shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
-    return {
-        "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
-        "against": profile.count[1],
-        "driven": profile.count[1] + profile.driven,
-        "middle": _offsets(profile.middle(s)),
-        "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},
-        "shoulder": round(float(shoulder), MILLIMETRES),
-        "reach": round(profile.reach, MILLIMETRES),
-        "bank": None if profile.superelevation_angle is None else _rounded(profile.superelevation(s), FINE),
-    }
-
-
-def _offsets(t: Array) -> float | list[float]:
-    found = _rounded(t, MILLIMETRES)
-    return found[0] if len(set(found)) == 1 else found
+    if not isinstance(road, Route):
+        return road_columns(road, profile)
+    made = road_columns(road, profile, profile.paved_reach)
+    bounds = made["lanes"]["bounds"]
+    made["lanes"]["rims"] = {"left": bounds[0]["t"], "right": bounds[-1]["t"]}
+    return made
 
 
 def _drive(run: Run) -> dict[str, Any] | None:
@@ -132,7 +104,7 @@ def _drive(run: Run) -> dict[str, Any] | None:
         "simulator": drive.simulator,
         "ended": drive.ended,
         "car": {**drive.car._asdict(), "height": round(float(height), MILLIMETRES)},
-        "columns": {name: _rounded(column, DRIVE[name]) for name, column in columns.items()},
+        "columns": {name: rounded(column, DRIVE[name]) for name, column in columns.items()},
     }
 
 
@@ -143,7 +115,3 @@ def _places(run: Run) -> list[dict[str, Any]]:
         named = {name: getattr(place, name) for name in ("x", "y", "s", "text", "colour", "letters")}
         found.append({**named, "time": time})
     return found
-
-
-def _rounded(values: Array, digits: int) -> list[float]:
-    return [round(float(value), digits) for value in values]

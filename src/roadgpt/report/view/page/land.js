@@ -9,9 +9,11 @@ const MEADOW = [0x84a067, 0x89a36b, 0x90a772];
 
 // Heights over a net of columns and rows.
 function landOf(scene) {
-  const { road, world } = scene;
-  const { reach: rim, shoulder } = road.lanes;
-  const frame = [extent(road.x, 40), extent(road.y, 40)];
+  const { world } = scene;
+  const roads = roadsOf(scene);
+  const { reach: rim, shoulder } = scene.network || scene.road.lanes;
+  const all = (name) => roads.flatMap((road) => road[name]);
+  const frame = [extent(all("x"), 40), extent(all("y"), 40)];
   if (scene.drive) {
     frame[0] = extent([...frame[0], ...scene.drive.columns.x]);
     frame[1] = extent([...frame[1], ...scene.drive.columns.y]);
@@ -27,29 +29,23 @@ function landOf(scene) {
   const net = { xs, ys, cell, wide: xs.inner.length, high: ys.inner.length };
   const reach = rim + cell * 1.45;
   if (shoulder <= 0) {
-    const level = Math.min(world.z_floor, extent(road.z)[0] - 1);
+    const level = Math.min(world.z_floor, extent(all("z"))[0] - 1);
     net.heights = new Float64Array(net.wide * net.high).fill(level);
     net.bank = 0;
     return net;
   }
-  net.heights = relief(net, road, reach);
-  const steep = extent(road.grade).reduce((most, grade) => Math.max(most, Math.abs(grade)), 0);
+  net.heights = relief(net, scene, reach);
+  const steep = extent(all("grade")).reduce((most, grade) => Math.max(most, Math.abs(grade)), 0);
   net.bank = 0.9 + steep * reach;
   return net;
 }
 
 // Near the road a little below its lowest point in reach; from there on smooth, with gentle hills.
-function relief(net, road, reach) {
+function relief(net, scene, reach) {
   const { xs, ys, cell, wide, high } = net;
   const heights = new Float64Array(wide * high).fill(Infinity);
   const away = new Float64Array(wide * high).fill(Infinity);
-  const step = Math.min(cell / 2, 2);
-  const count = Math.max(2, Math.ceil(road.length / step));
-  for (let n = 0; n <= count; n++) {
-    const s = (road.length * n) / count;
-    const place = onRoad(road, s, 0);
-    const { left, right } = road.lanes.rims;
-    const low = Math.min(place.z, ...(road.lanes.bank ? [left, right] : []).map((t) => onRoad(road, s, offsetAt(road, t, s)).z));
+  const lower = (place, low) => {
     const [i0, i1] = [place.x - reach, place.x + reach].map((x) => Math.round((x - xs.inner[0]) / cell));
     const [j0, j1] = [place.y - reach, place.y + reach].map((y) => Math.round((y - ys.inner[0]) / cell));
     for (let j = Math.max(0, j0); j <= Math.min(high - 1, j1); j++) {
@@ -61,7 +57,18 @@ function relief(net, road, reach) {
         away[at] = 0;
       }
     }
+  };
+  const step = Math.min(cell / 2, 2);
+  for (const road of roadsOf(scene)) {
+    const count = Math.max(2, Math.ceil(road.length / step));
+    for (let n = 0; n <= count; n++) {
+      const s = (road.length * n) / count;
+      const place = onRoad(road, s, 0);
+      const { left, right } = road.lanes.rims;
+      lower(place, Math.min(place.z, ...(road.lanes.bank ? [left, right] : []).map((t) => onRoad(road, s, offsetAt(road, t, s)).z)));
+    }
   }
+  for (const [x, y, z] of inGroups(scene.network ? scene.network.inside : [], 3)) lower({ x, y }, z);
   const fixed = Array.from(away, (distance) => distance === 0);
   spread(net, heights, away);
   for (let round = 0; round < 60; round++) smooth(net, heights, fixed);

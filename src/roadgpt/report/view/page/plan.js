@@ -48,8 +48,8 @@ function takesHold(canvas, move) {
 function makePlan(canvas, scene, trip, fastest, moveTo) {
   const { road, world } = scene;
   const columns = scene.drive && scene.drive.columns;
-  const ends = [extent(columns ? [...extent(road.x), ...extent(columns.x)] : road.x, 30),
-    extent(columns ? [...extent(road.y), ...extent(columns.y)] : road.y, 30)];
+  const shown = (name) => [...roadsOf(scene).flatMap((each) => each[name]), ...(columns ? columns[name] : [])];
+  const ends = [extent(shown("x"), 30), extent(shown("y"), 30)];
   const view = { scale: 1, x: 0, y: 0 };
   const px = (x) => (x - view.x) * view.scale;
   const py = (y) => (view.y - y) * view.scale;
@@ -104,16 +104,21 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     pen.strokeRect(px(0), py(world.map_size), world.map_size * view.scale, world.map_size * view.scale);
     pen.setLineDash([]);
     pen.lineJoin = "round";
-    const { bounds, driven, rims } = road.lanes;
-    ribbon(pen, rims.left, rims.right, LOOK.verge, 5);
-    ribbon(pen, bounds[0].t, bounds[bounds.length - 1].t, LOOK.asphalt, 4);
-    const lane = (offsetAt(road, bounds[driven].t, 0) - offsetAt(road, bounds[driven + 1].t, 0)) * view.scale;
-    if (lane > 3) bounds.slice(1, -1).forEach(({ t }) => trace(pen, ...along(t), "#fff", 0.8));
+    if (scene.network) paintNetwork(pen, scene, px, py, view.scale);
+    else single(pen);
     if (columns) path(pen);
     label(pen, size, 0, "start", LOOK.paper);
     label(pen, size, road.length, isLoop(view.scale) ? "" : "goal", LOOK.ink);
     scene.places.forEach((place) => cross(pen, px(place.x), py(place.y), 6, place.colour));
     scaleBar(pen, size, step);
+  }
+
+  function single(pen) {
+    const { bounds, driven, rims } = road.lanes;
+    ribbon(pen, rims.left, rims.right, LOOK.verge, 5);
+    ribbon(pen, bounds[0].t, bounds[bounds.length - 1].t, LOOK.asphalt, 4);
+    const lane = (offsetAt(road, bounds[driven].t, 0) - offsetAt(road, bounds[driven + 1].t, 0)) * view.scale;
+    if (lane > 3) bounds.slice(1, -1).forEach(({ t }) => trace(pen, ...along(t), "#fff", 0.8));
   }
 
   // Do both ends lie so near that their names would cover each other?

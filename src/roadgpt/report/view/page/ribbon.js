@@ -118,9 +118,16 @@ function apron(shape, road, bank, isEnd) {
 }
 
 function pavement(scene, origin, bank, grain) {
-  const { road } = scene;
-  const { bounds, against, rims, shoulder } = road.lanes;
   const shape = new Shape3(origin);
+  for (const road of roadsOf(scene)) sweep(shape, road, bank);
+  if (scene.network) junctions(shape, scene.network, bank);
+  return shape.mesh(THREE.MeshLambertMaterial, { map: grain });
+}
+
+// The surface of one road; `ends` says which of its ends are free, and both are if it says nothing.
+function sweep(shape, road, bank) {
+  const { bounds, against, rims, shoulder } = road.lanes;
+  const free = road.ends || [true, true];
   const s = road.s;
   const [left, right] = [bounds[0].t, bounds[bounds.length - 1].t];
   bounds.slice(1).forEach(({ t }, lane) => {
@@ -128,7 +135,7 @@ function pavement(scene, origin, bank, grain) {
   });
   band(shape, road, s, [left, -THICK], [left, 0], colourOf(SIDE));
   band(shape, road, s, [right, 0], [right, -THICK], colourOf(SIDE));
-  for (const end of [0, road.length]) cap(shape, road, end, offsetAt(road, left, end), offsetAt(road, right, end), colourOf(SIDE), end > 0);
+  for (const end of [0, road.length].filter((_, i) => free[i])) cap(shape, road, end, offsetAt(road, left, end), offsetAt(road, right, end), colourOf(SIDE), end > 0);
   if (shoulder > 0) {
     for (const [side, rim, edge] of [[1, rims.left, left], [-1, rims.right, right]]) {
       const pair = [[rim, -0.03], [edge, -0.02]];
@@ -137,9 +144,8 @@ function pavement(scene, origin, bank, grain) {
       band(shape, road, s, ...pair, colourOf(GRAVEL));
       band(shape, road, s, ...slope, colourOf(BANK));
     }
-    for (const isEnd of [false, true]) apron(shape, road, bank, isEnd);
+    for (const isEnd of [false, true].filter((_, i) => free[i])) apron(shape, road, bank, isEnd);
   }
-  return shape.mesh(THREE.MeshLambertMaterial, { map: grain });
 }
 
 function markings(scene, origin) {

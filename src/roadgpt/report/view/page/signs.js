@@ -3,8 +3,7 @@
 const POST_EVERY = 25; // m; half of what German rules ask for on straights, so that speed is seen
 const PLATE = 0.00082; // of the height of the picture, per pixel of text
 
-function posts(scene, origin) {
-  const { road } = scene;
+function posts(road, origin) {
   const { left, right } = road.lanes.rims;
   const count = Math.max(1, Math.floor(road.length / POST_EVERY));
   const body = new THREE.InstancedMesh(new THREE.BoxGeometry(0.12, 0.12, 1), new THREE.MeshLambertMaterial({ color: 0xf7f7f5 }), 2 * count);

@@ -7,7 +7,9 @@ const SMALL = 70; // m, from where a car can hardly be seen
 function makeStage(canvas, scene, trip, fastest) {
   const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio || 1));
-  const ends = [extent(scene.road.x), extent(scene.road.y), extent(scene.road.z)];
+  const roads = roadsOf(scene);
+  const [x, y, z] = ["x", "y", "z"].map((name) => roads.flatMap((road) => road[name]));
+  const ends = [extent(x), extent(y), extent(z)];
   const origin = { x: (ends[0][0] + ends[0][1]) / 2, y: (ends[1][0] + ends[1][1]) / 2, z: ends[2][0] };
   const radius = Math.max(30, Math.hypot(...ends.map(([low, high]) => high - low)) / 2);
 
@@ -22,8 +24,10 @@ function makeStage(canvas, scene, trip, fastest) {
   const net = landOf(scene);
   const grid = landGrid(net, scene.world, origin);
   world.add(landMesh(net, origin, meadowGrain(renderer)), grid);
-  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), markings(scene, origin), startAndGoal(scene, origin));
-  if (scene.road.lanes.shoulder > 0.5) world.add(posts(scene, origin));
+  world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), startAndGoal(scene, origin));
+  if (scene.network) world.add(networkMarkings(scene, origin), networkSigns(scene.network, origin));
+  else world.add(markings(scene, origin));
+  for (const road of roads) if (road.lanes.shoulder > 0.5) world.add(posts(road, origin));
   const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
   world.add(line);
   const pins = scene.places.map((place) => {
@@ -40,7 +44,6 @@ function makeStage(canvas, scene, trip, fastest) {
   camera.up.set(0, 0, 1);
 
   const middle = new THREE.Vector3(0, 0, (ends[2][1] - ends[2][0]) / 2);
-  const { x, y, z } = scene.road;
 
   return {
     camera, canvas, origin, radius, line, middle, grid,

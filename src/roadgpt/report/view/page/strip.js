@@ -42,6 +42,22 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     pen.stroke();
   }
 
+  // Where the route is inside junctions; their names stand where there is room.
+  function stretches(pen) {
+    let free = LEFT;
+    for (const { from, to, name } of scene.network ? scene.network.stretches : []) {
+      pen.globalAlpha = 0.55;
+      pen.fillStyle = LOOK.rule;
+      pen.fillRect(px(from), TOP, px(to) - px(from), view.tall);
+      pen.globalAlpha = 1;
+      const half = what.names ? pen.measureText(name).width / 2 : Infinity;
+      const middle = clamp(px((from + to) / 2), LEFT + half, LEFT + view.wide - half);
+      if (middle - half < free) continue;
+      said(pen, name, middle, TOP + 7, "center", LOOK.soft);
+      free = middle + half + 6;
+    }
+  }
+
   // Where the car was outside its lane, in the colour of how far.
   function outside(pen) {
     if (!scene.drive) return;
@@ -62,6 +78,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
   function ground(pen, size) {
     aim(size);
     axes(pen, size);
+    stretches(pen);
     outside(pen);
     pen.lineJoin = "round";
     if (what.fill) {
@@ -125,7 +142,7 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
 function heightOf(scene) {
   const { road } = scene;
   return {
-    s: road.s, values: road.z, least: 4, fill: "earth",
+    s: road.s, values: road.z, least: 4, fill: "earth", names: true,
     colour: () => LOOK.surface,
     at: (pose) => read(road.z, placeIn(road.s, pose.s)),
     tell(pose) {

@@ -1,0 +1,68 @@
+"""Collects the geometry and the lanes of one road for a page, as plain values."""
+
+from typing import Any
+
+import numpy as np
+
+from roadgpt.errors import ExportError, UsageError
+from roadgpt.export.edges import stations
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Profile, Road
+
+CHORD = 0.01  # m, largest distance between the road and the drawn lines
+MILLIMETRES, FINE = 3, 5  # digits
+
+
+def road_columns(road: Road, profile: Profile, reach: float | None = None) -> dict[str, Any]:
+    """Returns the geometry of a road at stations, and its cross-section.
+
+    Args:
+        road: The road.
+        profile: Its cross-section.
+        reach: The largest offset in metres of a line beside the road; None for that of the profile.
+
+    Raises:
+        UsageError: A number of the road is not finite.
+    """
+    try:
+        s = stations(road, profile.reach if reach is None else reach, CHORD)
+    except ExportError as error:
+        raise UsageError("the road has a number that is not finite; check it before it is shown") from error
+    points = road.at(s)
+    return {
+        "length": road.length,
+        "s": rounded(s, MILLIMETRES),
+        "x": rounded(points[:, 0], MILLIMETRES),
+        "y": rounded(points[:, 1], MILLIMETRES),
+        "z": rounded(points[:, 2], MILLIMETRES),
+        "heading": rounded(np.unwrap(road.heading(s)), FINE),
+        "curvature": rounded(road.curvature(s), FINE),
+        "grade": rounded(road.grade(s), FINE),
+        "lanes": _lanes(profile, s),
+    }
+
+
+def _lanes(profile: Profile, s: Array) -> dict[str, Any]:
+    """Returns the cross-section at the stations ``s``; offsets that are constant are given as one number."""
+    rims, edges = profile.rims(s), profile.edges(s)
+    shoulder = min((rims.left - edges.left).min(), (edges.right - rims.right).min())
+    return {
+        "bounds": [{"marking": mark, "t": _offsets(t)} for mark, t in profile.boundaries(s)],
+        "against": profile.count[1],
+        "driven": profile.count[1] + profile.driven,
+        "middle": _offsets(profile.middle(s)),
+        "rims": {"left": _offsets(rims.left), "right": _offsets(rims.right)},
+        "shoulder": round(float(shoulder), MILLIMETRES),
+        "reach": round(profile.reach, MILLIMETRES),
+        "bank": None if profile.superelevation_angle is None else rounded(profile.superelevation(s), FINE),
+    }
+
+
+def _offsets(t: Array) -> float | list[float]:
+    found = rounded(t, MILLIMETRES)
+    return found[0] if len(set(found)) == 1 else found
+
+
+def rounded(values: Array, digits: int) -> list[float]:
+    """Returns numbers with so many digits behind the point."""
+    return [round(float(value), digits) for value in values]

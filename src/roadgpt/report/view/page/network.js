@@ -1,0 +1,131 @@
+// Networks: level junctions with their islands, lines, signs, and the lane of the route.
+
+const GREEN = 0x7f9a63, KERBED = 0xb9b4a8, ON_ROUTE = 0x465260;
+const KERB_HIGH = 0.12; // m of a traffic island
+const FRONT = 0; // three.js's FrontSide: signs are grey behind
+const DOWN = 1.3; // m that a bank runs outwards, for each metre of height
+
+// The roads that are swept along their lines: one, or all of a network outside its junctions.
+const roadsOf = (scene) => (scene.network ? scene.network.roads : [scene.road]);
+
+// Lists x, y, x, y as pairs, and x, y, z, x, y, z as triples.
+function inGroups(values, size) {
+  const out = [];
+  for (let i = 0; i < values.length; i += size) out.push(values.slice(i, i + size));
+  return out;
+}
+
+// A level area of triangles.
+function plain(shape, { points, corners }, z, colour) {
+  const first = shape.count;
+  inGroups(points, 2).forEach(([x, y]) => shape.point(x, y, z, colour));
+  corners.forEach((corner) => shape.corners.push(first + corner));
+}
+
+// How a line goes on at each of its points: a unit vector to its left.
+function leftOf(line, isClosed) {
+  const last = line.length - 1;
+  return line.map((_, i) => {
+    const [x0, y0] = line[i > 0 ? i - 1 : isClosed ? last : 0];
+    const [x1, y1] = line[i < last ? i + 1 : isClosed ? 0 : last];
+    const long = Math.hypot(x1 - x0, y1 - y0) || 1;
+    return [-(y1 - y0) / long, (x1 - x0) / long];
+  });
+}
+
+// A wall or a bank around a ring that runs counter-clockwise, from height z0 to z1 and outwards.
+function skirt(shape, ring, z0, z1, outwards, colour) {
+  const line = inGroups(ring, 2);
+  const left = leftOf(line, true);
+  const high = line.map(([x, y]) => shape.point(x, y, z0, colour));
+  const low = line.map(([x, y], i) => shape.point(x - outwards * left[i][0], y - outwards * left[i][1], z1, colour));
+  line.forEach((_, i) => {
+    const next = (i + 1) % line.length;
+    shape.quad(low[i], low[next], high[next], high[i]);
+  });
+}
+
+function junctions(shape, { areas }, bank) {
+  const [asphalt, gravel, grass, green, kerb, side] = [ASPHALT, GRAVEL, BANK, GREEN, KERBED, SIDE].map(colourOf);
+  for (const { z, paved, shoulder, green: islands, kerbed, rims } of areas) {
+    plain(shape, paved, z, asphalt);
+    if (shoulder) plain(shape, shoulder, z - 0.025, gravel);
+    islands.forEach((island) => plain(shape, island, z - 0.02, green));
+    for (const island of kerbed) {
+      plain(shape, island, z + KERB_HIGH, kerb);
+      skirt(shape, island.rim, z + KERB_HIGH, z, 0, kerb);
+    }
+    for (const rim of rims) {
+      if (shoulder) skirt(shape, rim, z - 0.03, z - bank, bank * DOWN, grass);
+      else skirt(shape, rim, z - 0.001, z - THICK, 0, side);
+    }
+  }
+}
+
+const ABOVE_ROAD = (order) => ({ polygonOffset: true, polygonOffsetFactor: -order, polygonOffsetUnits: -order });
+
+// Everything that is painted, and the tint of the lane that the route takes.
+function networkMarkings(scene, origin) {
+  const paint = colourOf(PAINT);
+  const lines = new Shape3(origin);
+  for (const { width, points } of scene.network.strokes) {
+    const line = inGroups(points, 3);
+    const left = leftOf(line, false);
+    const sides = [1, -1].map((side) => line.map(([x, y, z], i) => lines.point(
+      x + (side * width * left[i][0]) / 2, y + (side * width * left[i][1]) / 2, z + 0.015, paint,
+    )));
+    for (let i = 1; i < line.length; i++) lines.quad(sides[1][i - 1], sides[1][i], sides[0][i], sides[0][i - 1]);
+  }
+  const tint = new Shape3(origin);
+  const { bounds, driven } = scene.road.lanes;
+  band(tint, scene.road, scene.road.s, [bounds[driven].t, 0.006], [bounds[driven + 1].t, 0.006], colourOf(ON_ROUTE));
+  const group = new THREE.Group();
+  group.add(tint.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(1)), lines.mesh(THREE.MeshLambertMaterial, ABOVE_ROAD(2)));
+  return group;
+}
+
+function networkSigns({ signs }, origin) {
+  const shape = new Shape3(origin);
+  for (const { colour, points } of signs) {
+    const corners = inGroups(points, 3).map(([x, y, z]) => shape.point(x, y, z, colourOf(colour)));
+    for (let i = 2; i < corners.length; i++) shape.corners.push(corners[0], corners[i - 1], corners[i]);
+  }
+  return shape.mesh(THREE.MeshLambertMaterial, { side: FRONT });
+}
+
+// The network on the plan: px and py turn metres into pixels, scale is pixels in a metre.
+function paintNetwork(pen, { network, road }, px, py, scale) {
+  const areas = (rings, style) => {
+    pen.beginPath();
+    for (const ring of rings) {
+      inGroups(ring, 2).forEach(([x, y], i) => (i ? pen.lineTo(px(x), py(y)) : pen.moveTo(px(x), py(y))));
+      pen.closePath();
+    }
+    pen.fillStyle = style;
+    pen.fill("evenodd");
+  };
+  const { ground, paved, kerbed, green } = network.plan;
+  areas(ground, LOOK.verge);
+  areas(paved, LOOK.asphalt);
+  areas(green, LOOK.meadow);
+  areas(kerbed, LOOK.verge);
+  const { bounds, driven } = road.lanes;
+  const sides = [bounds[driven].t, bounds[driven + 1].t].map((t) => road.s.map((s) => beside(road, s, offsetAt(road, t, s))));
+  pen.fillStyle = pen.strokeStyle = "#4f86b5";
+  pen.lineWidth = 0.6;
+  for (let i = 1; i < road.s.length; i++) {
+    pen.beginPath();
+    [sides[0][i - 1], sides[0][i], sides[1][i], sides[1][i - 1]].forEach(([x, y], k) => (k ? pen.lineTo(px(x), py(y)) : pen.moveTo(px(x), py(y))));
+    pen.fill();
+    pen.stroke();
+  }
+  if (road.lanes.reach * scale < 3) return;
+  pen.strokeStyle = "#fff";
+  for (const { kind, points } of network.strokes) {
+    if (kind === "edge") continue;
+    pen.lineWidth = kind === "lane" ? 0.8 : 1.6;
+    pen.beginPath();
+    inGroups(points, 3).forEach(([x, y], i) => (i ? pen.lineTo(px(x), py(y)) : pen.moveTo(px(x), py(y))));
+    pen.stroke();
+  }
+}

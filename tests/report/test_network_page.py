@@ -1,0 +1,116 @@
+"""The page of a route: its data hold the whole network, and a browser draws it without complaint."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+from tests import chromium
+from tests.report.test_networks import TWO
+
+from roadgpt.network import Route, made_from, read_network_design
+from roadgpt.network.markings import strokes
+from roadgpt.report import view
+from roadgpt.road import CrossSection, Design, Segment, World
+from roadgpt.run import Run, Setup, prove
+
+
+def run_of(shoulder: float = 3.0) -> Run:
+    world = World(section=CrossSection(shoulder=shoulder))
+    return prove(made_from(read_network_design(TWO)[0], world), setup=Setup(drives=False), world=world)
+
+
+@pytest.fixture(scope="module")
+def run() -> Run:
+    return run_of()
+
+
+@pytest.fixture(scope="module")
+def route(run: Run) -> Route:
+    assert isinstance(run.road, Route)
+    return run.road
+
+
+def polygons(triangles: dict[str, list[float]]) -> list[shapely.Polygon]:
+    points = np.reshape(triangles["points"], (-1, 2))
+    return [shapely.Polygon(points[corners]) for corners in np.reshape(triangles["corners"], (-1, 3))]
+
+
+def swept(road: dict[str, object]) -> shapely.Polygon:
+    """The carriageway of a road of the page, as the page's scripts sweep it."""
+    lanes = road["lanes"]
+    heading = np.array(road["heading"])
+    sides = []
+    for bound in (lanes["bounds"][0], lanes["bounds"][-1]):  # type: ignore[index]
+        x = np.array(road["x"]) - bound["t"] * np.sin(heading)
+        y = np.array(road["y"]) + bound["t"] * np.cos(heading)
+        sides.append(np.column_stack([x, y]))
+    return shapely.Polygon(np.concatenate([sides[0], sides[1][::-1]]))
+
+
+def test_roads_and_junctions_of_the_page_are_the_paved_area(run: Run, route: Route) -> None:
+    network = view.scene(run)["network"]
+    parts = [polygon for area in network["areas"] for polygon in polygons(area["paved"])]
+    parts += [swept(road) for road in network["roads"]]
+    whole = shapely.union_all(parts, grid_size=1e-4)
+    assert shapely.symmetric_difference(whole, route.network.paved).area < 0.002 * route.network.paved.area
+    assert sum(part.area for part in parts) == pytest.approx(route.network.paved.area, rel=0.002)
+
+
+def test_triangles_are_seen_from_above(run: Run) -> None:
+    for area in view.scene(run)["network"]["areas"]:
+        for triangles in (area["paved"], area["shoulder"], *area["green"], *area["kerbed"]):
+            assert all(polygon.exterior.is_ccw for polygon in polygons(triangles))
+
+
+def test_every_line_and_every_sign_is_on_the_page(run: Run, route: Route) -> None:
+    network = view.scene(run)["network"]
+    assert len(network["strokes"]) == len(strokes(route.network))
+    lights = [face for face in network["signs"] if face["colour"] == "#2e9a4b"]
+    assert not lights
+    assert [each["name"] for each in network["stretches"]] == ["crossroads", "roundabout"]
+
+
+def test_a_floating_network_has_no_ground(route: Route) -> None:
+    network = view.scene(run_of(shoulder=0.0))["network"]
+    assert network["plan"]["ground"] == []
+    assert all(area["shoulder"] is None for area in network["areas"])
+
+
+def test_the_page_stays_small(run: Run) -> None:
+    plain = prove(
+        Design(
+            starting_point=(50, 50, 0),
+            theta=0,
+            segments=(Segment(distance=100, direction="straight", incline=0, turn_degrees=0),),
+        ),
+        setup=Setup(drives=False),
+    )
+    assert len(view.page([run])) < len(view.page([plain])) + 250_000
+    assert "network" not in view.scene(plain)
+
+
+@pytest.fixture(scope="module")
+def page() -> Iterator[chromium.Page]:
+    if chromium.FOUND is None:
+        pytest.skip("needs chromium")
+    with chromium.browser() as page:
+        page.size(900, 600)
+        yield page
+
+
+@pytest.mark.parametrize("shoulder", [0.0, 3.0])
+def test_a_browser_draws_the_network(page: chromium.Page, tmp_path: Path, shoulder: float) -> None:
+    path = view.write([run_of(shoulder)], tmp_path / "page.html")
+    page.open(path)
+    page.run("roadgpt.player.choose('free')")
+    picture = page.picture(".scene")[..., :3]
+    assert page.told == []
+    is_dark = (picture.max(axis=2) < 0.4) & (np.ptp(picture, axis=2) < 0.12)
+    assert 0.01 < is_dark.mean() < 0.3
+    page.run("roadgpt.player.moveTo(roadgpt.player.duration * 0.6)")
+    plan = page.picture(".plan canvas")[..., :3]
+    assert page.told == []
+    is_road = np.abs(plan - np.array([0x62, 0x66, 0x6D]) / 255).max(axis=2) < 0.02
+    assert is_road.mean() > 0.015
