@@ -1,0 +1,208 @@
+"""Programs of others, where they are at hand, find in the files of networks what was designed."""
+
+import json
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from collections import Counter
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from exported import program, python_with
+from network.random_designs import random_design
+from outside_judge import SHARED
+from roadgpt.export import save
+from roadgpt.network import Network, Route, build_route, read_network_design
+from roadgpt.road import World
+
+SEEDS = range(6)
+CHECK = """
+import logging, sys
+from qc_opendrive import main
+logging.disable(logging.CRITICAL)
+for file in sys.argv[1:]:
+    with open("config.xml", "w") as config:
+        config.write(f'<Config><Param name="InputFile" value="{file}"/>')
+        config.write('<CheckerBundle application="xodrBundle">')
+        config.write(f'<Param name="resultFile" value="{file}.xqar"/></CheckerBundle></Config>')
+    sys.argv = ["qc_opendrive", "-c", "config.xml"]
+    main.main()
+"""
+DRIVE = """
+import json, sys
+import carla
+found = {}
+for file in sys.argv[1:]:
+    with open(file) as text:
+        road_map = carla.Map("map", text.read())
+    waypoints = road_map.generate_waypoints(2.0)
+    seen = {mark.id for each in waypoints for mark in each.get_landmarks(10.0)}
+    lanes = {f"{each.road_id} {each.lane_id}" for each in waypoints}
+    found[file] = [sorted(lanes), sorted(seen)]
+print(json.dumps(found))
+"""
+CONVERT = """
+import json, logging, sys, warnings
+from collections import Counter
+from pathlib import Path
+logging.disable(logging.CRITICAL)
+warnings.simplefilter("ignore")
+from crdesigner.map_conversion.opendrive.odr2cr.opendrive_conversion.network import Network
+from crdesigner.map_conversion.opendrive.odr2cr.opendrive_parser.parser import parse_opendrive
+found = {}
+for file in sys.argv[1:]:
+    network = Network()
+    network.load_opendrive(parse_opendrive(Path(file)))
+    lanelets = network.export_commonroad_scenario().lanelet_network
+    ways = [
+        sorted(
+            len(each.successors_left) + len(each.successors_straight) + len(each.successors_right)
+            for each in intersection.incomings
+        )
+        for intersection in lanelets.intersections
+    ]
+    signs = [each.traffic_sign_elements[0].traffic_sign_element_id.name for each in lanelets.traffic_signs]
+    found[file] = [sorted(ways), len(lanelets.traffic_lights), Counter(signs)]
+print(json.dumps(found))
+"""
+
+
+def drawn(seed: int) -> tuple[dict[str, Any], Route]:
+    """A design whose roads are straight near junctions, so that arms have the directions of the design."""
+    data = random_design(seed)
+    before = {each["after"] for key, each in data.items() if key.startswith("junction")}
+    for number in sorted(before | {each + 1 for each in before}):
+        data[f"road_segment{number}"] |= {"direction": "straight", "turn_degrees": 0.0}
+    return data, build_route(read_network_design(data)[0], World())
+
+
+def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:
+    """Files of the networks of all seeds, by path."""
+    found = {}
+    for seed in SEEDS:
+        _, route = drawn(seed)
+        written = save(route, folder, [format_], World(), f"network{seed}")
+        (file,) = (path for path in written if path.suffix == ".xodr")
+        found[str(file)] = route.network
+    return found
+
+
+def answers(python: str, script: str, files: dict[str, Network], folder: Path) -> dict[str, Any]:
+    run = [python, "-c", script, *files]
+    done = subprocess.run(run, capture_output=True, text=True, cwd=folder, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    return dict(json.loads(done.stdout.splitlines()[-1])) if done.stdout.strip() else {}
+
+
+@pytest.mark.parametrize("format_", ["opendrive", "opendrive17"])
+def test_asams_checker_has_nothing_to_say_of_networks(tmp_path: Path, format_: str) -> None:
+    python = python_with("qc_opendrive", "venv-qc")
+    files = saved(tmp_path, format_)
+    answers(python, CHECK, files, tmp_path)
+    for file in files:
+        report = ET.parse(f"{file}.xqar").getroot()
+        assert [f"{each.attrib['ruleUID']}: {file}" for each in report.iter("Issue")] == []
+        ends = Counter(checker.attrib["status"] for checker in report.iter("Checker"))
+        assert ends["completed"] >= 22
+        assert not ends["error"]
+
+
+def test_carla_finds_all_lanes_and_signals(tmp_path: Path) -> None:
+    files = saved(tmp_path)
+    for file, (lanes, signals) in answers(python_with("carla", "venv-carla"), DRIVE, files, tmp_path).items():
+        root = ET.parse(file).getroot()
+        ours = {
+            f"{road.attrib['id']} {lane.attrib['id']}"
+            for road in root.iter("road")
+            for lane in road.iter("lane")
+            if lane.attrib["type"] == "driving"
+        }
+        assert set(lanes) == ours
+        assert set(signals) == {signal.attrib["id"] for signal in root.iter("signal")}
+
+
+def test_commonroad_counts_the_same_ways_lights_and_signs(tmp_path: Path) -> None:
+    files = saved(tmp_path)
+    found = answers(python_with("crdesigner", "venv-cr"), CONVERT, files, tmp_path)
+    for file, (ways, lights, signs) in found.items():
+        junctions = files[file].junctions
+        controls = Counter(arm.control for junction in junctions for arm in junction.arms)
+        ours = [sorted(Counter(c.incoming for c in junction.connections).values()) for junction in junctions]
+        assert ways == sorted(ours)
+        assert lights == controls["lights"]
+        for control, sign in (("stop", "STOP"), ("yield", "YIELD"), ("priority", "PRIORITY")):
+            assert signs.get(sign, 0) == controls[control]
+
+
+def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> None:
+    netconvert = program("netconvert", "venv-sumo")
+    for file, network in saved(tmp_path).items():
+        target = tmp_path / "converted.net.xml"
+        run = [netconvert, "--opendrive-files", file, "-o", str(target)]
+        done = subprocess.run(run, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        root = ET.parse(target).getroot()
+        theirs = {
+            (each.attrib["from"].split(".")[0], each.attrib["to"].split(".")[0])
+            for each in root.iter("connection")
+            if not each.attrib["from"].startswith(":") and each.attrib["dir"] != "t"
+        }
+        # SUMO puts a minus before the id of a road for its edge along the road
+        ours = {
+            (
+                f"{'-' if c.incoming.contact == 'end' else ''}{c.incoming.road}",
+                f"{'-' if c.outgoing.contact == 'start' else ''}{c.outgoing.road}",
+            )
+            for junction in network.junctions
+            for c in junction.connections
+        }
+        assert theirs == ours
+        lit = [j for j in network.junctions if any(arm.control == "lights" for arm in j.arms)]
+        assert len(list(root.iter("tlLogic"))) == len(lit)
+        assert len(list(root.iter("roundabout"))) == len(network.roundabouts)
+
+
+@pytest.fixture(scope="module")
+def referee() -> ModuleType:
+    if not (SHARED / "referee_networks.py").exists():
+        pytest.skip("the referee of networks is not at hand")
+    sys.path.insert(0, str(SHARED))
+    try:
+        import referee_networks
+    finally:
+        sys.path.remove(str(SHARED))
+    module: ModuleType = referee_networks
+    return module
+
+
+KINDS = {"t_junction": "T", "y_junction": "Y", "crossroads": "X", "star": "star", "roundabout": "roundabout"}
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_the_referee_measures_what_was_designed(tmp_path: Path, referee: ModuleType, seed: int) -> None:
+    data, route = drawn(seed)
+    save(route, tmp_path, ["opendrive"], World(), "network")
+    legs = json.loads((tmp_path / "network.route.json").read_text())["route"]
+    found = referee.measure(str(tmp_path / "network.xodr"), legs)
+    assert (found["breaks"], found["faults"]) == ([], [])
+    designed = [data[f"junction{n}"] for n in range(1, 5) if f"junction{n}" in data]
+    last = 0
+    for junction, measured in zip(designed, found["junctions"], strict=True):
+        angle = sorted(arm["angle"] for arm in junction["arms"])[junction["take"] - 1]
+        control = junction["control"]
+        assert KINDS[junction["kind"]] in measured["kinds"]
+        if junction["kind"] == "roundabout":
+            assert measured["exit"] == junction["take"]
+            assert measured["right_way"]
+            assert measured["radius"] == pytest.approx(junction["radius"], abs=0.01)
+            control = "yield" if control in ("none", "priority") else control
+        else:
+            assert measured["take"] == ("left" if angle > 25 else "right" if angle < -25 else "straight")
+        assert measured["deg"] == pytest.approx(angle, abs=0.1)
+        assert measured["control"] == control
+        segments = range(last + 1, junction["after"] + 1)
+        assert measured["after"] == pytest.approx(sum(data[f"road_segment{n}"]["distance"] for n in segments))
+        last = junction["after"]
