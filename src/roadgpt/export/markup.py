@@ -1,6 +1,5 @@
 """Writes XML as text, with attributes in the given order and numbers that can be read back exactly."""
 
-import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -28,10 +27,9 @@ def number(value: float) -> str:
     Raises:
         ExportError: The number is not finite.
     """
-    value = float(value) + 0.0  # -0.0 becomes 0.0
-    if not math.isfinite(value):
+    text = repr(float(value) + 0.0)  # -0.0 becomes 0.0
+    if text[-1] in "fn":  # inf, nan
         raise ExportError(NOT_FINITE)
-    text = repr(value)
     return text[:-2] if text[-2:] == ".0" and abs(value) < 1e15 else text
 
 

@@ -8,7 +8,8 @@ line between the lanes of both directions, at which a connecting road begins.
 
 from collections.abc import Iterator
 
-from roadgpt.export.markup import XmlElement
+from roadgpt.export.exporters.opendrive.kerbs import outermost
+from roadgpt.export.markup import Value, XmlElement
 from roadgpt.network import Connection, Junction, Network, RoadEnd
 
 
@@ -23,8 +24,9 @@ def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
         yield _across(network, end)
         after = arms[(n + 1) % len(arms)]
         if (right := _way(junction, end, after)) is not None:
-            lanes = len(network.road(right.road).profile.right)
-            yield _along(right.road, -lanes, "start", "end")
+            for road, first, last in outermost(network, junction, right):
+                lanes = len(network.road(road).profile.right)
+                yield _along(road, -lanes, first or "start", last or "end")
         elif (left := _way(junction, after, end)) is not None:
             # along the central island of a roundabout, where there is no traffic on the other side
             yield _along(left.road, 0, "end", "start")
@@ -51,8 +53,8 @@ def _across(network: Network, end: RoadEnd) -> XmlElement:
     )
 
 
-def _along(road: int, lane: int, start: str, end: str) -> XmlElement:
-    """Returns the segment along the outer edge of a lane of a connecting road, from one end to the other."""
+def _along(road: int, lane: int, start: Value, end: Value) -> XmlElement:
+    """Returns the segment along the outer edge of a lane of a connecting road, between two stations."""
     return XmlElement(
         "segment",
         {"type": "lane", "roadId": str(road), "boundaryLane": lane, "sStart": start, "sEnd": end},
