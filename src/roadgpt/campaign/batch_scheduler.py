@@ -149,5 +149,5 @@ class BatchScheduler:
 
 
 def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Returns the designs of the results; leaves out results for which no road could be designed."""
-    return [result.design for result in results if result.design is not None]
+    """Returns the designs of the results without junctions; leaves out results without such a design."""
+    return [result.plain_design for result in results if result.plain_design is not None]

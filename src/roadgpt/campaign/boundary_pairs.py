@@ -98,9 +98,9 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
     The closest corresponding roads are paired first; each test is in at most one pair.
     """
     roads = {
-        r.number: elements_of(r.design.segments)
+        r.number: elements_of(r.plain_design.segments)
         for r in results
-        if r.design and r.outcome in ("PASS", "FAIL")
+        if r.plain_design and r.outcome in ("PASS", "FAIL")
     }
     kept = [r.number for r in results if r.outcome == "PASS" and r.number in roads]
     lost = [r.number for r in results if r.outcome == "FAIL" and r.number in roads]

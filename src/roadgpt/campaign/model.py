@@ -9,6 +9,7 @@ from typing import Annotated, Any, Literal, Protocol, TypeVar, get_args
 from pydantic import Field
 
 from roadgpt.brief.model import Brief, Frozen
+from roadgpt.network import AnyDesign
 from roadgpt.road import Design
 from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
@@ -49,7 +50,7 @@ UNLIMITED = Budget()
 class Proposal:
     """A test that a generator proposes."""
 
-    design: Design | None
+    design: AnyDesign | None
     """The road's design. None: a worker drafts the road from the cell's Brief, with ``seed`` and the
     number of the test. The drafted road differs from the designs in the batches whose results the generator
     has received.
@@ -76,7 +77,7 @@ class Result:
     outcome: Outcome
     description: str
     """One sentence that describes the outcome."""
-    design: Design | None = None
+    design: AnyDesign | None = None
     """The design of the road; None if no road could be designed."""
     length: float = 0.0
     """Length of the road seen from above, metres; 0 if there is no road."""
@@ -96,6 +97,11 @@ class Result:
     """Features of the road and of the drive, by name; see ``run.features.features_of`` and
     ``campaign.behaviour.behaviour_of``.
     """
+
+    @property
+    def plain_design(self) -> Design | None:
+        """The design; None if there is none, or if it has junctions."""
+        return self.design if isinstance(self.design, Design) else None
 
     @property
     def failed(self) -> bool:

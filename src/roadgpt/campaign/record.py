@@ -12,7 +12,8 @@ from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
 from roadgpt.campaign.single_test import seed_of_driver
 from roadgpt.campaign.store_check import LATER, check_store, reading_store
 from roadgpt.errors import UsageError
-from roadgpt.road import Road, build
+from roadgpt.network import made_from
+from roadgpt.road import Road
 from roadgpt.run import Run
 
 if TYPE_CHECKING:
@@ -244,7 +245,7 @@ class Record:
         """Returns the road of a test that has ended; None if the test has no road."""
         if result.design is None:
             return None
-        return cell.request.world.lay(build(result.design, cell.request.setup.geometry))
+        return made_from(result.design, cell.request.world, cell.request.setup.geometry)
 
     def seed(self, result: Result) -> int:
         """Returns the driver's seed in a test."""

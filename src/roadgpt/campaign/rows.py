@@ -10,8 +10,8 @@ from pydantic import TypeAdapter
 
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.campaign.single_test import FinishedTest
+from roadgpt.network import AnyDesign
 from roadgpt.reading import json_of
-from roadgpt.road import Design
 from roadgpt.run.atomic import to_bytes
 
 MEASURED = ("outcome", "cause", "side", "length", "margin", "max_oob", "beyond", "at_s")
@@ -20,16 +20,17 @@ SPENT = ("ended", "design_s", "drive_s", "tokens", "cost", "trace")
 """The columns of the table ``tests`` that depend on the clock or on the session."""
 RESULT = ", ".join(("tests.number, batch, seed, given", *MEASURED, "origin, design, description, features"))
 """The columns of a result in the joined tables ``tests`` and ``details``."""
+_DESIGNS: TypeAdapter[AnyDesign] = TypeAdapter(AnyDesign)
 
 
-def design_text(design: Design | None) -> str | None:
+def design_text(design: AnyDesign | None) -> str | None:
     """Returns a design as JSON; ``design_of`` restores the same design."""
     return None if design is None else design.model_dump_json(exclude_none=True)
 
 
-def design_of(text: str | None) -> Design | None:
+def design_of(text: str | None) -> AnyDesign | None:
     """Restores a design from JSON text as returned by ``design_text``."""
-    return None if text is None else Design.model_validate_json(text)
+    return None if text is None else _DESIGNS.validate_json(text)
 
 
 def proposal_rows(

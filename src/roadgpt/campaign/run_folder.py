@@ -73,7 +73,7 @@ class RunWriter:
 
 def finished_run(run: Run) -> FinishedRun:
     """Converts the Run of an earlier session to a FinishedRun."""
-    proposal = Proposal(run.plain_design, run.seed, "draft" if run.words or run.brief else GIVEN)
+    proposal = Proposal(run.design, run.seed, "draft" if run.words or run.brief else GIVEN)
     task = Task(run.index, run.index - 1, proposal)
     return FinishedRun(result_of(run, task, {}), None, run.seconds, run.spent, run.trace)
 

@@ -74,10 +74,15 @@ def settings_of(cell: Cell) -> SearchSettings:
     """Returns the settings of a generator.
 
     Raises:
-        UsageError: a setting is unknown or out of range, or the cell's roads are splines.
+        UsageError: a setting is unknown or out of range, or the cell's roads are splines or have junctions.
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
+    if cell.brief is not None and cell.brief.junctions:
+        raise UsageError(
+            f"the generator '{cell.generator}' searches roads without junctions; leave out --goal and "
+            "--generator, or the junctions"
+        )
     try:
         return SearchSettings.model_validate(dict(cell.settings))
     except ValidationError as error:

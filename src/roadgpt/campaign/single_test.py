@@ -180,7 +180,7 @@ def result_of(run: Run, task: Task, features: Mapping[str, float]) -> Result:
         proposal=task.proposal,
         outcome=run.outcome,
         description=run.description,
-        design=run.plain_design,
+        design=run.design,
         length=run.length,
         margin=verdict.margin if verdict else None,
         max_oob=verdict.max_oob if verdict else None,

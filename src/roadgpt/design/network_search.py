@@ -19,7 +19,7 @@ from roadgpt.brief.words import ROAD, Range
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.layout import PlanLine, place
 from roadgpt.design.network_sketch import is_clear, sketched
-from roadgpt.design.road_search import RoadSearch
+from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
 from roadgpt.errors import DesignError
@@ -152,7 +152,7 @@ class NetworkSearch:
         elif brief.length is None and not brief.clauses and brief.turns is None:
             free = self._open(haste, is_straight=True)
             wanted = brief.model_copy(update={"length": free.length, "turns": free.turns})
-        search = RoadSearch(wanted, self.world, Shapes().of(()), self.rng)
+        search = DraftSearch(wanted, self.world, Shapes().of(()), self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
             if found is not None:

@@ -25,7 +25,7 @@ POINTS = 24  # around a roundabout
 AWAY = 12.0  # m from a contact, outwards, within which the arms of one junction may be near each other
 
 
-class Sketch(NamedTuple):
+class NetworkSketch(NamedTuple):
     """The parts of a route: points as x + iy in metres, from a start at the origin that heads along +x."""
 
     z: Complex
@@ -40,7 +40,7 @@ class Sketch(NamedTuple):
     """False if the island of a roundabout is too small for its arms."""
 
 
-def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], width: float) -> Sketch:
+def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], width: float) -> NetworkSketch:
     """Returns the sketch of a route.
 
     Args:
@@ -55,7 +55,7 @@ def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], wid
     for a, b in pen.pairs:
         near[a, b] = True
     numbers = np.repeat(np.arange(len(pen.parts)), [len(z) for z in pen.parts])
-    return Sketch(np.concatenate(pen.parts), numbers, near, tuple(pen.nodes), pen.is_possible)
+    return NetworkSketch(np.concatenate(pen.parts), numbers, near, tuple(pen.nodes), pen.is_possible)
 
 
 class _Pen:
@@ -112,7 +112,7 @@ def _way(z: Complex) -> complex:
     return step / abs(step)
 
 
-def is_clear(sketch: Sketch, width: float, shoulder: float) -> bool:
+def is_clear(sketch: NetworkSketch, width: float, shoulder: float) -> bool:
     """Returns whether roads and junctions that do not meet keep their distance.
 
     Args:

@@ -63,7 +63,9 @@ STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of a road
 def fits(brief: Brief, world: World) -> bool:
     """Returns whether each of four searches, with different seeds and up to 110 drafts each, finds a road."""
     try:
-        searches = [RoadSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+        searches = [
+            DraftSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS
+        ]
         return all(search.found(TRIED) is not None for search in searches)
     except DesignError:
         return False
@@ -80,7 +82,9 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
         return None
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
-        searches = [RoadSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS]
+        searches = [
+            DraftSearch(brief, world, Shapes().of(()), np.random.default_rng(seed)) for seed in TRIALS
+        ]
     except NoRoomError:
         return larger_map(brief, world, fits, LIKELY * metres_of(brief, world))
     except RoadGPTError:
@@ -91,7 +95,7 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
     return larger_map(brief, world, fits, roomier(world, failed.boxes))
 
 
-class RoadSearch:
+class DraftSearch:
     """The search for one road."""
 
     def __init__(self, brief: Brief, world: World, others: PlanShape, rng: np.random.Generator) -> None:

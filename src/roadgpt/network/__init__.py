@@ -19,6 +19,7 @@ from roadgpt.network.network import (
 )
 from roadgpt.network.route import Route
 from roadgpt.network.source import (
+    AnyDesign,
     Blueprint,
     made_from,
     read_any_design,
@@ -28,6 +29,7 @@ from roadgpt.network.source import (
 )
 
 __all__ = [
+    "AnyDesign",
     "Arm",
     "Blueprint",
     "Connection",

@@ -12,7 +12,9 @@ from roadgpt.network.route import Route
 from roadgpt.road import Design, Geometry, Road, World, build, read_design
 from roadgpt.road.source import read_blueprint as read_road_blueprint
 
-Blueprint = Design | NetworkDesign | Road
+AnyDesign = Design | NetworkDesign
+"""A design without or with junctions."""
+Blueprint = AnyDesign | Road
 """Anything from which a road is made."""
 
 
@@ -50,7 +52,7 @@ def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None
     return made_from(read_blueprint(path)[0], world or World(), geometry)
 
 
-def read_any_design(data: Mapping[str, Any]) -> tuple[Design | NetworkDesign, tuple[str, ...]]:
+def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]]:
     """Reads a dictionary in RoadGPT's JSON format, with or without junctions; returns the design and remarks.
 
     Raises:

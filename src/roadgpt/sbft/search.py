@@ -66,7 +66,8 @@ class RoadSearch:
         self._number += 1
         world, brief = self._cell.request.world, self._cell.brief
         assert brief is not None
-        design = proposal.design or draft_road(brief, world, seed=proposal.seed)
+        given = proposal.design
+        design = given if isinstance(given, Design) else draft_road(brief, world, seed=proposal.seed)
         road = world.lay(build(design))
         blank = Result(self._number, self._batch, replace(proposal, design=design), "ERROR", "", design)
         self._asked[self._number] = road, blank

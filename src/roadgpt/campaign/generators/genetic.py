@@ -52,8 +52,8 @@ class Genetic:
         for result in results:
             if is_usable(result):
                 assert result.margin is not None
-                assert result.design is not None
-                self._fittest.append((result.margin, result.number, result.design))
+                assert result.plain_design is not None
+                self._fittest.append((result.margin, result.number, result.plain_design))
         self._fittest = sorted(self._fittest, key=lambda one: one[:2])[:POPULATION]
 
     def _task(self, rng: np.random.Generator) -> VariationTask:

@@ -101,7 +101,7 @@ class QualityDiversity:
         self._looks = {number: self._looks[number] for number in known if number in self._looks}
         self._shapes = {number: self._shapes[number] for number in self._looks}
         new = [number for number in known if number not in self._looks]
-        designs = [self._results[number].design for number in new]
+        designs = [self._results[number].plain_design for number in new]
         found = pool.map(sketch_of, [(design, self._setting) for design in designs if design])
         for number, (look, shape) in zip(new, found, strict=True):
             self._looks[number], self._shapes[number] = look, shape
@@ -131,7 +131,7 @@ class QualityDiversity:
         if kind == "wild":
             return VariationTask(kind, (), "draft", seed, self._setting)
         numbers = [self._parent(rng) for _ in range(1 + (kind == "cross"))]
-        parents = tuple(d for number in numbers if (d := self._results[number].design))
+        parents = tuple(d for number in numbers if (d := self._results[number].plain_design))
         origin = f"{kind} {'+'.join(map(str, numbers))}"
         numeric = NUMERIC[self._goal == "boundary"]  # relatives have the same row of turns and straights
         return VariationTask(kind, parents, origin, seed, self._setting, numeric=numeric)
@@ -181,8 +181,8 @@ class QualityDiversity:
     def _bisected(self, batch: int, n: int, pool: Pool) -> list[Candidate]:
         """Returns roads that lie between a passed test and the most similar failed test."""
         for number, result in self._results.items():
-            if number not in self._roads and result.design:
-                self._roads[number] = elements_of(result.design.segments)
+            if number not in self._roads and result.plain_design:
+                self._roads[number] = elements_of(result.plain_design.segments)
         kept = [number for number, result in self._results.items() if not result.failed]
         lost = [number for number, result in self._results.items() if result.failed]
         tasks: list[VariationTask] = []
@@ -195,6 +195,6 @@ class QualityDiversity:
         return make_candidates(tasks, pool)
 
     def _design(self, number: int) -> Design:
-        design = self._results[number].design
+        design = self._results[number].plain_design
         assert design is not None
         return design

@@ -9,7 +9,7 @@ import numpy as np
 
 from roadgpt.brief.model import Brief
 from roadgpt.design.network_search import NetworkSearch
-from roadgpt.design.road_search import RoadSearch
+from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, World
@@ -41,6 +41,6 @@ class Planner:
         rng = np.random.default_rng([seed, len(notes)])
         if brief.junctions:
             return NetworkSearch(brief, world, rng).run()
-        design, road = RoadSearch(brief, world, self._shapes.of(earlier), rng).run()
+        design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
         self._shapes.remember(design, road)
         return design
