@@ -16,9 +16,11 @@ from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
 from roadgpt.report import birds_eye, draw, height_profile, strip
 from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
+from roadgpt.report.overview import pages
+from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.report.plotting import plot
 from roadgpt.road import CrossSection, World
-from roadgpt.run import Run, Setup, prove
+from roadgpt.run import Run, Setup, prove, write_run
 
 TWO = {
     "starting_point": [20, 90, 0],
@@ -175,3 +177,28 @@ def test_all_pictures_are_drawn_twice_the_same(tmp_path: Path, shoulder: float) 
     for path in sorted((tmp_path / "one").iterdir()):
         assert path.read_bytes() == (tmp_path / "two" / path.name).read_bytes()
     assert imread(io.BytesIO((tmp_path / "one" / "birds_eye.png").read_bytes())).shape[2] == 4
+
+
+def greys(folder: Path) -> int:
+    """How many pixels of an overview have the colour of asphalt."""
+    (page,) = pages(folder)
+    canvas = FigureCanvasAgg(page)
+    canvas.draw()
+    return int(near(np.asarray(canvas.buffer_rgba())[..., :3].reshape(-1, 3).astype(int), ASPHALT).sum())
+
+
+def test_an_overview_shows_the_paved_area_behind_the_route(driven: Run, tmp_path: Path) -> None:
+    write_run(driven, tmp_path)
+    shown = greys(tmp_path)
+    (tmp_path / "runs" / "0001" / "road.json").unlink()
+    assert shown > greys(tmp_path) + 500
+
+
+def test_the_place_of_a_failure_shows_the_junction_around_it(driven: Run, route: Route) -> None:
+    site = site_of(route, driven.world, driven.drive, 155.0)
+    assert site.rings
+    box = shapely.box(*(site.at - 20), *(site.at + 20))
+    drawn = shapely.Polygon(site.rings[0], site.rings[1:])
+    assert shapely.symmetric_difference(drawn, route.network.paved).intersection(box).area < 0.01
+    assert site.lines
+    assert 'fill-rule="evenodd"' in draw_site(site, "a junction")

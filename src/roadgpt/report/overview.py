@@ -10,10 +10,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PatchCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Rectangle
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path as Outline
+from matplotlib.transforms import Affine2D
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry.curve import Array
+from roadgpt.network.network_json import network_from_json
 from roadgpt.reading import read_json
 from roadgpt.report.canvas import (
     DARKER,
@@ -29,7 +32,8 @@ from roadgpt.report.canvas import (
     new_figure,
     save_all,
 )
-from roadgpt.report.plan_view import GROUND
+from roadgpt.report.network_view import path_of
+from roadgpt.report.plan_view import ASPHALT, GROUND
 from roadgpt.report.text_width import fitted, inches
 from roadgpt.road import World
 from roadgpt.run.execution import FIELDS
@@ -55,6 +59,8 @@ class Entry:
     failed_at: tuple[float, float] | None
     share: float | None = None
     """Largest share of the car that was outside its lane; None if there is no drive."""
+    paved: Outline | None = None
+    """The paved area of a network, in metres; None for a road without junctions."""
 
     @property
     def graded(self) -> str:
@@ -125,7 +131,19 @@ def _entry_of(path: Path, test: Any) -> Entry:
     records = test.get("execution_data") or []
     outside = next((record for record in records if record[OUTSIDE]), records[-1] if records else None)
     place = tuple(outside[PLACE][:2]) if outcome == "FAIL" and outside else None
-    return Entry(int(test["id"]), outcome, points, place, _share(path, records, outcome))
+    share = _share(path, records, outcome)
+    return Entry(int(test["id"]), outcome, points, place, share, _paved(path))
+
+
+def _paved(path: Path) -> Outline | None:
+    """Returns the paved area of the network in the run of a test; None if it has none."""
+    run = run_of_test(path)
+    if run is None or not (run / "road.json").is_file():
+        return None
+    data = _loaded(run / "road.json")
+    if not isinstance(data, dict) or "network" not in data:
+        return None
+    return path_of(network_from_json(data["network"]).paved)
 
 
 def _share(path: Path, records: list[Any], outcome: str) -> float | None:
@@ -225,6 +243,11 @@ def _cell(axes: Axes, entry: Entry, place: tuple[float, float], cell: float, siz
     if not len(entry.points):
         return
     clip = Rectangle((x0, y0), cell, cell, transform=axes.transData)
+    if entry.paved is not None:
+        to_page = Affine2D().scale(cell / size, -cell / size).translate(x0, y0 + cell)
+        area = PathPatch(entry.paved.transformed(to_page), fc=ASPHALT, ec=ASPHALT, lw=0.6, zorder=1.5)
+        axes.add_patch(area)
+        area.set_clip_path(clip)
     scaled = entry.points / size * cell * [1, -1] + [x0, y0 + cell]
     line = LineCollection(
         [scaled], colors=colour, linewidths=2.2 if cell > 1.2 else 1.5,

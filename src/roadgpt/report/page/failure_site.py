@@ -6,6 +6,8 @@ import numpy as np
 
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
+from roadgpt.network.markings import strokes
 from roadgpt.report.page.svg import chart, line, number, tag, words
 from roadgpt.road import Road, World
 
@@ -36,14 +38,30 @@ class FailureSite:
     heading: float
     """Heading, in radians, of the road shortly before the place of the failure; this direction points up in
     the picture."""
+    rings: tuple[Array, ...] = ()
+    """The outlines of the paved area of a network, and of the holes in it; ``left`` and ``right`` are empty
+    then."""
 
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
     """Returns the lines to draw for a failure that occurred ``station`` metres along a road."""
+    at, path, car, heading = _moved(road, world, drive, station)
+    if isinstance(road, Route):
+        none = np.empty((0, 2))
+        rings, lines = _network_around(road, at)
+        return FailureSite(none, lines, none, path, car, at, heading, rings)
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     profile = world.profile_of(road)
     (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
     lines = tuple((line, mark == "broken") for mark, line in inner if mark != "none")
+    return FailureSite(left, lines, right, path, car, at, heading)
+
+
+def _moved(
+    road: Road, world: World, drive: Drive | None, station: float
+) -> tuple[Array, Array, Array | None, float]:
+    """Returns the middle of the lane at a failure, the driven path, the car's corners there, and the heading
+    of the road before it."""
     path, car = np.empty((0, 2)), None
     if drive is not None:
         last = _step(drive, station)
@@ -51,7 +69,22 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
         path = np.stack([drive["x"], drive["y"]], axis=1)[[*near, last]]
         car = drive.corners(last)
     heading = float(road.heading(max(0.0, station - 2 * BEHIND)))
-    return FailureSite(left, lines, right, path, car, road.at(station, profile.middle(station))[:2], heading)
+    middle = world.profile_of(road).middle(station)
+    return road.at(station, middle)[:2], path, car, heading
+
+
+def _network_around(route: Route, at: Array) -> tuple[tuple[Array, ...], tuple[tuple[Array, bool], ...]]:
+    """Returns the outlines of the paved area around a place, and the lines that are painted there."""
+    import shapely
+
+    box = shapely.box(*(at - ACROSS), *(at + ACROSS))
+    parts = shapely.get_parts(shapely.intersection(route.network.paved, box))
+    rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
+    lines = [stroke.points[:, :2] for stroke in strokes(route.network)]
+    near = [line for line in lines if np.abs(line - at).max(axis=1).min() < ACROSS]
+    return tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings), tuple(
+        (line, False) for line in near
+    )
 
 
 def _step(drive: Drive, station: float) -> int:
@@ -74,8 +107,10 @@ def draw_site(of: FailureSite, label: str) -> str:
     road = _points(np.concatenate([left, right[::-1]]))
     out = [
         tag("rect", width=SIDE, height=SIDE, fill="var(--wash)"),
-        tag("polygon", points=road, fill="var(--road)"),
-        *(_line(edge, "var(--edge)", 1.4) for edge in (left, right)),
+        _surface([placed(ring) for ring in of.rings])
+        if of.rings
+        else tag("polygon", points=road, fill="var(--road)"),
+        *(_line(edge, "var(--edge)", 1.4) for edge in (left, right) if len(edge)),
         *(
             _line(placed(each), "var(--edge)", 1.2, **({"stroke_dasharray": "9 7"} if is_broken else {}))
             for each, is_broken in of.lines
@@ -95,6 +130,11 @@ def draw_site(of: FailureSite, label: str) -> str:
         words(12, below - 5, f"{SCALE:.0f} m", 10.5),
     ]
     return chart(SIDE, SIDE, "".join(out), label)
+
+
+def _surface(rings: list[Array]) -> str:
+    outline = "".join(f"M{_points(ring)}z" for ring in rings)
+    return tag("path", d=outline, fill="var(--road)", fill_rule="evenodd")
 
 
 def _points(points: Array) -> str:
