@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
+JUST = 1e-6  # m, before and behind a station
 AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 
@@ -76,14 +77,17 @@ def shoulders_on_ground(route: "Route") -> tuple[CubicProfile, CubicProfile]:
     last = 0.0
     for low, high in windows(route):
         s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
-        ends, paved = edges_of_ground(route, ground, s), profile.edges(s)
-        widths = (ends.left - paved.left, paved.right - ends.right)
-        for side, width, usual in zip(
-            rows, widths, _usual(profile.rims(last), profile.edges(last)), strict=True
-        ):
+        s = np.union1d(s, [each for each in route.starts if low < each < high])
+        ends = edges_of_ground(route, ground, s)
+        # lanes begin and end where a junction does, so the shoulder beside them jumps there
+        after, before = profile.edges(s[:-1] + JUST), profile.edges(s[1:] - JUST)
+        begins = (ends.left[:-1] - after.left, after.right - ends.right[:-1])
+        stops = (ends.left[1:] - before.left, before.right - ends.right[1:])
+        usuals = _usual(profile.rims(last), profile.edges(last))
+        for side, begin, stop, usual in zip(rows, begins, stops, usuals, strict=True):
             if low > last:
                 side.append((last, usual, 0.0))
-            side += _linear(s, np.maximum(width, 0.0))
+            side += _linear(s, np.maximum(begin, 0.0), np.maximum(stop, 0.0))
         last = high
     for side, usual in zip(rows, _usual(profile.rims(last), profile.edges(last)), strict=True):
         end = min(last, route.length - 1e-6)
@@ -103,9 +107,10 @@ def _usual(rims: Edges, edges: Edges) -> tuple[float, float]:
     return float(rims.left - edges.left), float(edges.right - rims.right)
 
 
-def _linear(s: Array, widths: Array) -> list[_Row]:
-    slopes = np.diff(widths) / np.diff(s)
-    return list(zip(s[:-1].tolist(), widths[:-1].tolist(), slopes.tolist(), strict=True))
+def _linear(s: Array, begins: Array, stops: Array) -> list[_Row]:
+    """Returns rows for widths that change from ``begins`` to ``stops`` between two stations each."""
+    slopes = (stops - begins) / np.diff(s)
+    return list(zip(s[:-1].tolist(), begins.tolist(), slopes.tolist(), strict=True))
 
 
 def _profile(rows: Sequence[_Row]) -> CubicProfile:

@@ -8,6 +8,7 @@ import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
+from roadgpt.drive.passages import route_of
 from roadgpt.drive.sampled_road import BANK, GRADE, SampledRoad, sample_road, stations_of
 from roadgpt.drive.simulators.mujoco import bridge
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables
@@ -63,7 +64,10 @@ class Vehicle:
         sampled, profile = sample_road(road), world.profile_of(road)
         rims = np.column_stack(profile.rims(stations_of(sampled)))
         lane = LanePolygon.along(road, world)
-        return cls(car, Ground(sampled, rims, profile.reach, world.site.friction, lane))
+        beyond = profile.reach
+        if route_of(road) is not None:  # whose shoulders reach around the corners of junctions
+            beyond = float(profile.shoulder(road.length))
+        return cls(car, Ground(sampled, rims, beyond, world.site.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
         """Places the car at station s and offset t, facing along the road, and sets its clock to 0.
