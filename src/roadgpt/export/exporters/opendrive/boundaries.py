@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from roadgpt.export.exporters.opendrive.kerbs import outermost
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.network import Connection, Junction, Network, RoadEnd
+from roadgpt.network import Junction, Network, RoadEnd
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -20,14 +20,16 @@ def boundary(network: Network, junction: Junction) -> XmlElement:
 
 def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
     arms = [arm.end for arm in junction.arms]
+    ways = {(each.incoming, each.outgoing): each for each in junction.connections}
     for n, end in enumerate(arms):
         yield _across(network, end)
         after = arms[(n + 1) % len(arms)]
-        if (right := _way(junction, end, after)) is not None:
+        if (right := ways.get((end, after))) is not None:
+            # traffic on the right that turns right into the next arm keeps to the kerb
             for road, first, last in outermost(network, junction, right):
                 lanes = len(network.road(road).profile.right)
                 yield _along(road, -lanes, first or "start", last or "end")
-        elif (left := _way(junction, after, end)) is not None:
+        elif (left := ways.get((after, end))) is not None:
             # along the central island of a roundabout, where there is no traffic on the other side
             yield _along(left.road, 0, "end", "start")
 
@@ -58,15 +60,4 @@ def _along(road: int, lane: int, start: Value, end: Value) -> XmlElement:
     return XmlElement(
         "segment",
         {"type": "lane", "roadId": str(road), "boundaryLane": lane, "sStart": start, "sEnd": end},
-    )
-
-
-def _way(junction: Junction, start: RoadEnd, end: RoadEnd) -> Connection | None:
-    """Returns the connection from one arm to another.
-
-    Traffic on the right that turns right into the next arm counter-clockwise keeps to the kerb between the
-    two arms.
-    """
-    return next(
-        (each for each in junction.connections if (each.incoming, each.outgoing) == (start, end)), None
     )

@@ -5,13 +5,16 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt.export.exporters.opendrive.plan import Start
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.pieces import advance
+from roadgpt.road import Profile
+from roadgpt.road.profile import Width
 
 APART_ON_BENDS = 1.0  # m, at most, between two points of a bend
 
 
 def bounds_of(
-    starts: Sequence[Start], reaches: Sequence[tuple[float, float]]
+    roads: Sequence[Sequence[Start]], sides: Sequence[tuple[float, float]]
 ) -> tuple[float, float, float, float]:
     """Returns the smallest x and y and the largest x and y in metres that lanes have.
 
@@ -19,10 +22,11 @@ def bounds_of(
     a bend of a radius of 6 m.
 
     Args:
-        starts: The lines, arcs and spirals of all reference lines.
-        reaches: For each of them, the distances in metres from the reference line to the outermost edge of
-            the lanes on its left, and on its right.
+        roads: The lines, arcs and spirals of each reference line.
+        sides: For each road, what ``reaches`` returns of it.
     """
+    starts = [start for own in roads for start in own]
+    left, right = np.repeat(np.array(sides), [len(own) for own in roads], axis=0).T
     length, k0, k1 = np.array([(start.piece.length, start.piece.k0, start.piece.k1) for start in starts]).T
     x, y, heading = np.array([start[1:4] for start in starts]).T
     bend = np.maximum(np.abs(k0), np.abs(k1))
@@ -33,12 +37,31 @@ def bounds_of(
     k, dk = k0[piece], ((k1 - k0) / length)[piece]
     dx, dy = advance(u, heading[piece], k, dk, length[piece])
     angle = heading[piece] + u * (k + u * dk / 2)
-    left, right = np.array(reaches).T[:, piece]
     points = np.array([x[piece] + dx, y[piece] + dy])
     normal = np.array([-np.sin(angle), np.cos(angle)])
-    corners = np.concatenate((points + left * normal, points - right * normal), axis=1)
+    corners = np.concatenate((points + left[piece] * normal, points - right[piece] * normal), axis=1)
     # an edge is at most this far from the chord between two of its points
-    sag = float(np.max(bend * (length / count) ** 2 / 8 * (1 + bend * np.array(reaches).max(axis=1))))
+    sag = float(np.max(bend * (length / count) ** 2 / 8 * (1 + bend * np.maximum(left, right))))
     west, south = (corners.min(axis=1) - sag).tolist()
     east, north = (corners.max(axis=1) + sag).tolist()
     return west, south, east, north
+
+
+def reaches(profile: Profile) -> tuple[float, float]:
+    """Returns the distances in metres from the reference line to the outermost edges, on the left and right.
+
+    Where widths vary, they are upper bounds.
+    """
+    left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
+    return left, right
+
+
+def _widest(width: Width) -> float:
+    """Returns an upper bound of a width: the largest Bernstein coefficient of its cubics."""
+    if not isinstance(width, CubicProfile):
+        return width
+    found = [width.coefficients[-1][0]]
+    for start, end, (a, b, c, d) in zip(width.stations, width.stations[1:], width.coefficients, strict=False):
+        n = end - start
+        found += [a, a + n * b / 3, a + n * (2 * b + n * c) / 3, a + n * (b + n * (c + n * d))]
+    return max(found)

@@ -6,13 +6,13 @@ Source: ASAM OpenDRIVE 1.8.1, junctions.
 from collections.abc import Iterator, Sequence
 
 from roadgpt.export.exporters.opendrive.boundaries import boundary
-from roadgpt.export.exporters.opendrive.extent import bounds_of
+from roadgpt.export.exporters.opendrive.extent import bounds_of, reaches
 from roadgpt.export.exporters.opendrive.lanes import RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
 from roadgpt.export.exporters.opendrive.roads import REVISION, Place, RoadLink, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import XmlElement
-from roadgpt.geometry import CubicProfile, PieceCurve
+from roadgpt.geometry import PieceCurve
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, RoadEnd
 from roadgpt.road import World
 
@@ -28,14 +28,7 @@ def network_document(network: Network, world: World, revision: int = REVISION) -
         revision: The minor revision of OpenDRIVE 1: 7, or 8 with the boundaries of junctions.
     """
     starts = starts_of([_curve(each) for each in network.roads])
-    bounds = bounds_of(
-        [start for own in starts for start in own],
-        [
-            reach
-            for each, own in zip(network.roads, starts, strict=True)
-            for reach in [_reach(each)] * len(own)
-        ],
-    )
+    bounds = bounds_of(starts, [reaches(each.profile) for each in network.roads])
     signals, parts = Signals.of(network), RoadParts(world)
     root = XmlElement("OpenDRIVE").extended(header(bounds, revision))
     for member, own in zip(network.roads, starts, strict=True):
@@ -54,15 +47,6 @@ def network_document(network: Network, world: World, revision: int = REVISION) -
 def _curve(member: NetworkRoad) -> PieceCurve:
     assert isinstance(member.road.plan, PieceCurve)
     return member.road.plan
-
-
-def _reach(member: NetworkRoad) -> tuple[float, float]:
-    """Returns the distances in metres from the reference line to the edges of the lanes, left and right."""
-    left, right = (
-        sum(lane.width.extremes()[1] if isinstance(lane.width, CubicProfile) else lane.width for lane in side)
-        for side in (member.profile.left, member.profile.right)
-    )
-    return left, right
 
 
 def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> Place:
