@@ -6,11 +6,15 @@ its lane exceeds the tolerance at any control step, if it falls off the road, if
 and the shoulder count as outside. If ``World.limits.lane_departure`` is set, the car also fails as soon as a
 front tyre crosses a lane marking. Every verdict states how far outside its lane the car was, on the scale of
 ``roadgpt.verdict.severity``.
+
+On a route through junctions a verdict also lists wrong turns, driving against the direction of the lane,
+tyres off the road, and stop signs that were passed without a stop (``roadgpt.verdict.incidents``).
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from roadgpt.verdict.incident import Incident
 from roadgpt.verdict.severity import SEVERITIES, Severity, graded, percent, severity
 from roadgpt.verdict.verdict import Cause, Outcome, Side, Verdict
 
@@ -21,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "SEVERITIES",
     "Cause",
+    "Incident",
     "Oracle",
     "Outcome",
     "Severity",

@@ -1,10 +1,13 @@
 """Turns a Drive into a Verdict."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.errors import UsageError
+from roadgpt.verdict.incident import Incident
+from roadgpt.verdict.incidents import incidents_of
 from roadgpt.verdict.margin import EPSILON, margins
 from roadgpt.verdict.oracle import consult, has_departed, is_outside
 from roadgpt.verdict.severity import percent
@@ -21,17 +24,31 @@ CAUSES: dict[str, Cause] = {
     "timeout": "timeout",
 }
 
+INCIDENTS: dict[str, str] = {
+    "out of lane": "out of its lane",
+    "wrong turn": "on a wrong road",
+    "wrong way": "against the direction of its lane",
+    "off road": "a wheel off the road",
+    "stop line": "no stop at a stop sign",
+}
+
 LEAST = 0.005  # m; a smaller distance beyond a marking is not stated
 
 # The competition's own words, to which it adds the name of the simulation. To the competition, a car that
-# falls has left the lane.
+# falls has left the lane. It has no stop signs.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
     "fell": "Car drove out of the lane",
     "stuck": "Car is not moving fast enough",
     "timeout": "Timeout Simulation",
+    "wrong turn": "Car drove out of the lane",
+    "wrong way": "Car drove out of the lane",
+    "stop line": "Successful test",
 }
+
+FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
+"""The incidents that fail a test in which nothing else failed. A tyre off the road does not."""
 
 
 def judge(
@@ -44,6 +61,10 @@ def judge(
     checks whether the car is at the goal, then whether it is stuck, then whether it is in its lane. The step
     at which the car reaches the goal or is stuck is therefore ignored for the margin and ``max_oob``.
 
+    On a route through junctions, ``incidents`` lists what the car did wrong, as defined in
+    ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
+    missed stop is the failure. A tyre off the road is counted and fails no test, as on a single road.
+
     Args:
         road: The road.
         drive: The drive on this road.
@@ -55,7 +76,10 @@ def judge(
         UsageError: The drive was stopped at a smaller tolerance than ``world.limits.oob_tolerance``.
     """
     road = world.lay(road)
+    incidents = incidents_of(road, drive, world)
     step, cause = known or _first_failure(road, drive, world)
+    if cause is None:
+        step, cause = _first_of(incidents or (), drive, step)
     every = margins(road, drive, world)
     least = float(every[: drive.lane_steps].min())
     left = _left(road, drive, step, world)
@@ -67,6 +91,7 @@ def judge(
         description = _kept(road, drive, world, least, beyond)
     else:
         description = _failed(road, drive, world, step, cause, side)
+    description += _counted(incidents or (), cause)
     return Verdict(
         outcome="FAIL" if cause else "PASS",
         cause=cause,
@@ -80,6 +105,7 @@ def judge(
         at_xy=(float(drive["x"][step]), float(drive["y"][step])) if cause else None,
         at_time=float(drive["time"][step]) if cause else None,
         side=side,
+        incidents=incidents,
     )
 
 
@@ -106,6 +132,25 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
             f"a tolerance of {world.limits.oob_tolerance:g} allows: drive the road again with this tolerance"
         )
     return last, CAUSES.get(drive.ended)
+
+
+def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple[int, Cause | None]:
+    """Returns step and cause of the first incident that fails a test; ``step`` and None if there is none."""
+    for each in incidents:
+        for cause in FAILING:
+            if each.kind == cause:
+                return int(np.searchsorted(drive["time"], each.at_time)), cause
+    return step, None
+
+
+def _counted(incidents: Sequence[Incident], cause: Cause | None) -> str:
+    """Returns the incidents other than the cause as words that follow a description."""
+    words = []
+    for kind in dict.fromkeys(each.kind for each in incidents if each.kind not in (cause, "out of lane")):
+        own = [each for each in incidents if each.kind == kind]
+        often = "once" if len(own) == 1 else f"{len(own)} times"
+        words.append(f"{INCIDENTS[kind]} {often}, first after {own[0].at_s:.0f} m")
+    return "".join(f"; {each}" for each in words)
 
 
 def _left(road: "Road", drive: "Drive", step: int, world: "World") -> bool:
@@ -138,6 +183,12 @@ def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Caus
         return f"left its lane to the {side}{where} {reached} {fast}{how}"
     if cause == "fell":
         return f"fell off the road to the {side} {reached} {fast}"
+    if cause == "wrong turn":
+        return f"took a wrong turn {reached} {fast}"
+    if cause == "wrong way":
+        return f"drove against the direction of its lane {reached} {fast}"
+    if cause == "stop line":
+        return f"did not stop at the stop sign {reached}: it crossed the line {fast}"
     if cause == "stuck":
         return f"was stuck {reached}: it moved less than 1 m in 10 s"
     return f"ran out of time {reached} of {road.length:.0f} m"

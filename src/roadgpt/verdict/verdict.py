@@ -1,5 +1,6 @@
 """Defines the Verdict: whether the car kept its lane, by which margin, and where it first failed."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, ClassVar, Literal, Self
@@ -8,10 +9,11 @@ from pydantic import ConfigDict, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.reading import strictly
+from roadgpt.verdict.incident import Incident
 from roadgpt.verdict.severity import Severity, severity
 
 Outcome = Literal["PASS", "FAIL"]
-Cause = Literal["out of lane", "fell", "stuck", "timeout"]
+Cause = Literal["out of lane", "fell", "stuck", "timeout", "wrong turn", "wrong way", "stop line"]
 Side = Literal["left", "right"]
 
 
@@ -23,7 +25,10 @@ class Verdict:
 
     outcome: Outcome
     cause: Cause | None
-    """Cause of the failure; None if the car kept its lane and reached the goal."""
+    """Cause of the failure; None if the car kept its lane and reached the goal.
+
+    "wrong turn", "wrong way" and "stop line" occur on routes through junctions only, if nothing else failed.
+    """
     description: str
     """The result of the drive in one sentence."""
     sbft_description: str
@@ -56,6 +61,16 @@ class Verdict:
     """Time in seconds from the start to the failure; None if the car kept its lane."""
     side: Side | None = None
     """The side on which the car left its lane or fell; None for other results."""
+    incidents: tuple[Incident, ...] | None = None
+    """What the car did wrong on a route through junctions, in the order of time; None on a single road.
+
+    It is given for a drive that passed, too: a tyre off the road fails no test.
+    """
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How often each kind of incident occurred, for the kinds that did."""
+        return dict(Counter(each.kind for each in self.incidents or ()))
 
     @property
     def severity(self) -> Severity:
@@ -68,8 +83,15 @@ class Verdict:
         return self.outcome == "PASS"
 
     def to_json(self) -> dict[str, Any]:
-        """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``."""
+        """Returns the fields and ``kept`` as JSON data, for ``Verdict.from_json``.
+
+        The field ``incidents`` is left out for a single road.
+        """
         data = asdict(self)
+        if self.incidents is None:
+            del data["incidents"]
+        else:
+            data["incidents"] = [{**asdict(each), "at_xy": list(each.at_xy)} for each in self.incidents]
         data["at_xy"] = None if self.at_xy is None else list(self.at_xy)
         return {"kept": self.kept, **data}
 

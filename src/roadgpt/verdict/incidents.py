@@ -1,0 +1,158 @@
+"""Finds what a car did wrong on a route through junctions, each time with its place.
+
+The kinds of incidents:
+
+- out of lane: as the oracle defines it; inside a junction the lane is that of the route's connecting road;
+- wrong turn: the middle of the car is beside the route's own road, on another road or another way through
+  the junction, and the car heads along it;
+- wrong way: the car is on its road and its heading differs by more than 90 degrees from that of the route,
+  for 1 s or longer;
+- off road: the outer edge of a tyre is outside the paved area of the network;
+- stop line: the front of the car crosses the line at a stop sign, and the car never stood still (0.1 m/s)
+  within the last 4 m.
+
+Sources: CARLA leaderboard and scenario_runner, for the stop sign; the others are like its criteria, with
+sharper limits. An incident lasts from the first step at which its condition holds to the last one in a row.
+"""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry import wrap_angle
+from roadgpt.network import Route
+from roadgpt.verdict.incident import Incident, IncidentKind
+from roadgpt.verdict.oracle import is_outside
+
+if TYPE_CHECKING:
+    from roadgpt.drive import Drive
+    from roadgpt.road import Road, World
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong road on which it drives
+BACKWARDS = math.radians(90.0)  # from the heading of the route
+PATIENCE = 1.0  # s of driving the wrong way
+STOOD = 0.1  # m/s
+STOP_WITHIN = 4.0  # m before the line
+EDGE = 0.02  # m, by which a tyre may be beyond the polygon of the paved area, whose chords cut bends by 2 mm
+STEP = 1.0  # m, between points at which the heading of other roads is known
+
+
+def incidents_of(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
+    """Returns what the car did wrong, in the order of time; None on a single road."""
+    if not isinstance(road, Route):
+        return None
+    found: list[tuple[int, IncidentKind]] = [
+        (step, "out of lane") for step in begins(is_outside(road, drive, world))
+    ]
+    found += [(step, "wrong turn") for step in begins(_is_on_wrong_road(road, drive))]
+    found += [(step, "wrong way") for step in begins(_is_backwards(road, drive))]
+    found += [(step, "off road") for step in begins(_is_off_road(road, drive))]
+    found += [(step, "stop line") for step in _stops_missed(road, drive)]
+    return tuple(
+        Incident(
+            kind,
+            float(drive["s"][step]),
+            (float(drive["x"][step]), float(drive["y"][step])),
+            float(drive["time"][step]),
+        )
+        for step, kind in sorted(found, key=lambda each: each[0])
+    )
+
+
+def begins(holds: BoolArray) -> list[int]:
+    """Returns the steps at which a condition, shape ``(n,)``, begins to hold."""
+    steps = np.flatnonzero(holds & ~np.concatenate([[False], holds[:-1]]))
+    return [int(step) for step in steps]
+
+
+def _is_beside(route: Route, drive: "Drive") -> BoolArray:
+    """Returns for each step whether the car's centre of gravity is beside the road of the route."""
+    assert route.profile is not None
+    edges = route.profile.edges(drive["s"])
+    beside: BoolArray = (drive["t"] > edges.left) | (drive["t"] < edges.right)
+    return beside
+
+
+def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
+    from shapely import contains_xy
+
+    from roadgpt.network.paved import ribbon
+
+    wrong = np.zeros(len(drive), bool)
+    steps = np.flatnonzero(_is_beside(route, drive))
+    own = {leg.road for leg in route.legs}
+    for member in route.network.roads if len(steps) else ():
+        if member.id in own:
+            continue
+        x, y = drive["x"][steps], drive["y"][steps]
+        on = contains_xy(ribbon(member.road), x, y)
+        if not on.any():
+            continue
+        s = np.linspace(0.0, member.road.length, max(2, math.ceil(member.road.length / STEP) + 1))
+        points = member.road.plan.at(s)
+        away = np.hypot(x[on, None] - points[:, 0], y[on, None] - points[:, 1])
+        ahead = member.road.heading(s[np.argmin(away, axis=1)])
+        turned = np.abs(wrap_angle(drive["heading"][steps[on]] - ahead))
+        if member.junction is None:  # an arm, on which one may drive either way
+            turned = np.minimum(turned, math.pi - turned)
+        wrong[steps[on][turned < ALONG]] = True
+    return wrong
+
+
+def _is_backwards(route: Route, drive: "Drive") -> BoolArray:
+    turned = np.abs(wrap_angle(drive["heading"] - route.heading(drive["s"])))
+    against = (turned > BACKWARDS) & ~_is_beside(route, drive)
+    kept = np.zeros(len(drive), bool)
+    for first in begins(against):
+        rest = np.flatnonzero(~against[first:])
+        last = first + int(rest[0]) - 1 if len(rest) else len(drive) - 1
+        if drive["time"][last] - drive["time"][first] >= PATIENCE - 1e-9:
+            kept[first : last + 1] = True
+    return kept
+
+
+def wheels(drive: "Drive") -> FloatArray:
+    """Returns the outer edges of the four tyres in plan at every step, in metres, shape ``(n, 4, 2)``.
+
+    The rear axle is taken to be as far behind the middle of the car as the front axle is ahead of it.
+    """
+    box = drive.car
+    front, side = box.axle, box.tyres / 2
+    rear = 2 * box.ahead - front
+    corners = np.array([[front, side], [front, -side], [rear, -side], [rear, side]])
+    c, n = np.cos(drive["heading"])[:, None], np.sin(drive["heading"])[:, None]
+    x = drive["x"][:, None] + c * corners[:, 0] - n * corners[:, 1]
+    y = drive["y"][:, None] + n * corners[:, 0] + c * corners[:, 1]
+    return np.stack([x, y], axis=-1)
+
+
+def _is_off_road(route: Route, drive: "Drive") -> BoolArray:
+    import shapely
+
+    paved = route.network.paved.buffer(EDGE)
+    shapely.prepare(paved)
+    at = wheels(drive)
+    off: BoolArray = ~shapely.contains_xy(paved, at[..., 0], at[..., 1]).all(axis=1)
+    return off
+
+
+def _stops_missed(route: Route, drive: "Drive") -> list[int]:
+    """Returns the steps at which the front of the car crosses a stop line without having stood before it."""
+    from roadgpt.drive.passages import passages
+
+    front = drive["s"] + drive.car.ahead + drive.car.length / 2
+    missed = []
+    for way in passages(route):
+        line = way.stop_line
+        if line is None or not (front > line).any():
+            continue
+        step = int(np.argmax(front > line))
+        near = (front[:step] >= line - STOP_WITHIN) & (drive["speed"][:step] < STOOD)
+        if not near.any():
+            missed.append(step)
+    return missed
