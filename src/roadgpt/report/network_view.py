@@ -2,7 +2,7 @@
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.markers import MarkerStyle
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
@@ -13,6 +13,7 @@ from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import JunctionSign, signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import NetworkSurface
+from roadgpt.report.text_width import POINTS
 
 VERGE, ASPHALT, PAINT = "#dcd9c3", "#b9bdc3", "#ffffff"
 TINT, ARROW = "#8fb3d6", "#0072b2"
@@ -44,13 +45,11 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
         for island in area.green if surface.shoulder > 0 else ():
             _fill(axes, island, GRASS, 2.1)
     _draw_route(axes, route, per_inch)
-    least = per_inch / 72
-    for kind, width in (("edge", LINE_POINTS), ("lane", LINE_POINTS), ("stop", STOP_POINTS)):
-        found = [
-            stroke for stroke in strokes(network) if kind == stroke.kind.replace("give_way", "stop")
-        ]  # fmt: skip
+    painted = strokes(network)
+    for kinds, width in ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS)):
+        found = [stroke for stroke in painted if stroke.kind in kinds]
         if found:
-            points = max(width, found[0].width / least)
+            points = max(width, found[0].width / per_inch * POINTS)
             lines = [stroke.points[:, :2] for stroke in found]
             axes.add_collection(
                 LineCollection(lines, colors=PAINT, linewidths=points, zorder=3, capstyle="butt")
@@ -101,8 +100,7 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
     pieces = [
         np.concatenate([ring[i : i + 2], ring[len(ring) - i - 2 : len(ring) - i]]) for i in range(len(s) - 1)
     ]
-    path = Path.make_compound_path(*[Path(np.r_[piece, piece[:1]], closed=True) for piece in pieces])
-    axes.add_patch(PathPatch(path, fc=TINT, ec=TINT, lw=0.3, zorder=2.2))
+    axes.add_collection(PolyCollection(pieces, facecolors=TINT, edgecolors=TINT, linewidths=0.3, zorder=2.2))
     count = max(1, int(route.length / max(ARROWS, ARROW_INCHES * per_inch)))
     middle = (np.arange(count) + 0.5) * route.length / count
     places = route.at(middle, route.profile.middle(middle))[:, :2]
