@@ -9,7 +9,7 @@ from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.extent import bounds_of, reaches
 from roadgpt.export.exporters.opendrive.lanes import RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
-from roadgpt.export.exporters.opendrive.roads import REVISION, Place, RoadLink, header, road_element
+from roadgpt.export.exporters.opendrive.roads import REVISION, RoadPlace, RoadLink, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import PieceCurve
@@ -49,14 +49,14 @@ def _curve(member: NetworkRoad) -> PieceCurve:
     return member.road.plan
 
 
-def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> Place:
+def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> RoadPlace:
     """Returns where a road is in its network: its links, and the starts of its lines, arcs and spirals."""
     found = network.connection_of.get(member.id)
     if found is None:
-        return Place(tuple(_links(network, member)), starts=starts)
+        return RoadPlace(tuple(_links(network, member)), starts=starts)
     connection = found[1]
     links = (_to_road("predecessor", connection.incoming), _to_road("successor", connection.outgoing))
-    return Place(links, found[0].id, _lane_links(connection), starts)
+    return RoadPlace(links, found[0].id, _lane_links(connection), starts)
 
 
 def _links(network: Network, member: NetworkRoad) -> Iterator[RoadLink]:

@@ -68,6 +68,8 @@ def _before(
         either of them, to the point at which their edges cross. None if no way leads beyond the edge.
     """
     line = _straight(network, right, sense)[0] - EARLIER
+    if line <= 0:
+        return None
     found = []
     for way in ways:
         straight, bends_right = _straight(network, way, sense)

@@ -46,7 +46,7 @@ def header(bounds: Sequence[float], revision: int = REVISION) -> XmlElement:
 
 
 @dataclass(frozen=True)
-class Place:
+class RoadPlace:
     """Where a road is in a network."""
 
     links: Sequence[RoadLink] = ()
@@ -59,7 +59,7 @@ class Place:
     """The starts of the pieces of its reference line, if they have been computed already."""
 
 
-def road_element(road: Road, number: int, parts: RoadParts, place: Place | None = None) -> XmlElement:
+def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | None = None) -> XmlElement:
     """Returns the element ``road`` with its geometry and its lanes.
 
     Args:
@@ -81,7 +81,7 @@ def road_element(road: Road, number: int, parts: RoadParts, place: Place | None 
     if place is not None:
         body.add("link").extended(*(XmlElement(name, attributes) for name, attributes in place.links))
     else:
-        place = Place()
+        place = RoadPlace()
     body.extended(parts.road_type)
     body.add("planView").extended(*geometries(road.plan, place.starts))
     return body.extended(parts.heights(road), *lateral_profile(road), parts.lanes(road, place.lane_links))
