@@ -9,7 +9,7 @@ from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.extent import bounds_of, reaches
 from roadgpt.export.exporters.opendrive.lanes import RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
-from roadgpt.export.exporters.opendrive.roads import REVISION, RoadPlace, RoadLink, header, road_element
+from roadgpt.export.exporters.opendrive.roads import REVISION, RoadLink, RoadPlace, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import PieceCurve
