@@ -22,13 +22,13 @@ WORLD = World(limits=Limits(speed_limit=50 / 3.6))
 DRIVERS = ("beamng_like", "lane_centring", "pure_pursuit", "reference")
 
 
-def route(*junctions: dict[str, Any], world: World = WORLD) -> Route:
-    """A route with 60 m of straight road before, between and behind its junctions."""
+def route(*junctions: dict[str, Any], world: World = WORLD, length: float = 60.0) -> Route:
+    """A route with 60 m (or ``length``) of straight road before, between and behind its junctions."""
     data: dict[str, Any] = {"starting_point": [0, 0, 0], "theta": 0}
     turns_back = junctions[-1]["take"] == 4  # on the road of arrival, which has no segments of its own
     for n in range(len(junctions) + (not turns_back)):
         data[f"road_segment{n + 1}"] = {
-            "distance": 60.0, "direction": "straight", "incline": 0, "turn_degrees": 0
+            "distance": length, "direction": "straight", "incline": 0, "turn_degrees": 0
         }  # fmt: skip
         if n < len(junctions):
             data[f"junction{n + 1}"] = {"after": n + 1, **junctions[n]}
@@ -145,6 +145,15 @@ def slowest_near(drive: Drive, station: float, reach: float) -> float:
     return float(drive["speed"][near].min())
 
 
+@pytest.mark.parametrize("name", ["beamng_like", "reference"])
+@pytest.mark.parametrize("length", [47.3, 50.0, 52.65])
+def test_they_stop_wherever_the_line_is(name: str, length: float) -> None:
+    way = route(CROSS, length=length)
+    drive = simulate(way, WORLD, name)
+    assert slowest_near(drive, length - 0.5, 4.0) < 0.1
+    assert judge(way, drive, WORLD).incidents == ()
+
+
 @pytest.mark.parametrize("name", DRIVERS)
 @pytest.mark.parametrize("friction", [1.0, 0.6])
 def test_all_drivers_stop_at_the_sign_and_turn_as_people_do(name: str, friction: float) -> None:
@@ -153,7 +162,8 @@ def test_all_drivers_stop_at_the_sign_and_turn_as_people_do(name: str, friction:
     drive = simulate(way, world, name)
     verdict = judge(way, drive, world)
     assert verdict.kept, verdict.description
-    assert slowest_near(drive, 60.0, 4.0) < 0.1
+    assert slowest_near(drive, 59.5, 4.0) < 0.1  # before the line, which is 0.5 m wide
+    assert verdict.incidents == ()
     inside = np.zeros(len(drive), bool)
     for each in Outlook(way, world).at(0.0)[1]:
         inside |= (drive["s"] > each.distance) & (drive["s"] < each.distance + each.length)

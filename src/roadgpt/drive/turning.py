@@ -28,6 +28,7 @@ BLEND = 10.0  # m before and behind a junction, over which the line of the road 
 FRONT = 2.25  # m, from the centre of gravity to the front of RoadGPT's saloon
 BEFORE_LINE = 1.0  # m, from its front to the stop line, where it stops
 CREEP = 1.0  # m/s, planned speed there: the slowest that is planned
+BEHIND = 3  # stations from there on: drivers look up their plan a little ahead, and speed up only behind it
 BRAKING = 3.4  # m/s^2, with which most drivers brake without effort: AASHTO Green Book, stopping distance
 HALTED = 0.05  # m/s, below which it stands; a verdict asks for less than 0.1
 REACH = 4.0  # m before the line, within which it has to stand: as in CARLA's test of stop signs
@@ -62,8 +63,8 @@ def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
         found[first : last + 1] = map(turning_speed, line.curvature[first : last + 1])
         if way.stop_line is not None:
             stop = line.place(way.stop_line - FRONT - BEFORE_LINE)[0]
-            for i in range(stop + 1):
-                braking = math.sqrt(CREEP**2 + 2 * BRAKING * (stop - i) * line.step)
+            for i in range(min(stop + BEHIND, len(found))):
+                braking = math.sqrt(CREEP**2 + 2 * BRAKING * max(stop - i, 0) * line.step)
                 found[i] = min(found[i], braking)
     return found
 
