@@ -228,3 +228,26 @@ def test_single_roads_only_are_drafted_where_junctions_do_not_belong() -> None:
     assert draft_road(Brief(), USUAL, seed=1).segments
     with pytest.raises(DesignError, match="without junctions"):
         draft(read_plan("// t_junction //"), USUAL, designer="thesis")
+
+
+@pytest.mark.parametrize(
+    "line", ["crossroads // | down pct=6 // crossroads", "| up pct=5 // t_junction left"]
+)
+def test_a_road_keeps_its_mean_grade_though_its_ends_are_level(line: str) -> None:
+    route = drafted(line, 2)
+    asked = -6 if "down" in line else 5
+    index = 2 if "down" in line else 0
+    road = route.network.road(route.legs[index].road).road
+    heights = road.at(np.array([0.0, road.length]))[:, 2]
+    assert 100 * (heights[1] - heights[0]) / road.length == pytest.approx(asked, abs=1)
+    assert road.grade(np.array([road.length])) == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["star straight arms=5", "roundabout arms=5 exit=2", "junction // junction // junction || len=..450"],
+)
+def test_what_can_be_drawn_is_drawn(line: str) -> None:
+    for seed in range(3):
+        route = drafted(line, seed)
+        assert inspect(route, read_plan(line), USUAL) == ()

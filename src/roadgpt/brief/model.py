@@ -165,6 +165,13 @@ class Brief(Frozen):
         return self.model_copy(update=said) == Brief()
 
     @property
+    def as_stretch(self) -> "Brief":
+        """The requirements for a road between junctions: it needs no turn unless turns are asked for."""
+        if self.clauses or self.turns is not None:
+            return self
+        return self.model_copy(update={"turns": at_least(0)})
+
+    @property
     def friction(self) -> float | None:
         """The friction of the slipperiest surface that the words name; None if they name none."""
         return friction_of(self.beside)

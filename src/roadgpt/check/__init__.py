@@ -20,6 +20,7 @@ from typing import Protocol, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
+from roadgpt.check.route_promises import broken_promises
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
 from roadgpt.network import Network, Route
@@ -90,8 +91,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
 
     Args:
         road: The road to check.
-        brief: The requirements that the road should meet; None if there are none. They are not compared with
-            a Route.
+        brief: The requirements that the road should meet; None if there are none.
         world: The map and the limits, such as the minimum radius and the maximum grade.
         rules: Name of the rule set, "strict" or "sbft".
 
@@ -102,7 +102,8 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     """
     rules_of(rules)
     if isinstance(road, Route) and rules == "strict":
-        return inspect_network(road.network, road, world)
+        found_there = inspect_network(road.network, road, world)
+        return found_there if brief is None else (*found_there, *broken_promises(road, brief))
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)

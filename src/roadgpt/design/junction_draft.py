@@ -29,6 +29,7 @@ ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off 
 SKEW = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
 STAR = 50.0  # degrees, least gap of a star junction
+EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
 RING_GAP = 55.0  # degrees, least gap of a roundabout
 ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is required
 ROUNDS = 200  # draws of the arms of one junction
@@ -107,7 +108,7 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     """Returns the arms of a star junction or a roundabout, spread around it."""
     counts = overlap(ARMS[clause.kind], span(clause.arms)) or ARMS[clause.kind]
     asked = span(clause.exit)
-    fewest = max(counts.lo, min(asked.lo if asked.lo < counts.hi else counts.hi, counts.hi))
+    fewest = max(counts.lo, min(asked.lo + 1, counts.hi))  # the last exit would lead back
     if clause.kind == "roundabout" and clause.arms is None and clause.take is not None:
         fewest = max(fewest, 4.0 if clause.take == "straight" else 3.0)
     count = int(rng.integers(int(fewest), int(counts.hi) + 1))
@@ -115,10 +116,9 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
         count = 4 if rng.random() < 0.6 else count
     if count == 4 and clause.kind == "roundabout":
         return [_near(angle, ACROSS, rng) for angle in (-90.0, 0.0, 90.0)]
-    gap = 360 / count
     least = STAR if clause.kind == "star" else RING_GAP
-    spread = max(0.0, (gap - least) / 2)
-    return [_near(-180 + gap * n, spread, rng) for n in range(1, count)]
+    gaps = least + (360 - count * least) * rng.dirichlet(np.full(count, EVEN))
+    return [-180 + float(angle) for angle in np.cumsum(gaps)[:-1]]
 
 
 def sides_of(angles: Sequence[float]) -> list[Way]:

@@ -8,22 +8,22 @@ accept the network that is built from it.
 from collections import Counter
 from collections.abc import Sequence
 from itertools import accumulate
-from math import inf
 
 import numpy as np
 
 from roadgpt import check
-from roadgpt.brief.amount import Amount, between, exactly, span
+from roadgpt.brief.amount import between, exactly, span
 from roadgpt.brief.model import Brief
-from roadgpt.brief.words import ROAD, Range
+from roadgpt.check.route_promises import length_range
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.layout import PlanLine, place
+from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
 from roadgpt.errors import DesignError
-from roadgpt.network import JunctionDesign, NetworkDesign, Route, build_route, passing_length
+from roadgpt.network import JunctionDesign, NetworkDesign, build_route, passing_length
 from roadgpt.plural import plural
 from roadgpt.road import Segment, World
 
@@ -31,6 +31,8 @@ DRAFTS = 400  # for one route, at most
 NO_HASTE = 12  # drafts without haste
 STRETCHES = 12  # drafts of one road between junctions
 BUILT = 60  # drafts that fit and break a rule, after which the search is given up
+LEAST_OF_MOST = 0.6  # share of the length that a route has at least, if it may have that length at most
+MOST_OF_LEAST = 1.2  # times the length that a route has at most, if it must have that length at least
 LONG = 150.0  # m, of a road that is easier to place if it has several turns
 HURRIED = 1 / 8  # of haste from the start, for each junction beyond the second
 CURVED = 0.4  # share of roads without requirements that have a turn
@@ -75,9 +77,9 @@ class NetworkSearch:
             built += 1
             route = build_route(design, self.world)
             findings = check.inspect(route, self.brief, self.world)
-            if not findings and self._has_length(route):
+            if not findings:
                 return design
-            self.failed[findings[0].sentence if findings else "its length"] += 1
+            self.failed[findings[0].sentence] += 1
             if built == BUILT:
                 break
         raise DesignError(self._advice())
@@ -118,7 +120,8 @@ class NetworkSearch:
             if rest is not None and n in free:
                 left = rest - sum(line.s[-1] for line, _ in found.values())
                 share = left / sum(each not in found for each in free)
-            draft = self._stretch(briefs[n], haste, share)
+            is_level = (n > 0, n < len(briefs) - 1)
+            draft = self._stretch(briefs[n], haste, share, is_level)
             if draft is None:
                 self.failed["one of its roads cannot be drafted"] += 1
                 return None
@@ -129,18 +132,22 @@ class NetworkSearch:
         """Returns the length in metres that the roads between junctions share; None if it is open."""
         if self.brief.length is None:
             return None
-        asked = asked_length(self.brief.length)
-        low, high = max(asked.lo, 0.0), min(asked.hi, 1.3 * max(asked.lo, SHORTEST))
+        asked = length_range(self.brief.length)
+        low = asked.lo if asked.lo > 0 else LEAST_OF_MOST * asked.hi
+        high = min(asked.hi, MOST_OF_LEAST * low)
         inside = sum(passing_length(junction, self.world.section.lane_width) for junction in junctions)
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, haste: float, length: float | None) -> Draft | None:
+    def _stretch(
+        self, brief: Brief, haste: float, length: float | None, is_level: tuple[bool, bool]
+    ) -> Draft | None:
         """Returns a draft of a road between junctions; None if no draft was accepted.
 
         Args:
             brief: the requirements for the road.
             haste: from 0 to 1; the larger it is, the shorter the road.
             length: the length in metres that the road should have; None if it is open.
+            is_level: whether the road is level at its start, and at its end, because a junction is there.
         """
         wanted = brief
         if length is not None:
@@ -151,12 +158,16 @@ class NetworkSearch:
             wanted = self._open(haste)
         elif brief.length is None and not brief.clauses and brief.turns is None:
             free = self._open(haste, is_straight=True)
-            wanted = brief.model_copy(update={"length": free.length, "turns": free.turns})
+            needs_room = brief.hills is not None or brief.climb is not None
+            wanted = brief.model_copy(
+                update={"length": None if needs_room else free.length, "turns": free.turns}
+            )
         search = DraftSearch(wanted, self.world, Shapes().of(()), self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
             if found is not None:
-                return found
+                line, segments = found
+                return line, climbing(segments, is_level, 100 * self.world.limits.max_grade)
         self.failed.update(search.failed)
         return None
 
@@ -199,9 +210,6 @@ class NetworkSearch:
             junctions=junctions,
         )
 
-    def _has_length(self, route: Route) -> bool:
-        return route.length in asked_length(self.brief.length)
-
     def _advice(self) -> str:
         """Returns why most drafts failed and what to do, as one sentence."""
         why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
@@ -213,12 +221,3 @@ class NetworkSearch:
                 "shorter roads, or give a larger map with --map-size"
             )
         return f"no draft of this route was accepted: {why}; leave something out"
-
-
-def asked_length(length: Amount | None) -> Range:
-    """Returns the range of lengths in metres that is allowed for a route."""
-    asked = span(length)
-    if length is None or not length.exact:
-        return asked
-    slack = ROAD["length"].slack(asked.lo)
-    return Range(asked.lo - slack, asked.hi + slack if asked.hi < inf else inf)

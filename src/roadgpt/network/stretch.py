@@ -33,10 +33,11 @@ def road_of(
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
-    return Road(plan, _leveled(segments, z, is_level), profile=profile)
+    return Road(plan, level_ends(segments, z, is_level), profile=profile)
 
 
-def _leveled(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
+def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
+    """Returns the heights along segments, starting at ``z`` metres, with level ends; see ``road_of``."""
     found = elevation_of(segments, z)
     knots = list(zip(found.stations, found.grades, strict=True))
     if is_level[0]:

@@ -1,0 +1,53 @@
+"""The pairs for routes with junctions: every label is a plan that can be built, and no text stands twice."""
+
+import json
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from roadgpt.brief.feasible import check
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.refusal import causes_of
+
+FOLDER = Path(__file__).parents[2] / "data" / "networks" / "train"
+FILES = sorted(FOLDER.glob("*.jsonl"))
+
+
+def test_the_pairs_are_there() -> None:
+    assert len(FILES) == 11
+    assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in FILES) > 2000
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_label_is_a_plan_that_does_not_contradict_itself(path: Path) -> None:
+    for line in path.read_text(encoding="utf-8").splitlines():
+        pair = json.loads(line)
+        assert set(pair) == {"text", "plan", "family", "lang"}
+        assert pair["family"] == path.stem
+        assert pair["lang"] in ("en", "de", "fr", "es", "it")
+        if pair["plan"].startswith("!"):
+            causes_of(pair["plan"])
+            continue
+        brief = read_plan(pair["plan"])
+        check(brief, map_size=None)
+        assert read_plan(plan(brief)) == brief
+
+
+def test_no_text_stands_twice() -> None:
+    lines = [line for path in FILES for line in path.read_text(encoding="utf-8").splitlines()]
+    texts = Counter(" ".join(json.loads(line)["text"].lower().split()) for line in lines)
+    assert [text for text, count in texts.items() if count > 1] == []
+
+
+def test_all_kinds_and_ways_on_are_asked_for() -> None:
+    kinds, takes = Counter[str](), Counter[str]()
+    for path in FILES:
+        for line in path.read_text(encoding="utf-8").splitlines():
+            asked = json.loads(line)["plan"]
+            if not asked.startswith("!"):
+                for junction in read_plan(asked).junctions:
+                    kinds[junction.kind] += 1
+                    takes[junction.take or "none"] += 1
+    assert min(kinds[kind] for kind in ("t_junction", "y_junction", "crossroads", "star", "roundabout")) > 40
+    assert min(takes[take] for take in ("left", "right", "straight", "back")) > 30
