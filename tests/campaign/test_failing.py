@@ -45,7 +45,7 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = roadgpt("campaign", *WORDS, "--out", folder, "--faults", "--repeat", 2, "--json")
     (line,) = done.stdout.splitlines()
     assert json.loads(line)["outcomes"] == {"FAIL": 2}
-    assert "2 failures in 2 groups of similar failures; no small change removes them" in done.stderr
+    assert "2 failures in 2 groups of similar failures; no small change accounts for them" in done.stderr
     return folder
 
 
@@ -68,6 +68,12 @@ def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> Non
     assert [row["test"] for row in failures] == ["c01/1", "c01/2"]
     assert {row["fault"] for row in failures} == {row["fault"] for row in rows}
     assert found.failures == found.compared == 2
+
+
+def test_a_campaign_leaves_out_the_small_changes_if_asked_to(tmp_path: Path) -> None:
+    roadgpt("campaign", *WORDS, "--out", tmp_path / "c", "--groups", "--repeat", 1, "-q")
+    assert {row["removed_by"] for row in table(tmp_path / "c" / "faults" / "faults.csv")} == {""}
+    assert not (tmp_path / "c" / "faults" / "remedies").exists()
 
 
 def test_pictures_of_faults_are_written_in_every_format_asked_for(looked: Path, tmp_path: Path) -> None:
@@ -174,6 +180,8 @@ def test_failures_that_one_small_change_removes_are_one_fault(many: Path, tmp_pa
     assert len(first.members) > found.failures / 2
     said = roadgpt("show", folder).output
     assert f"1 distinct fault in {found.failures} failures" in said
+    sampled = faults_in(folder, 9)
+    assert (sampled.sentence, sampled.compared) == (found.sentence, found.failures)
     told = json.loads(roadgpt("show", folder, "--json").stdout)["distinct"]
     assert (told["faults"], told["groups"]) == (1, len(found.them) - 1)
     roadgpt("report", folder)

@@ -8,11 +8,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.campaign.faults.distinct import faults_of, typical
+from roadgpt.campaign.faults.distinct import groups_of, typical
 from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.reason import Way
 from roadgpt.campaign.faults.remedy import REMEDIES
-from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
+from roadgpt.campaign.faults.remedy_log import has_remedies, stored_remedies, task_of
 from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.plural import plural
@@ -116,7 +116,7 @@ class Faults:
             least, compared = "at least ", f" ({self.compared:,} of them compared)"
         if not self.distinct:
             groups = f"{plural(len(self.them), 'group')} of similar failures"
-            none = "; no small change removes them" if self.is_tested else ""
+            none = "; no small change accounts for them" if self.is_tested else ""
             return f"{failures} in {least}{groups}{compared}{none}"
         return f"{least}{plural(self.distinct, 'distinct fault')} in {failures}{compared}"
 
@@ -156,13 +156,15 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
 
     Args:
         folder: the folder of the run, the runs or the campaign.
-        most: maximum number of failures to compare, evenly spread over all; None: all failures.
+        most: maximum number of failures to compare, evenly spread over all; None: all failures. If small
+            changes were tried on failures of the folder, all are compared: a sample has other groups.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
-    failures = failures_of(folder, most, cell)
+    # which groups there are depends on what is compared: stored results belong to groups of all failures
+    failures = failures_of(folder, None if has_remedies(folder) else most, cell)
     groups = _grouped(failures.known)
     tried = [_tried(folder, group) for group in groups]
     known = [each for each in tried if each is not None]
@@ -174,7 +176,7 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
 def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
     """Returns the groups of similar failures, the largest first."""
     members: dict[int, list[LocatedFailure]] = {}
-    for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
+    for cluster, each in zip(groups_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
     found = []
     for its in members.values():

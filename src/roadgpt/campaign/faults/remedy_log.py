@@ -65,6 +65,11 @@ def stored_remedies(task: RemedyTask) -> Mapping[str, bool | None] | None:
     return removed if is_this and removed.keys() == {remedy.name for remedy in REMEDIES} else None
 
 
+def has_remedies(folder: Path) -> bool:
+    """Tells whether small changes were tried on any failure of a folder."""
+    return (folder / FOLDER / REMEDY_FOLDER).is_dir()
+
+
 def task_of(folder: Path, failure: LocatedFailure) -> RemedyTask:
     """Returns the task to test a failure."""
     return RemedyTask(folder, failure.name, failure.station)

@@ -29,6 +29,8 @@ FAULT_OPTIONS = (
            "--faults.", bool, heading=Heading.FAILURES),
     Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
            f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
+    Option("--groups", "Do not test which groups of failures are one fault, which takes up to 16 drives of "
+           "each tested failure; implies --faults.", bool, heading=Heading.FAILURES),
 )  # fmt: skip
 
 
@@ -67,12 +69,18 @@ def analysis_options(given: dict[str, Any]) -> AnalysisOptions | None:
     """Returns the options for the analysis of a campaign's failures; None if the user requested no
     analysis.
     """
-    if not given["faults"] and not given["minimise"] and given["repeat"] is None:
+    if not any(given[name] for name in ("faults", "minimise", "repeat", "groups")):
         return None
     # the campaign's workers may be on other machines
     here = min(given["workers"], os.cpu_count() or 1)
-    repeat, is_quiet, is_apart = given["repeat"] or REPEAT, given["quiet"], given["as_json"]
-    return AnalysisOptions(repeat, given["minimise"], here, is_quiet=is_quiet, is_apart=is_apart)
+    return AnalysisOptions(
+        repeat=given["repeat"] or REPEAT,
+        minimise=given["minimise"],
+        workers=here,
+        is_quiet=given["quiet"],
+        tests_groups=not given["groups"],
+        is_apart=given["as_json"],
+    )
 
 
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:
@@ -183,7 +191,7 @@ OPTIONS = (
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
     Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
            "up to 16 drives of up to three failures of each group.", bool),
-    Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
+    Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
 # fmt: on
