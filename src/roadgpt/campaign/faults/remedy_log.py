@@ -6,12 +6,11 @@ DIR/faults/remedies/c01/0017.json    for each change whether the failure disappe
 For a folder of runs, the level c01/ is left out.
 """
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt.campaign.faults.failures import LocatedFailure
-from roadgpt.campaign.faults.remedy import REMEDIES, remedies_of
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed, remedies_of
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError, explained
@@ -46,7 +45,7 @@ def try_remedies(task: RemedyTask) -> NumberedTest:
     return task.name
 
 
-def stored_remedies(task: RemedyTask) -> Mapping[str, bool | None] | None:
+def stored_remedies(task: RemedyTask) -> Removed | None:
     """Returns the stored results for a failure; None if there are none, or if they belong to another road or
     other changes.
 
