@@ -9,6 +9,7 @@ remove some failures of each group, and tests further failures of each fault. Th
 fault, drawn at random, which had no part in this, are driven with the same changes. A pair of two failures of
 one fault has to disappear with the change that defines the fault; a pair of failures of two faults must not
 disappear with the change of either. Groups of failures that belong to no fault are counted and not paired.
+The last column has the pairs across two faults of the failures that the faults were found with.
 What was found is kept in FOLDER, so an interrupted run goes on.
 """
 
@@ -71,6 +72,8 @@ class Row:
     """Failures that belong to no fault."""
     within: Pairs
     across: Pairs
+    across_tested: Pairs
+    """Pairs across two faults of the failures that the faults were found with."""
 
 
 class Trial(NamedTuple):
@@ -114,11 +117,13 @@ def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, w
         ready.touch()
     found = faults_in(place)
     faults = tuple(each for each in found.them if each.remedy)
-    every = [each for fault in found.them for each in fault.members]
-    drives = sum(stored_remedies(task_of(place, each)) is not None for each in every)
+    known = [[stored_remedies(task_of(place, each)) for each in fault.members] for fault in found.them]
+    tested = [[each for each in its if each is not None] for its in known]
     alone = sum(len(each.members) for each in found.them if not each.remedy)
-    held = held_back(place, faults, seed, workers)
-    return Row(driver, condition, found.failures, drives, faults, alone, *pairs(faults, held))
+    within, across = pairs(faults, held_back(place, faults, seed, workers))
+    _, across_tested = pairs(faults, tested[: len(faults)])
+    count = sum(map(len, tested))
+    return Row(driver, condition, found.failures, count, faults, alone, within, across, across_tested)
 
 
 def ours(*words: str) -> None:
@@ -172,23 +177,23 @@ def table(rows: Sequence[Row]) -> Iterator[str]:
     """Yields the lines of the table."""
     yield (
         "| driver | condition | failures, tested | distinct faults: failures, what removes them | no fault | "
-        "pairs within | pairs across |"
+        "pairs within | pairs across | tested pairs across |"
     )
-    yield "|---|---|---|---|---|---|---|"
+    yield "|---|---|---|---|---|---|---|---|"
     for row in rows:
         faults = "; ".join(f"{len(each.members)}: {each.removed_by}" for each in row.faults)
         yield (
             f"| {row.driver} | {row.condition} | {row.failures}, {row.tested} | {len(row.faults)} ({faults}) "
-            f"| {row.alone} | {row.within} | {row.across} |"
+            f"| {row.alone} | {row.within} | {row.across} | {row.across_tested} |"
         )
-    within, across = (
+    within, across, tested = (
         sum((one for one in column), Pairs())
-        for column in zip(*((row.within, row.across) for row in rows), strict=True)
+        for column in zip(*((row.within, row.across, row.across_tested) for row in rows), strict=True)
     )
     count = sum(len(row.faults) for row in rows)
     yield (
         f"| all | | {sum(row.failures for row in rows)}, {sum(row.tested for row in rows)} | {count} | "
-        f"{sum(row.alone for row in rows)} | {within} | {across} |"
+        f"{sum(row.alone for row in rows)} | {within} | {across} | {tested} |"
     )
 
 
