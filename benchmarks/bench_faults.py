@@ -5,11 +5,12 @@
     python benchmarks/bench_faults.py --whole --folder FOLDER
 
 Each campaign searches for failures, and `roadgpt faults` joins them into faults by the small changes that
-remove their typical failures. Then other failures of each fault, drawn at random, which had no part in this
-are driven with the same changes. A pair of two failures of one fault has to disappear with the change that
-defines the fault; a pair of failures of two faults must not disappear with the change of either. Groups of
-failures that belong to no fault are counted and not paired. What was found is kept in FOLDER, so an
-interrupted run goes on.
+remove some failures of each group, and tests further failures of each fault. Then other failures of each
+fault, drawn at random, which had no part in this, are driven with the same changes. A pair of two failures of
+one fault has to disappear with the change that defines the fault; a pair of failures of two faults must not
+disappear with the change of either. Groups of failures that belong to no fault are counted and not paired.
+The last column has the pairs across two faults of the failures that the faults were found with.
+What was found is kept in FOLDER, so an interrupted run goes on.
 """
 
 import argparse
@@ -18,15 +19,18 @@ import json
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
-from roadgpt.campaign.faults.failures import LocatedFailure
 from roadgpt.campaign.faults.fault import Fault, faults_in
-from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of, try_remedies
+from roadgpt.campaign.faults.remedy import Removed, remedies_of
+from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
+from roadgpt.campaign.numbered_test import NumberedTest
+from roadgpt.campaign.rerun import kept_run
 from roadgpt.campaign.workers.unordered_map import unordered_map
 
 DRIVERS = ("beamng_like", "lane_centring")
@@ -61,15 +65,23 @@ class Row:
     driver: str
     condition: str
     failures: int
+    tested: int
+    """Failures that were driven with changes to find the faults."""
     faults: tuple[Fault, ...]
     alone: int
     """Failures that belong to no fault."""
     within: Pairs
     across: Pairs
+    across_tested: Pairs
+    """Pairs across two faults of the failures that the faults were found with."""
 
 
-Removed = Mapping[str, bool | None]
-"""By name of the change: whether a failure disappears with it."""
+class Trial(NamedTuple):
+    """A failure that had no part in finding the faults, and the kinds of changes to try on it."""
+
+    folder: Path
+    name: NumberedTest
+    kinds: frozenset[str]
 
 
 def main() -> None:
@@ -94,22 +106,24 @@ def main() -> None:
 def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, workers: int) -> Row:
     """Searches, finds the faults, and tests further failures of each."""
     place = folder / f"{driver} {condition} {tests} {seed}".replace(" ", "-").replace("/", "")
-    used = place / "used.json"
-    if not used.is_file():
+    ready = place / "tested"
+    if not ready.is_file():
         words = [*CONDITIONS[condition], *USUAL, "-n", str(tests), "--seed", str(seed), "--driver", driver]
         begun = (place / "campaign.sqlite").is_file()
         first = ["resume", str(place), "--quiet"] if begun else ["campaign", *words, "--out", str(place)]
         many = ["-j", str(workers)]
         ours(*first, *many)
         ours("faults", str(place), "--repeat", "1", "--no-plot", "--quiet", *many)
-        every = [each for fault in faults_in(place).them for each in fault.members]
-        tried = [str(each.name) for each in every if stored_remedies(task_of(place, each)) is not None]
-        used.write_text(json.dumps(tried), encoding="utf-8")
+        ready.touch()
     found = faults_in(place)
     faults = tuple(each for each in found.them if each.remedy)
+    known = [[stored_remedies(task_of(place, each)) for each in fault.members] for fault in found.them]
+    tested = [[each for each in its if each is not None] for its in known]
     alone = sum(len(each.members) for each in found.them if not each.remedy)
-    removed = tested(place, faults, set(json.loads(used.read_text(encoding="utf-8"))), seed, workers)
-    return Row(driver, condition, found.failures, faults, alone, *pairs(faults, removed))
+    within, across = pairs(faults, held_back(place, faults, seed, workers))
+    _, across_tested = pairs(faults, tested[: len(faults)])
+    count = sum(map(len, tested))
+    return Row(driver, condition, found.failures, count, faults, alone, within, across, across_tested)
 
 
 def ours(*words: str) -> None:
@@ -117,21 +131,28 @@ def ours(*words: str) -> None:
     subprocess.run([sys.executable, "-m", "roadgpt", *words], check=True)
 
 
-def tested(
-    place: Path, faults: Sequence[Fault], used: set[str], seed: int, workers: int
-) -> list[list[Removed]]:
-    """Tries the changes on failures of each fault that had no part in finding the faults."""
+def held_back(place: Path, faults: Sequence[Fault], seed: int, workers: int) -> list[list[Removed]]:
+    """Tries the changes of the faults on failures of each that had no part in finding the faults."""
     rng = np.random.default_rng(seed)
-    drawn: list[list[LocatedFailure]] = []
+    kinds = frozenset(str(fault.remedy).split()[0] for fault in faults)
+    drawn: list[list[Trial]] = []
     for fault in faults:
-        others = [each for each in fault.members if str(each.name) not in used]
+        others = [each for each in fault.members if stored_remedies(task_of(place, each)) is None]
         some = sorted(rng.permutation(len(others))[:OTHERS])
-        drawn.append([others[at] for at in some])
-    tasks = [task_of(place, each) for some in drawn for each in some]
-    for _ in unordered_map(try_remedies, tasks, workers, place / "workers.log"):
-        pass
-    stored = [[stored_remedies(task_of(place, each)) for each in some] for some in drawn]
-    return [[each for each in some if each is not None] for some in stored]
+        drawn.append([Trial(place, others[at].name, kinds) for at in some])
+    tasks = [each for some in drawn for each in some]
+    removed = dict(unordered_map(tried, tasks, workers, place / "workers.log"))
+    return [[removed[each.name] for each in some] for some in drawn]
+
+
+def tried(trial: Trial) -> tuple[NumberedTest, Removed]:
+    """Drives the road of a failure with changes, unless this was done before."""
+    path = trial.folder / "held_back" / f"{trial.name.cell}-{trial.name.number}.json"
+    if not path.is_file():
+        path.parent.mkdir(exist_ok=True)
+        found = remedies_of(kept_run(trial.folder, *trial.name), trial.kinds)
+        path.write_text(json.dumps(dict(found)), encoding="utf-8")
+    return trial.name, json.loads(path.read_text(encoding="utf-8"))
 
 
 def pairs(faults: Sequence[Fault], removed: Sequence[Sequence[Removed]]) -> tuple[Pairs, Pairs]:
@@ -155,24 +176,24 @@ def _both(one: Removed, other: Removed, fault: Fault) -> bool:
 def table(rows: Sequence[Row]) -> Iterator[str]:
     """Yields the lines of the table."""
     yield (
-        "| driver | condition | failures | distinct faults: failures, what removes them | no fault | "
-        "pairs within | pairs across |"
+        "| driver | condition | failures, tested | distinct faults: failures, what removes them | no fault | "
+        "pairs within | pairs across | tested pairs across |"
     )
-    yield "|---|---|---|---|---|---|---|"
+    yield "|---|---|---|---|---|---|---|---|"
     for row in rows:
         faults = "; ".join(f"{len(each.members)}: {each.removed_by}" for each in row.faults)
         yield (
-            f"| {row.driver} | {row.condition} | {row.failures} | {len(row.faults)} ({faults}) "
-            f"| {row.alone} | {row.within} | {row.across} |"
+            f"| {row.driver} | {row.condition} | {row.failures}, {row.tested} | {len(row.faults)} ({faults}) "
+            f"| {row.alone} | {row.within} | {row.across} | {row.across_tested} |"
         )
-    within, across = (
+    within, across, tested = (
         sum((one for one in column), Pairs())
-        for column in zip(*((row.within, row.across) for row in rows), strict=True)
+        for column in zip(*((row.within, row.across, row.across_tested) for row in rows), strict=True)
     )
     count = sum(len(row.faults) for row in rows)
     yield (
-        f"| all | | {sum(row.failures for row in rows)} | {count} | {sum(row.alone for row in rows)} | "
-        f"{within} | {across} |"
+        f"| all | | {sum(row.failures for row in rows)}, {sum(row.tested for row in rows)} | {count} | "
+        f"{sum(row.alone for row in rows)} | {within} | {across} | {tested} |"
     )
 
 

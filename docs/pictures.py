@@ -76,8 +76,8 @@ def film(work: Path) -> Image.Image:
 
 
 def view(work: Path) -> Image.Image:
-    """Returns the page of a road, shortly before the car leaves its lane."""
-    return shot(made(work, "hard", "view.html"), "#t=18.4&camera=behind")
+    """Returns the page of a road, where the car has left its lane."""
+    return shot(made(work, "hard", "view.html"), "#t=7.4&camera=behind")
 
 
 def faults(work: Path) -> Image.Image:

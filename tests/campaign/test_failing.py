@@ -11,12 +11,15 @@ import pytest
 from click.testing import CliRunner, Result
 
 from roadgpt import children
+from roadgpt.campaign.faults import fault as fault_module
 from roadgpt.campaign.faults import fault_log
 from roadgpt.campaign.faults.failures import failures_of
 from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.faults.fault_log import FailureAnalysis
 from roadgpt.campaign.faults.minimise import Simplest
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed
 from roadgpt.campaign.faults.stability import repeated
+from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run, read_trace, run_again
 from roadgpt.campaign.workers.unordered_map import unordered_map
 from roadgpt.cli import app
@@ -45,7 +48,7 @@ def looked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     done = roadgpt("campaign", *WORDS, "--out", folder, "--faults", "--repeat", 2, "--json")
     (line,) = done.stdout.splitlines()
     assert json.loads(line)["outcomes"] == {"FAIL": 2}
-    assert "2 failures in 2 groups of similar failures; no small change removes them" in done.stderr
+    assert "2 failures in 2 groups of similar failures; no small change accounts for them" in done.stderr
     return folder
 
 
@@ -68,6 +71,12 @@ def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> Non
     assert [row["test"] for row in failures] == ["c01/1", "c01/2"]
     assert {row["fault"] for row in failures} == {row["fault"] for row in rows}
     assert found.failures == found.compared == 2
+
+
+def test_a_campaign_leaves_out_the_small_changes_if_asked_to(tmp_path: Path) -> None:
+    roadgpt("campaign", *WORDS, "--out", tmp_path / "c", "--groups", "--repeat", 1, "-q")
+    assert {row["removed_by"] for row in table(tmp_path / "c" / "faults" / "faults.csv")} == {""}
+    assert not (tmp_path / "c" / "faults" / "remedies").exists()
 
 
 def test_pictures_of_faults_are_written_in_every_format_asked_for(looked: Path, tmp_path: Path) -> None:
@@ -174,6 +183,8 @@ def test_failures_that_one_small_change_removes_are_one_fault(many: Path, tmp_pa
     assert len(first.members) > found.failures / 2
     said = roadgpt("show", folder).output
     assert f"1 distinct fault in {found.failures} failures" in said
+    sampled = faults_in(folder, 9)
+    assert (sampled.sentence, sampled.compared) == (found.sentence, found.failures)
     told = json.loads(roadgpt("show", folder, "--json").stdout)["distinct"]
     assert (told["faults"], told["groups"]) == (1, len(found.them) - 1)
     roadgpt("report", folder)
@@ -190,6 +201,35 @@ def test_failures_that_one_small_change_removes_are_one_fault(many: Path, tmp_pa
     assert done.exit_code == 2
     assert f"{spoilt} cannot be read" in done.output
     assert "remove it, and it is made again" in done.output
+
+
+def test_a_fault_is_tested_on_twelve_more_failures_and_those_that_stay_leave_it(
+    many: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without drives: a larger radius removes all failures but the first of the further ones."""
+    tested: dict[NumberedTest, Removed] = {}
+    stays: set[NumberedTest] = set()
+    none = {remedy.name: False for remedy in REMEDIES}
+    monkeypatch.setattr(fault_module, "has_remedies", lambda folder: bool(tested))
+    monkeypatch.setattr(fault_module, "stored_remedies", lambda task: tested.get(task.name))
+    found = faults_in(many)
+    first = len(found.to_test)
+    while found.to_test:
+        assert not found.is_tested
+        assert not any(each.name in tested for each in found.to_test), "no failure is tested twice"
+        if len(tested) == first:
+            stays = {found.to_test[0].name}
+        for each in found.to_test:
+            tested[each.name] = none | {"wider 15": each.name not in stays}
+        found = faults_in(many)
+    assert found.is_tested
+    (its,) = [each for each in found.them if each.remedy]
+    inside = {each.name for each in its.members}
+    assert len(tested) == first + 12 + len(stays)
+    assert len(tested) < found.failures, "a fault is known before all its failures are tested"
+    assert stays
+    assert not stays & inside
+    assert sum(len(each.members) for each in found.them) == found.failures
 
 
 def test_of_very_many_failures_an_even_sample_is_compared(many: Path) -> None:

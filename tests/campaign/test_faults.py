@@ -20,7 +20,7 @@ from roadgpt.campaign.faults.distinct import (
     SHIFT,
     Surroundings,
     distances,
-    faults_of,
+    groups_of,
     surroundings,
     typical,
 )
@@ -204,9 +204,9 @@ def test_the_same_bend_reached_otherwise_is_one_fault_and_its_mirror_image_anoth
     gentle = around(straight(50), bend(-60, 40), straight(40), at=60.0)
     steep = around(straight(50, 8.0), bend(-90, 16, 8.0), straight(40, 8.0), at=60.0)
     left = replace(plain, kind="out of lane left")
-    assert faults_of([plain, mirrored, later, gentle, steep, left, plain]) == [0, 1, 0, 2, 3, 4, 0]
-    assert faults_of([]) == []
-    assert faults_of([plain]) == [0]
+    assert groups_of([plain, mirrored, later, gentle, steep, left, plain]) == [0, 1, 0, 2, 3, 4, 0]
+    assert groups_of([]) == []
+    assert groups_of([plain]) == [0]
 
 
 @given(st.integers(1, 40), st.data())
@@ -425,7 +425,7 @@ def test_many_failures_fall_into_the_same_faults_as_few(bends: list[float], most
     """Steady bends so far apart that they are alike or not, whoever is compared with whom."""
     many = [Surroundings(np.full(77, bend), np.zeros(77), "x") for bend in bends]
     numbers: dict[float, int] = {}
-    assert faults_of(many, most=most) == [numbers.setdefault(bend, len(numbers)) for bend in bends]
+    assert groups_of(many, most=most) == [numbers.setdefault(bend, len(numbers)) for bend in bends]
 
 
 @given(st.lists(st.floats(-0.005, 0.005), min_size=1, max_size=12))

@@ -213,7 +213,7 @@ def is_good(groups: list[TriedGroup], found: list[str | None]) -> bool:
         if name is not None:
             members.setdefault(name, []).extend([group.removed[0]] * group.size)
     for name, its in members.items():
-        if its and np.mean([bool(a[name] and b[name]) for a, b in product(its, its)]) < 0.8:
+        if its and np.mean([bool(a[name] and b[name]) for a, b in product(its, its)]) < 0.85:
             return False
     for one, other in combinations(members, 2):
         both = [
@@ -273,5 +273,12 @@ def test_what_no_change_sets_apart_belongs_to_no_fault() -> None:
     # half of the failures of 'wider' disappear with 'apart', too, so that these are not two faults
     mixed = [TriedGroup(9, (wide,)), TriedGroup(9, (both,)), TriedGroup(4, (near,))]
     assert faults_by_remedy(mixed) == [WIDER, WIDER, None]
-    # two of three tested failures are the majority of their group
     assert faults_by_remedy([TriedGroup(9, (wide, wide, none))]) == [None], "too few disappear"
+
+
+def test_a_group_joins_if_nearly_all_of_its_tested_failures_disappear() -> None:
+    none = dict.fromkeys(NAMES, False)
+    wide = none | {WIDER: True}
+    large = TriedGroup(90, (wide, wide))
+    assert faults_by_remedy([large, TriedGroup(9, (wide, wide, none))]) == [WIDER, None]
+    assert faults_by_remedy([large, TriedGroup(9, (wide, wide, wide, none))]) == [WIDER, WIDER]

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from roadgpt.campaign.scheduler import Progress
     from roadgpt.campaign.status import Status
 
-COMPARED = 500  # largest number of failures, evenly spread, that are grouped into faults: under a second
+COMPARED = 500  # largest number of failures, evenly spread, that are grouped (if untested): under a second
 MOST_CELLS = 40  # largest number of cells that are shown one by one
 HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 GAP = "  "  # between columns
@@ -49,8 +49,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """Returns the faults of a campaign, or its groups of similar failures, comparing at most ``COMPARED``
-    failures; None if no test was driven.
+    """Returns the faults of a campaign, or, if these were not tested, the groups of similar failures among at
+    most ``COMPARED`` failures; None if no test was driven.
     """
     from roadgpt.campaign.faults.fault import faults_in
 

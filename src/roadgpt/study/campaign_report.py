@@ -30,7 +30,7 @@ from roadgpt.study.chapters.wording import (
 )
 from roadgpt.study.statistics import chi_squared, wilson
 
-COMPARED = 2000  # failures, evenly spread, that are compared to find faults; this takes seconds
+COMPARED = 2000  # failures, evenly spread, that are grouped before they are tested; this takes seconds
 MOST_CELLS = 12  # whose curves and shares are drawn
 TABLES = ("results.csv", "cells.csv")
 

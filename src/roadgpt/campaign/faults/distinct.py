@@ -2,8 +2,8 @@
 
 Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
 after it. The lanes are aligned at the departures; the comparison allows a shift of up to 8 m. Clusters grow
-by complete linkage, so any two failures of one cluster are alike. Several clusters may be one fault, see
-``told_apart``.
+by complete linkage, so any two failures of one cluster are alike. Each cluster is a group of similar
+failures; several groups may be one fault, see ``told_apart``.
 """
 
 from collections.abc import Sequence
@@ -24,7 +24,7 @@ AROUND = 30.0  # m, the competition's, before and after the departure
 STEP = 1.0  # m
 SHIFT = 8  # steps that two profiles may be moved against each other
 SMOOTHING = 5  # steps, half-width of the Hann window that smooths profiles: about the length of a car
-ALIKE = 1.0  # distance up to which two failures are one fault
+ALIKE = 1.0  # distance up to which two failures belong to one group
 BEND = 0.012  # 1/m, RMS difference in curvature that counts 1 (R 15 m against R 18 m all along)
 GRADE = 0.04  # RMS difference in grade, as a ratio, that counts 1
 COUNT = round(AROUND / STEP)
@@ -43,7 +43,7 @@ class Surroundings:
     """Smoothed grade as a ratio, at the same stations; NaN beyond the ends of the road."""
     kind: str
     """Text that states the cause and the side of the failure, and the driver, simulator and world. Failures
-    with different texts never belong to the same fault.
+    with different texts never belong to the same group.
     """
 
 
@@ -124,16 +124,16 @@ class _Stacked(NamedTuple):
         )
 
 
-def faults_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
-    """Returns for each failure the number of its fault; faults are numbered from 0 in order of their first
+def groups_of(failures: Sequence[Surroundings], alike: float = ALIKE, most: int = MOST) -> list[int]:
+    """Returns for each failure the number of its group; groups are numbered from 0 in order of their first
     failure.
 
     Args:
         failures: all failures to group.
-        alike: largest distance between two failures of the same fault.
+        alike: largest distance between two failures of the same group.
         most: largest number of failures to cluster at a time, because clustering compares every pair of them.
-            Each later failure joins the fault whose most typical failure is nearest, if the distance is at
-            most ``alike``. The failures that join no fault are clustered next.
+            Each later failure joins the group whose most typical failure is nearest, if the distance is at
+            most ``alike``. The failures that join no group are clustered next.
     """
     found, left, count = np.full(len(failures), -1), np.arange(len(failures)), 0
     while len(left):
@@ -168,7 +168,7 @@ def _grown(some: Sequence[Surroundings], alike: float) -> NDArray[np.intp]:
 
 
 def typical(members: Sequence[Surroundings]) -> list[int]:
-    """Returns the indices of the failures of one fault, the most typical one first.
+    """Returns the indices of the failures of one group, the most typical one first.
 
     The most typical failure has the smallest sum of squared distances to the others. Of more than 1000
     failures, only the first 1000 are compared and returned.

@@ -111,6 +111,6 @@ def _located(record: Record, some: Sequence[NumberedTest]) -> Iterator[LocatedFa
 def system_of(world: World, setup: Setup) -> str:
     """Returns a text that identifies the driver, simulator and world of a cell.
 
-    Failures with different texts never belong to the same fault.
+    Failures with different texts never belong to the same group or fault.
     """
     return f"{setup.driver} {setup.simulator} {setup.keep_driving} {world.model_dump_json()}"

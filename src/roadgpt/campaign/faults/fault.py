@@ -1,18 +1,19 @@
 """Finds the distinct faults in a folder; no road is driven.
 
-Failures are first grouped by the road around them. Once the typical failures of all groups were driven with
-small changes (``remedy_log``), the groups are joined into faults.
+Failures are first grouped by the road around them. Once some failures of each group were driven with small
+changes (``remedy_log``), the groups are joined into faults. Then further failures of each fault are driven
+with the changes, until ``CHECKED`` of them disappeared; the groups are joined anew with what these show.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from roadgpt.campaign.faults.distinct import faults_of, typical
+from roadgpt.campaign.faults.distinct import groups_of, typical
 from roadgpt.campaign.faults.failures import LocatedFailure, failures_of
 from roadgpt.campaign.faults.reason import Way
-from roadgpt.campaign.faults.remedy import REMEDIES
-from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed
+from roadgpt.campaign.faults.remedy_log import has_remedies, stored_remedies, task_of
 from roadgpt.campaign.faults.told_apart import TriedGroup, faults_by_remedy
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.plural import plural
@@ -26,8 +27,11 @@ GROUPED = (
     "bends and climbs alike from 30 m before the place to 30 m after it. Several groups may be one fault."
 )
 SENTENCES = {remedy.name: remedy.sentence for remedy in REMEDIES}
+MOST_FIRST = 8  # failures of a group that are tested before groups are joined; of n failures 1 + n // 4
+CHECKED = 12  # failures of a fault, besides those tested first, that must disappear when tested
+AT_A_TIME = 4  # failures of a fault that are tested before its groups are joined anew
 MOST_WAYS = 3  # ways of failing that a headline names
-TRIED = 3  # typical failures of a group or fault that are driven again
+TRIED = 3  # typical failures of a group or fault, one after the other, for repeated drives
 WAYS: dict[Way, str] = {
     "wide": "ran wide of",
     "inside": "cut the inside of",
@@ -50,6 +54,9 @@ class Fault:
     group."""
     remedy: str | None = None
     """Name of the small change that removes the failures; None if this is a group, not a fault."""
+    tested_first: tuple[LocatedFailure, ...] = ()
+    """The failures of a group that are driven with small changes first, evenly spread from the most to the
+    least typical one; empty for a fault."""
 
     @property
     def removed_by(self) -> str:
@@ -57,13 +64,6 @@ class Fault:
         group.
         """
         return SENTENCES[self.remedy] if self.remedy else ""
-
-    @property
-    def to_test(self) -> tuple[LocatedFailure, ...]:
-        """The failures of a group that are driven with small changes: one, of 4 or more two, of 8 or more
-        three.
-        """
-        return self.typical[: 1 + len(self.members) // 4]
 
     @property
     def names(self) -> tuple[NumberedTest, ...]:
@@ -78,7 +78,9 @@ class Faults:
     them: tuple[Fault, ...]
     """First the faults, then the groups."""
     is_tested: bool
-    """Whether small changes were tried on the typical failures of all groups; otherwise all are groups."""
+    """Whether small changes were tried on enough failures; otherwise all are groups."""
+    to_test: tuple[LocatedFailure, ...]
+    """Failures to be driven with small changes next; empty if enough were."""
     failures: int
     """Number of all failures in the folder, or in the cell that was chosen."""
     compared: int
@@ -116,7 +118,7 @@ class Faults:
             least, compared = "at least ", f" ({self.compared:,} of them compared)"
         if not self.distinct:
             groups = f"{plural(len(self.them), 'group')} of similar failures"
-            none = "; no small change removes them" if self.is_tested else ""
+            none = "; no small change accounts for them" if self.is_tested else ""
             return f"{failures} in {least}{groups}{compared}{none}"
         return f"{least}{plural(self.distinct, 'distinct fault')} in {failures}{compared}"
 
@@ -156,65 +158,108 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
 
     Args:
         folder: the folder of the run, the runs or the campaign.
-        most: maximum number of failures to compare, evenly spread over all; None: all failures.
+        most: maximum number of failures to compare, evenly spread over all; None: all failures. If small
+            changes were tried on failures of the folder, all are compared: a sample has other groups.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
         UsageError: the folder holds neither runs nor a campaign, or a file cannot be read.
     """
-    failures = failures_of(folder, most, cell)
+    # which groups there are depends on what is compared: stored results belong to groups of all failures
+    failures = failures_of(folder, None if has_remedies(folder) else most, cell)
     groups = _grouped(failures.known)
-    tried = [_tried(folder, group) for group in groups]
-    known = [each for each in tried if each is not None]
-    is_tested = bool(groups) and len(known) == len(groups)
-    found = _joined(groups, known) if is_tested else groups
-    return Faults(tuple(_numbered(found)), is_tested, failures.every, len(failures.known))
+    tested = _tested(folder, failures.known)
+    to_test = [each for group in groups for each in group.tested_first if each.name not in tested]
+    joined: list[Fault] = []
+    if not to_test:
+        joined = _joined(groups, tested)
+        to_test = [each for fault in joined if fault.remedy for each in _checked_next(fault, groups, tested)]
+    is_tested = bool(groups) and not to_test
+    them = tuple(_numbered(joined if is_tested else groups))
+    return Faults(them, is_tested, tuple(to_test), failures.every, len(failures.known))
 
 
 def _grouped(known: Sequence[LocatedFailure]) -> list[Fault]:
     """Returns the groups of similar failures, the largest first."""
     members: dict[int, list[LocatedFailure]] = {}
-    for cluster, each in zip(faults_of([each.around for each in known]), known, strict=True):
+    for cluster, each in zip(groups_of([each.around for each in known]), known, strict=True):
         members.setdefault(cluster, []).append(each)
     found = []
     for its in members.values():
-        some = typical([each.around for each in its])[:TRIED]
-        found.append(Fault(0, tuple(its), tuple(its[at] for at in some)))
+        ordered = [its[at] for at in typical([each.around for each in its])]
+        first = _spread(ordered, min(1 + len(its) // 4, MOST_FIRST))
+        found.append(Fault(0, tuple(its), tuple(ordered[:TRIED]), tested_first=first))
     return sorted(found, key=_order)
+
+
+def _spread(them: Sequence[LocatedFailure], count: int) -> tuple[LocatedFailure, ...]:
+    """Returns some of the failures, evenly spread, beginning with the first."""
+    return tuple(them[len(them) * at // count] for at in range(count))
 
 
 def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
     return fault.remedy is None, -len(fault.members), fault.members[0].name
 
 
-def _tried(folder: Path, group: Fault) -> TriedGroup | None:
-    """Returns which small changes remove the failures of a group; None if they were not tested."""
-    stored = [stored_remedies(task_of(folder, each)) for each in group.to_test]
-    known = tuple(each for each in stored if each is not None)
-    return TriedGroup(len(group.members), known) if len(known) == len(stored) else None
+Tested = Mapping[NumberedTest, Removed]
+"""By name of a failure: which small changes remove it."""
 
 
-def _joined(groups: Sequence[Fault], tried: Sequence[TriedGroup]) -> list[Fault]:
+def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:
+    """Returns the stored results of all failures that were driven with small changes."""
+    if not has_remedies(folder):
+        return {}
+    stored = {each.name: stored_remedies(task_of(folder, each)) for each in known}
+    return {name: removed for name, removed in stored.items() if removed is not None}
+
+
+def _checked_next(fault: Fault, groups: Sequence[Fault], tested: Tested) -> tuple[LocatedFailure, ...]:
+    """Returns failures of a fault to test next, evenly spread over the untested ones of its groups; none
+    if ``CHECKED`` disappeared besides those tested first.
+    """
+    first = {each.name for group in groups for each in group.tested_first}
+    members = {each.name for each in fault.members}
+    every = [each for group in groups for each in group.members if each.name in members]
+    left = [each for each in every if each.name not in tested]
+    done = sum(each.name in tested and each.name not in first for each in fault.members)
+    return _spread(left, max(0, min(CHECKED - done, AT_A_TIME, len(left))))
+
+
+def _joined(groups: Sequence[Fault], tested: Tested) -> list[Fault]:
     """Joins groups into faults; failures of different drivers, simulators or worlds are never joined."""
-    systems: dict[str, list[int]] = {}
-    for at, group in enumerate(groups):
-        systems.setdefault(group.members[0].system, []).append(at)
+    systems: dict[str, list[Fault]] = {}
+    for group in groups:
+        systems.setdefault(group.members[0].system, []).append(group)
     found: list[Fault] = []
     for those in systems.values():
         joined: dict[str, list[Fault]] = {}
-        for at, remedy in zip(those, faults_by_remedy([tried[at] for at in those]), strict=True):
+        remedies = faults_by_remedy([_tried(each, tested) for each in those])
+        for group, remedy in zip(those, remedies, strict=True):
             if remedy is None:
-                found.append(groups[at])
+                found.append(group)
             else:
-                joined.setdefault(remedy, []).append(groups[at])
-        found += [_fault(remedy, its) for remedy, its in joined.items()]
+                joined.setdefault(remedy, []).append(group)
+        for remedy, its in joined.items():
+            found += _parted(remedy, its, tested)
     return sorted(found, key=_order)
 
 
-def _fault(remedy: str, groups: Sequence[Fault]) -> Fault:
-    members = sorted((each for group in groups for each in group.members), key=lambda each: each.name)
-    some = [each for group in groups for each in group.typical][:TRIED]
-    return Fault(0, tuple(members), tuple(some), remedy)
+def _tried(group: Fault, tested: Tested) -> TriedGroup:
+    removed = (tested.get(each.name) for each in group.members)
+    return TriedGroup(len(group.members), tuple(each for each in removed if each is not None))
+
+
+def _parted(remedy: str, groups: Sequence[Fault], tested: Tested) -> Iterator[Fault]:
+    """Yields the fault that consists of some groups, and groups of its failures that stayed when tested."""
+
+    def stays(each: LocatedFailure) -> bool:
+        return each.name in tested and not tested[each.name][remedy]
+
+    every = sorted((each for group in groups for each in group.members), key=lambda each: each.name)
+    typical_ones = [each for group in groups for each in group.typical if not stays(each)]
+    members = tuple(each for each in every if not stays(each))
+    yield Fault(0, members, tuple(typical_ones[:TRIED]) or members[:TRIED], remedy)
+    yield from _grouped([each for each in every if stays(each)])
 
 
 def _numbered(found: Sequence[Fault]) -> Iterator[Fault]:

@@ -4,7 +4,7 @@ Failures that the same small change removes have the same cause, whatever their 
 failure has disappeared if the car passes the place of the departure by 30 m.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -109,16 +109,23 @@ def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterato
     yield Remedy(f"slower {percent}", f"a speed limit {percent} % lower", lambda its: its.alignment, less)
 
 
+Removed = Mapping[str, bool | None]
+"""By name of the change: whether a failure disappears with it; None if the change does not apply."""
 REMEDIES = (*_remedies(15, 10, 0.5, "half"), *_remedies(30, 20, 0.0, "no"))
 """All changes that are tried, the small ones of all kinds before the larger ones."""
+KINDS = frozenset(remedy.kind for remedy in REMEDIES)
 
 
-def remedies_of(run: Run) -> Mapping[str, bool | None]:
+def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     """Drives a failing Run's road with each change, and returns by name which make the failure disappear.
 
     Where a small change does so, the larger one of its kind counts as well and is not driven. The value is
     None if a change does not apply, for example because there is no bend before. A road whose cross-section
     is its own is changed nowhere, since the cross-section is given by station.
+
+    Args:
+        run: the Run of the failing test.
+        kinds: kinds of changes to try.
 
     Raises:
         UsageError: the driver or the simulator cannot be loaded.
@@ -127,15 +134,16 @@ def remedies_of(run: Run) -> Mapping[str, bool | None]:
     road, verdict = run.road, run.verdict
     assert road is not None
     assert verdict is not None
+    remedies = [remedy for remedy in REMEDIES if remedy.kind in kinds]
     if road.profile is not None and run.design is None:
-        return {remedy.name: None for remedy in REMEDIES}
+        return {remedy.name: None for remedy in remedies}
     place = _place(run, float(verdict.at_s or 0.0))
     found: dict[str, bool | None] = {}
-    kinds: dict[str, bool | None] = {}
-    for remedy in REMEDIES:
-        if not kinds.get(remedy.kind):
-            kinds[remedy.kind] = _removes(run, place, remedy)
-        found[remedy.name] = kinds[remedy.kind]
+    by_kind: dict[str, bool | None] = {}
+    for remedy in remedies:
+        if not by_kind.get(remedy.kind):
+            by_kind[remedy.kind] = _removes(run, place, remedy)
+        found[remedy.name] = by_kind[remedy.kind]
     return found
 
 

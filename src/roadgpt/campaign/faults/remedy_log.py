@@ -6,12 +6,11 @@ DIR/faults/remedies/c01/0017.json    for each change whether the failure disappe
 For a folder of runs, the level c01/ is left out.
 """
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 from roadgpt.campaign.faults.failures import LocatedFailure
-from roadgpt.campaign.faults.remedy import REMEDIES, remedies_of
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed, remedies_of
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
 from roadgpt.errors import RoadGPTError, UsageError, explained
@@ -46,7 +45,7 @@ def try_remedies(task: RemedyTask) -> NumberedTest:
     return task.name
 
 
-def stored_remedies(task: RemedyTask) -> Mapping[str, bool | None] | None:
+def stored_remedies(task: RemedyTask) -> Removed | None:
     """Returns the stored results for a failure; None if there are none, or if they belong to another road or
     other changes.
 
@@ -63,6 +62,11 @@ def stored_remedies(task: RemedyTask) -> Mapping[str, bool | None] | None:
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(f"{path} cannot be read ({error}); remove it, and it is made again") from error
     return removed if is_this and removed.keys() == {remedy.name for remedy in REMEDIES} else None
+
+
+def has_remedies(folder: Path) -> bool:
+    """Tells whether small changes were tried on any failure of a folder."""
+    return (folder / FOLDER / REMEDY_FOLDER).is_dir()
 
 
 def task_of(folder: Path, failure: LocatedFailure) -> RemedyTask:

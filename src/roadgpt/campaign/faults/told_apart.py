@@ -6,18 +6,19 @@ Groups that no such change sets apart from the others belong to no fault.
 """
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.campaign.faults.remedy import REMEDIES
+from roadgpt.campaign.faults.remedy import REMEDIES, Removed
 
 Array = NDArray[np.float64]
 
-WITHIN = 0.8  # share of pairs inside a fault that disappear with its change, at least
+WITHIN = 0.85  # share of pairs inside a fault that disappear with its change, at least
+JOINS = 0.7  # share of a group's tested failures that disappear with the change of its fault, above this
 ACROSS = 0.2  # share of pairs of two faults that disappear with the change of one of them, at most
 MOST = 4  # faults of one driver in one world
 FEWEST = 2  # failures of a fault, unless there is but one group: one alone shows nothing about pairs
@@ -31,8 +32,8 @@ class TriedGroup(NamedTuple):
 
     size: int
     """Number of failures in the group."""
-    removed: tuple[Mapping[str, bool | None], ...]
-    """For each tested failure: by name of the change, whether the failure disappeared with it."""
+    removed: tuple[Removed, ...]
+    """For each tested failure: which changes make it disappear."""
 
 
 def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
@@ -70,12 +71,12 @@ def _share(group: TriedGroup, name: str) -> float:
 
 
 def _assigned(shares: Array, chosen: Sequence[int]) -> list[int | None]:
-    """Returns for each group the one of the chosen changes that removes most of it, more than half; None if
-    there is none."""
+    """Returns for each group the one of the chosen changes that removes most of it, more than ``JOINS``; None
+    if there is none."""
     found: list[int | None] = []
     for row in shares:
         at = max(chosen, key=lambda one: (row[one], -one))
-        found.append(at if row[at] > 0.5 else None)
+        found.append(at if row[at] > JOINS else None)
     return found
 
 

@@ -27,8 +27,8 @@ MOST_TESTS = 10_000_000
 TESTS = whole(1, MOST_TESTS, "the number of tests")
 SECONDS = measure(0, 1e8, "s", above=True)
 BESIDE_A_FILE = {
-    "words", "out", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat", "junit",
-    "as_json", "quiet",
+    "words", "out", "workers", "executor", "address", "drivers", "faults", "minimise", "repeat",
+    "groups", "junit", "as_json", "quiet",
 }  # fmt: skip
 
 

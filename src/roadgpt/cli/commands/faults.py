@@ -29,6 +29,8 @@ FAULT_OPTIONS = (
            "--faults.", bool, heading=Heading.FAILURES),
     Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
            f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
+    Option("--groups", "Do not test which groups of failures are one fault, which takes up to 16 drives of "
+           "each tested failure; implies --faults.", bool, heading=Heading.FAILURES),
 )  # fmt: skip
 
 
@@ -67,12 +69,18 @@ def analysis_options(given: dict[str, Any]) -> AnalysisOptions | None:
     """Returns the options for the analysis of a campaign's failures; None if the user requested no
     analysis.
     """
-    if not given["faults"] and not given["minimise"] and given["repeat"] is None:
+    if not any(given[name] for name in ("faults", "minimise", "repeat", "groups")):
         return None
     # the campaign's workers may be on other machines
     here = min(given["workers"], os.cpu_count() or 1)
-    repeat, is_quiet, is_apart = given["repeat"] or REPEAT, given["quiet"], given["as_json"]
-    return AnalysisOptions(repeat, given["minimise"], here, is_quiet=is_quiet, is_apart=is_apart)
+    return AnalysisOptions(
+        repeat=given["repeat"] or REPEAT,
+        minimise=given["minimise"],
+        workers=here,
+        is_quiet=given["quiet"],
+        tests_groups=not given["groups"],
+        is_apart=given["as_json"],
+    )
 
 
 def analyse_failures(place: Path, look: AnalysisOptions) -> None:
@@ -109,22 +117,22 @@ def analyse_failures(place: Path, look: AnalysisOptions) -> None:
 
 
 def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
-    """Tries small changes on the typical failures of all groups; returns the faults into which this joins the
-    groups.
+    """Tries small changes on failures of all groups until it is known which groups are one fault; returns
+    the faults.
     """
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.remedy_log import task_of, try_remedies
     from roadgpt.campaign.workers.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
-    if found.is_tested or not look.tests_groups:
-        return found
-    tasks = [task_of(place, each) for group in found.them for each in group.to_test]
-    look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
-    steps = unordered_map(try_remedies, tasks, look.workers, place / LOG)
-    for _ in watched(steps, len(tasks), "failures", look.is_quiet):
-        pass
-    return faults_in(place)
+    while found.to_test and look.tests_groups:
+        tasks = [task_of(place, each) for each in found.to_test]
+        look.say(f"{found.sentence}; trying small changes on {len(tasks):,} of them", is_news=True)
+        steps = unordered_map(try_remedies, tasks, look.workers, place / LOG)
+        for _ in watched(steps, len(tasks), "failures", look.is_quiet):
+            pass
+        found = faults_in(place)
+    return found
 
 
 def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
@@ -182,8 +190,8 @@ OPTIONS = (
            DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
     Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
-           "up to 16 drives of up to three failures of each group.", bool),
-    Option("-j workers", "Number of faults analysed in parallel.", whole(1, 256, "processes"), 1),
+           "up to 16 drives of each tested failure.", bool),
+    Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
 # fmt: on
@@ -202,12 +210,13 @@ def command(
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
-    Failures are grouped where the 60 m of road around the lane departure are alike. Typical failures of each
-    group are driven with small changes, such as a 15 % larger radius of the bend. Groups that the same change
-    removes are one fault. The most typical failure of each fault is driven again several times with
-    slightly varied friction, start position and perception delay; the share of drives that fail again is
-    reported. DIR/faults gets a picture and a sentence for each fault, faults.csv with a line per fault, and
-    failures.csv with a line per failure. Finished work is not repeated, so Ctrl-C loses nothing.
+    Failures are grouped where the 60 m of road around the lane departure are alike. Some failures of each
+    group are driven with small changes, such as a 15 % larger radius of the bend. Groups that the same
+    change removes are one fault; it is tested on further failures, and those that stay leave it. The most
+    typical failure of each fault is driven again several times with slightly varied friction, start
+    position and perception delay; the share of drives that fail again is reported. DIR/faults gets a
+    picture and a sentence for each fault, faults.csv with a line per fault, and failures.csv with a line
+    per failure. Finished work is not repeated, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7
