@@ -1,5 +1,6 @@
 """Defines two types of elevation profile: constant grades joined by parabolas, and piecewise cubics."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -133,8 +134,7 @@ class CubicProfile:
         for start, end, (a, b, c, d) in zip(
             self.stations, self.stations[1:], self.coefficients, strict=False
         ):
-            turning = [u.real for u in np.roots([3 * d, 2 * c, b]) if abs(u.imag) < 1e-9]
-            for u in (0.0, *(u for u in turning if 0 < u < end - start), end - start):
+            for u in (0.0, *(u for u in _roots(3 * d, 2 * c, b) if 0 < u < end - start), end - start):
                 found.append(a + u * (b + u * (c + u * d)))
         return min(found), max(found)
 
@@ -152,6 +152,17 @@ class CubicProfile:
         """Returns the change of grade in 1/m, negative on a crest."""
         u, (_, _, c, d) = self._place(s)
         return np.asarray(2 * c + 6 * u * d)
+
+
+def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
+    """Returns the real roots of a u^2 + b u + c; none if it is constant."""
+    if a == 0:
+        return () if b == 0 else (-c / b,)
+    square = b * b - 4 * a * c
+    if square < 0:
+        return ()
+    q = -(b + math.copysign(math.sqrt(square), b)) / 2
+    return (q / a,) if q == 0 else (q / a, c / q)
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:

@@ -41,16 +41,17 @@ def ribbon(road: Road) -> "Polygon":
     """Returns the polygon of a road's carriageway, which begins along the right edge.
 
     The ends of the centre line are corners of it, because lanes of other roads may end there: rounding would
-    otherwise leave a gap between this road and a corner of another road on its end.
+    otherwise leave a gap between this road and a corner of another road on its end. The road has no
+    superelevation.
     """
     from shapely import Polygon
 
     s = stations_of(road)
     assert road.profile is not None
-    edges = road.profile.edges(s)
-    left, right = road.at(s, edges.left), road.at(s, edges.right)
-    first, last = road.at(s[[0]]), road.at(s[[-1]])
-    return Polygon(np.concatenate((right, last, left[::-1], first))[:, :2])
+    edges, centre, heading = road.profile.edges(s), road.plan.at(s), road.plan.heading(s)
+    to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
+    left, right = (centre + t[:, None] * to_left for t in edges)
+    return Polygon(np.concatenate((right, centre[-1:], left[::-1], centre[:1])))
 
 
 def stations_of(road: Road) -> Array:

@@ -8,8 +8,10 @@ large.
 import math
 from functools import lru_cache
 
+from scipy.special import fresnel
+
 from roadgpt.geometry import Piece
-from roadgpt.geometry.pieces import PieceCurve, joined
+from roadgpt.geometry.pieces import joined
 
 SHARE = 0.3  # of the angle of a turn that its two clothoids take; the arc turns by the rest
 STRAIGHT = 1e-9  # rad; a smaller turn is a straight line
@@ -19,12 +21,18 @@ STRAIGHT = 1e-9  # rad; a smaller turn is a straight line
 def tangent_length(turn: float) -> float:
     """Returns the distance, in radii, from the start of a curve to the point where its tangents meet.
 
+    A clothoid of length L before an arc of radius 1 turns by L / 2 and moves the arc inwards by ``shift`` and
+    forwards by ``ahead``.
+
     Args:
         turn: The angle of the curve in radians, more than 0 and less than pi.
     """
-    ramp, arc = SHARE * turn, (1 - SHARE) * turn
-    curve = PieceCurve(0.0, 0.0, 0.0, (Piece(ramp, 0.0, 1.0), Piece(arc, 1.0, 1.0), Piece(ramp, 1.0, 0.0)))
-    return math.hypot(*curve.at(curve.length)) / (2 * math.cos(turn / 2))
+    ramp = SHARE * turn
+    scale = math.sqrt(math.pi * ramp)
+    s, c = fresnel(ramp / scale)
+    ahead = scale * float(c) - math.sin(ramp / 2)
+    shift = scale * float(s) - (1 - math.cos(ramp / 2))
+    return (1 + shift) * math.tan(turn / 2) + ahead
 
 
 def curve_between(before: float, after: float, turn: float) -> tuple[Piece, ...]:
