@@ -35,6 +35,9 @@ COMMANDS = {
     "view.html": "roadgpt view hard --worst --out view.html",
     "serpentine": "roadgpt run 'a serpentine road' -n 40 --seed 5 --out serpentine",
     "serpentine/faults": "roadgpt faults serpentine -j 2",
+    "junctions": "roadgpt run --plan 'straight 60 // crossroads left lights // roundabout exit=3 // | up' -n 3 "
+    "--seed 4 --speed-limit 50 --out junctions",
+    "junctions.html": "roadgpt view junctions/runs/0001 --out junctions.html",
     "thesis/report.html": "roadgpt study thesis --roads 100 --out thesis",
 }
 
@@ -52,6 +55,16 @@ def made(work: Path, *names: str) -> Path:
 def switchbacks(work: Path) -> Image.Image:
     """Returns a road from above, with a failure."""
     return Image.open(made(work, "switchbacks") / "runs" / "0011" / "birds_eye.png")
+
+
+def junctions(work: Path) -> Image.Image:
+    """Returns a route through junctions from above."""
+    return Image.open(made(work, "junctions") / "runs" / "0001" / "birds_eye.png")
+
+
+def junctions_view(work: Path) -> Image.Image:
+    """Returns the page of a route, in the middle of a junction."""
+    return shot(made(work, "junctions", "junctions.html"), "#t=12&camera=behind")
 
 
 def fault(work: Path) -> Image.Image:
@@ -136,6 +149,8 @@ PICTURES = {
     "view": view,
     "faults": faults,
     "feature-map": map_of_features,
+    "junctions": junctions,
+    "junctions-view": junctions_view,
     "study": study,
     "lane-finder": lane_finder,
 }
