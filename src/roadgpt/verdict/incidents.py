@@ -3,8 +3,8 @@
 The kinds of incidents:
 
 - out of lane: as the oracle defines it; inside a junction the lane is that of the route's connecting road;
-- wrong turn: the middle of the car is beside the route's own road, on another road or another way through
-  the junction, and the car heads along it;
+- wrong turn: more than 90 % of the car is outside its lane; its middle is beside the route's own road, on
+  another road or another way through the junction; and it heads along that one;
 - wrong way: the car is on its road and its heading differs by more than 90 degrees from that of the route,
   for 1 s or longer;
 - off road: the outer edge of a tyre is outside the paved area of the network;
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
 
+GONE = 0.9  # share of the car outside its lane; a car that slides wide and comes back took no wrong turn
 ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong road on which it drives
 BACKWARDS = math.radians(90.0)  # from the heading of the route
 PATIENCE = 1.0  # s of driving the wrong way
@@ -84,7 +85,7 @@ def _is_on_wrong_road(route: Route, drive: "Drive") -> BoolArray:
     from roadgpt.network.paved import ribbon
 
     wrong = np.zeros(len(drive), bool)
-    steps = np.flatnonzero(_is_beside(route, drive))
+    steps = np.flatnonzero(_is_beside(route, drive) & (drive["outside"] > GONE))
     own = {leg.road for leg in route.legs}
     for member in route.network.roads if len(steps) else ():
         if member.id in own:
