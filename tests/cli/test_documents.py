@@ -1,5 +1,6 @@
 """The documents run: examples are executed, the page of commands is current, links lead somewhere."""
 
+import html
 import importlib
 import importlib.util
 import json
@@ -15,9 +16,13 @@ import pytest
 from click.testing import CliRunner
 
 import roadgpt
+from roadgpt.brief.feasible import check
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
 from roadgpt.cli import app
 from roadgpt.cli.command_table import EARLIER_OPTIONS, renamed
-from roadgpt.road import build, read_design
+from roadgpt.network import build_route, read_network_design
+from roadgpt.road import World, build, read_design
 from roadgpt.run.folder_names import slug
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -63,10 +68,35 @@ def test_the_rule_in_the_docs_objects_to_a_straight_road() -> None:
 
 
 def test_the_design_in_the_docs_is_one() -> None:
-    (text,) = blocks("docs/reference/design-format.md", "json")
+    text, _ = blocks("docs/reference/design-format.md", "json")
     design, remarks = read_design(json.loads(text))
     assert build(design).length == pytest.approx(40 + 35 + 30)
     assert remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("page", "number", "kinds"),
+    [
+        ("docs/reference/design-format.md", 1, ["t_junction", "roundabout"]),
+        ("docs/how-to/junctions.md", 0, ["crossroads", "roundabout"]),
+    ],
+)
+def test_the_designs_with_junctions_in_the_docs_are_valid(page: str, number: int, kinds: list[str]) -> None:
+    design, remarks = read_network_design(json.loads(blocks(page, "json")[number]))
+    assert remarks == ()
+    route = build_route(design, World())
+    assert [junction.kind for _, junction in route.passed] == kinds
+    assert inspect(route, None, World()) == ()
+
+
+def test_the_plans_on_the_page_of_junctions_are_plans() -> None:
+    page = (ROOT / "docs" / "how-to" / "junctions.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| [^|]+ \| (?:`|<code>)(.+?)(?:`|</code>) \|", page, flags=re.MULTILINE)
+    assert len(rows) == 7
+    for row in rows:
+        brief = read_plan(html.unescape(row))
+        assert brief.junctions
+        check(brief)
 
 
 def test_the_python_in_the_readme_runs() -> None:
