@@ -35,8 +35,8 @@ COMMANDS = {
     "view.html": "roadgpt view hard --worst --out view.html",
     "serpentine": "roadgpt run 'a serpentine road' -n 40 --seed 5 --out serpentine",
     "serpentine/faults": "roadgpt faults serpentine -j 2",
-    "junctions": "roadgpt run --plan 'straight 60 // crossroads left lights // roundabout exit=3 // | up' -n 3 "
-    "--seed 4 --speed-limit 50 --out junctions",
+    "junctions": "roadgpt run --plan 'straight 60 // crossroads left lights // roundabout exit=3 // | up' "
+    "-n 3 --seed 4 --speed-limit 50 --out junctions",
     "junctions.html": "roadgpt view junctions/runs/0001 --out junctions.html",
     "thesis/report.html": "roadgpt study thesis --roads 100 --out thesis",
 }

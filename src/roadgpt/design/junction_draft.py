@@ -12,7 +12,7 @@ from roadgpt.brief.junctions import ARMS, SIDE, SIZES, JunctionClause, Way
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
-from roadgpt.network.ring import BETWEEN, MOUTH, ring_width
+from roadgpt.network.ring import BETWEEN, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
 BuiltKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
@@ -59,6 +59,9 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             )
             for number, angle in enumerate(angles)
         )
+        radius = _radius(clause, angles, rng, haste)
+        if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
+            continue
         kerb = float(rng.uniform(*KERBS))
         return JunctionDesign(
             after=after,
@@ -66,7 +69,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             take=taken + 1,
             control=clause.control or "none",
             kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
-            radius=round(_radius(clause, angles, rng, haste), 1),
+            radius=round(radius, 1),
             arms=arms,
         )
     return None

@@ -16,7 +16,7 @@ from roadgpt.brief.amount import between, exactly, span
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.junction_draft import drawn_junction
-from roadgpt.design.layout import PlanLine, place
+from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
@@ -30,6 +30,7 @@ from roadgpt.road import Segment, World
 DRAFTS = 400  # for one route, at most
 NO_HASTE = 12  # drafts without haste
 STRETCHES = 12  # drafts of one road between junctions
+HEIGHTS = 3  # draws of the heights of one road
 BUILT = 60  # drafts that fit and break a rule, after which the search is given up
 LEAST_OF_MOST = 0.6  # share of the length that a route has at least, if it may have that length at most
 MOST_OF_LEAST = 1.2  # times the length that a route has at most, if it must have that length at least
@@ -44,8 +45,8 @@ PARTS = 250.0  # m, the usual map
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
 
 
-Draft = tuple[PlanLine, tuple[Segment, ...]]
-"""The line and the segments of a road between junctions."""
+Draft = tuple[DraftSearch, PlacedPlan]
+"""The search for a road between junctions, and the plan of the road that it found."""
 
 
 class NetworkSearch:
@@ -89,19 +90,33 @@ class NetworkSearch:
         drafts = None if junctions is None else self._stretches(junctions, haste)
         if junctions is None or drafts is None:
             return None
-        after = accumulate(len(segments) for _, segments in drafts)
-        placed = [
-            junction.model_copy(update={"after": number})
-            for junction, number in zip(junctions, after, strict=False)
-        ]
-        return self._placed(drafts, tuple(placed))
+        pose = self._place(drafts, junctions)
+        segments = None if pose is None else self._segments(drafts)
+        if pose is None or segments is None:
+            return None
+        after = accumulate(map(len, segments))
+        driven = segments[:-1] if junctions[-1].taken is None else segments
+        every = tuple(segment for part in driven for segment in part)
+        low, high = STARTS_AT
+        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
+        return NetworkDesign(
+            starting_point=(pose.x, pose.y, start_height(every, ground)),
+            theta=pose.theta,
+            segments=every,
+            junctions=tuple(
+                junction.model_copy(update={"after": number})
+                for junction, number in zip(junctions, after, strict=False)
+            ),
+        )
 
     def _junctions(self, haste: float) -> list[JunctionDesign] | None:
         found = []
         for clause in self.brief.junctions:
             junction = drawn_junction(clause, 1, self.rng, haste)
             if junction is None:
-                self.failed[f"no {clause.name} has these ways on"] += 1
+                is_ring = clause.kind == "roundabout"
+                why = "such an island is too small for so many arms" if is_ring else "it has no such ways on"
+                self.failed[f"{why} at a {clause.name}"] += 1
                 return None
             found.append(junction)
         return found
@@ -118,10 +133,9 @@ class NetworkSearch:
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
             share = None
             if rest is not None and n in free:
-                left = rest - sum(line.s[-1] for line, _ in found.values())
+                left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
                 share = left / sum(each not in found for each in free)
-            is_level = (n > 0, n < len(briefs) - 1)
-            draft = self._stretch(briefs[n], haste, share, is_level)
+            draft = self._stretch(briefs[n], haste, share)
             if draft is None:
                 self.failed["one of its roads cannot be drafted"] += 1
                 return None
@@ -138,16 +152,13 @@ class NetworkSearch:
         inside = sum(passing_length(junction, self.world.section.lane_width) for junction in junctions)
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(
-        self, brief: Brief, haste: float, length: float | None, is_level: tuple[bool, bool]
-    ) -> Draft | None:
+    def _stretch(self, brief: Brief, haste: float, length: float | None) -> Draft | None:
         """Returns a draft of a road between junctions; None if no draft was accepted.
 
         Args:
             brief: the requirements for the road.
             haste: from 0 to 1; the larger it is, the shorter the road.
             length: the length in metres that the road should have; None if it is open.
-            is_level: whether the road is level at its start, and at its end, because a junction is there.
         """
         wanted = brief
         if length is not None:
@@ -166,10 +177,21 @@ class NetworkSearch:
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
             if found is not None:
-                line, segments = found
-                return line, climbing(segments, is_level, 100 * self.world.limits.max_grade)
-        self.failed.update(search.failed)
+                return search, found
         return None
+
+    def _segments(self, drafts: Sequence[Draft]) -> list[tuple[Segment, ...]] | None:
+        """Returns the segments of each road; None if one cannot have heights that meet its requirements."""
+        found = []
+        for n, (search, drafted) in enumerate(drafts):
+            tries = (search.with_heights(drafted) for _ in range(HEIGHTS))
+            segments = next((each for each in tries if each is not None), None)
+            if segments is None:
+                self.failed.update(search.failed)
+                return None
+            is_level = (n > 0, n < len(drafts) - 1)
+            found.append(climbing(segments, is_level, 100 * self.world.limits.max_grade))
+        return found
 
     def _open(self, haste: float, is_straight: bool = False) -> Brief:
         """Returns requirements for a road of which nothing is required: short, and with a turn at most."""
@@ -180,35 +202,20 @@ class NetworkSearch:
             return Brief(turns=exactly(0), length=between(SHORTEST * (1 - 0.3 * haste), high))
         return Brief(turns=exactly(1), degrees=between(18, 70), length=between(SHORTEST, high + TURNING))
 
-    def _placed(
-        self,
-        drafts: Sequence[Draft],
-        junctions: tuple[JunctionDesign, ...],
-    ) -> NetworkDesign | None:
-        """Returns the design of a draft, placed on the map; None if it overlaps itself or does not fit."""
+    def _place(self, drafts: Sequence[Draft], junctions: Sequence[JunctionDesign]) -> MapPose | None:
+        """Returns the start of a route on the map; None if it overlaps itself or does not fit."""
         section = self.world.section
-        turns_back = junctions[-1].taken is None
-        if turns_back and not self.brief.stretches[-1].is_open:
+        if junctions[-1].taken is None and not self.brief.stretches[-1].is_open:
             self.failed["it turns back, so it cannot go on on another road"] += 1
             return None
-        driven = drafts[:-1] if turns_back else drafts
-        sketch = sketched([line for line, _ in drafts], junctions, section.lane_width)
+        sketch = sketched([drafted.line for _, drafted in drafts], junctions, section.lane_width)
         if not is_clear(sketch, section.lane_width, section.shoulder):
             self.failed["its roads would overlap"] += 1
             return None
         pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng)
         if pose is None:
             self.failed["too large"] += 1
-            return None
-        low, high = STARTS_AT
-        ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
-        every = tuple(segment for _, segments in driven for segment in segments)
-        return NetworkDesign(
-            starting_point=(pose.x, pose.y, start_height(every, ground)),
-            theta=pose.theta,
-            segments=every,
-            junctions=junctions,
-        )
+        return pose
 
     def _advice(self) -> str:
         """Returns why most drafts failed and what to do, as one sentence."""

@@ -33,7 +33,7 @@ from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, keeps_clear, place, smallest_box, walk
+from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
@@ -215,7 +215,7 @@ class DraftSearch:
 
     def _finished(self, drafted: PlacedPlan) -> tuple[Design, Road] | None:
         """Returns the Design and the Road of a plan; None if they violate a requirement or a rule."""
-        segments = self._with_heights(drafted)
+        segments = self.with_heights(drafted)
         if segments is None:
             return None
         low, high = STARTS_AT
@@ -228,10 +228,10 @@ class DraftSearch:
             return None
         return design, road
 
-    def stretch(self, haste: float, plain: bool = True) -> tuple[PlanLine, tuple[Segment, ...]] | None:
-        """Returns one draft of a road between junctions, not placed on the map: its line and its segments.
+    def stretch(self, haste: float, plain: bool = True) -> PlacedPlan | None:
+        """Returns one draft of a road between junctions, without heights, and with its start at the origin.
 
-        Returns None if the draft does not meet the requirements, or overlaps itself.
+        Returns None if the draft cannot have the required length, or overlaps itself.
 
         Args:
             haste: from 0 to 1; the larger it is, the shorter the road.
@@ -244,10 +244,9 @@ class DraftSearch:
         line = walk(elements)
         if not keeps_clear(line, self.world, with_shoulders=True):
             return None
-        segments = self._with_heights(PlacedPlan(elements, line, MapPose(0.0, 0.0, 0.0)))
-        return None if segments is None else (line, segments)
+        return PlacedPlan(elements, line, MapPose(0.0, 0.0, 0.0))
 
-    def _with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
+    def with_heights(self, drafted: PlacedPlan) -> tuple[Segment, ...] | None:
         """Returns the segments of a plan with slopes that meet all requirements; None if none were found."""
         pace = Pace.along(drafted.elements, self.world)
         tries = [(ease, False) for ease in (*EASES, EASES[-1])]

@@ -18,7 +18,7 @@ WIDTH = 5.0  # m, of the circulatory roadway
 NARROW_WIDTH = 4.5  # m, of a mini roundabout
 MINI = 8.0  # m, largest radius of the island of a mini roundabout: an outer diameter of 25 m
 MOUTH = 9.5  # m along the ring, from the middle of a mouth to either end
-SMALLEST_MOUTH = 3.0  # m; see MOUTH
+SMALLEST_MOUTH = 4.4  # m; with a shorter one, kerbs between the arms have radii below 3 m
 BETWEEN = 2.0  # m along the ring, between two mouths
 APPROACH = 9.0  # m, from the outer edge of the ring to the contact of an arm
 

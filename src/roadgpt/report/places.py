@@ -24,6 +24,9 @@ WORDS = {
     "fell": "fell off the road",
     "stuck": "got stuck",
     "timeout": "time ran out",
+    "wrong turn": "took a wrong turn",
+    "wrong way": "drove the wrong way",
+    "stop line": "did not stop",
 }
 RULES = {
     "inside_map": "leaves the map",
@@ -31,6 +34,8 @@ RULES = {
     "too_tight": "too tight",
     "too_steep": "too steep",
     "below_floor": "below the ground",
+    "leaves_map": "leaves the map",
+    "conflicting_overlap": "roads overlap",
 }
 
 
