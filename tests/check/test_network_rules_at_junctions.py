@@ -51,7 +51,7 @@ def radius_of_points(points: np.ndarray) -> float:
 class TestTightTurns:
     @pytest.mark.parametrize("kind", ["crossroads", "star", "roundabout"])
     def test_the_kerb_is_that_of_circles_through_its_points(self, kind: str) -> None:
-        route = passing(kind, 1, kerb=2, radius=5.5)
+        route = passing(kind, 1, kerb=2, radius=7)
         network = route.network
         first = route.legs[1].road
         road = network.road(first).road
