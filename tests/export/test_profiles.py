@@ -43,7 +43,8 @@ def element(file: Path) -> ET.Element:
 
 
 def opendrive(folder: Path) -> float:
-    (lane,) = [each for each in element(folder / "road.xodr").iter("lane") if each.attrib["id"] == "-1"]
+    (file,) = folder.glob("road*.xodr")
+    (lane,) = [each for each in element(file).iter("lane") if each.attrib["id"] == "-1"]
     return float(lane.find("width").attrib["a"])  # type: ignore[union-attr]
 
 
@@ -105,6 +106,7 @@ READERS: dict[str, Callable[[Path], float] | None] = {
     "gltf": gltf,
     "lanelet2": lanelets,
     "opendrive": opendrive,
+    "opendrive17": opendrive,
     "openscenario": opendrive,
     "sbft": None,  # holds the centre line, and no lanes
     "sumo": sumo,

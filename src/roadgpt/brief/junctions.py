@@ -66,6 +66,11 @@ CONTROLS: Mapping[Control, str] = {
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
+def side_of(turn: float) -> Way:
+    """Returns the side of a change of direction in degrees, left positive."""
+    return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
+
+
 class JunctionClause(Frozen):
     """A junction that the route passes; a field that is None sets no requirement."""
 

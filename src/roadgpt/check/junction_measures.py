@@ -8,7 +8,7 @@ import math
 from dataclasses import dataclass
 from itertools import pairwise
 
-from roadgpt.brief.junctions import SIDE, Control, JunctionKind, Way
+from roadgpt.brief.junctions import Control, JunctionKind, Way, side_of
 from roadgpt.network import Arm, Junction, Network, RoadEnd, Route
 
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
@@ -50,11 +50,6 @@ class MeasuredJunction:
     def sides(self) -> tuple[Way, ...]:
         """The side of each way."""
         return tuple(side_of(turn) for turn in self.ways)
-
-
-def side_of(turn: float) -> Way:
-    """Returns the side of a change of direction in degrees."""
-    return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def measured_junctions(route: Route) -> list[MeasuredJunction]:

@@ -4,16 +4,9 @@ import math
 
 import numpy as np
 
+from roadgpt.brief.junctions import NAMES
 from roadgpt.check.finding import Finding
 from roadgpt.network import Junction, Network, NetworkRoad, Route
-
-NAMES = {
-    "t_junction": "T-junction",
-    "y_junction": "Y-junction",
-    "crossroads": "crossroads",
-    "star": "star junction",
-    "roundabout": "roundabout",
-}
 
 
 def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
@@ -67,7 +60,7 @@ def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -
 def name_of(junction: Junction) -> str:
     """Returns the name of a junction with its place, such as "the crossroads near (120, 125)"."""
     x, y, _ = junction.node
-    return f"the {NAMES[junction.kind]} near ({x:.0f}, {y:.0f})"
+    return f"the {NAMES[junction.kind][0]} near ({x:.0f}, {y:.0f})"
 
 
 def more_room(junction: Junction) -> str:

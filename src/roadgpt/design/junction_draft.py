@@ -3,20 +3,19 @@
 from collections.abc import Sequence
 from itertools import pairwise
 from math import pi
-from typing import Literal
 
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import ARMS, SIDE, SIZES, JunctionClause, Way
+from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, side_of
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
+from roadgpt.network.network import Kind
 from roadgpt.network.ring import BETWEEN, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
-BuiltKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
-ANY: tuple[BuiltKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
+ANY: tuple[Kind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
 """The kinds of a junction whose kind is not said; T-junctions are twice as frequent."""
 
 KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
@@ -75,12 +74,12 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
     return None
 
 
-def _kind(asked: JunctionClause, rng: Rng) -> BuiltKind:
+def _kind(asked: JunctionClause, rng: Rng) -> Kind:
     """Returns the kind of a junction; where the description names none, one of those that have its arms."""
     if asked.kind != "junction":
         return asked.kind
     arms = span(asked.arms)
-    kinds: list[BuiltKind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    kinds: list[Kind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
     return kinds[int(rng.integers(len(kinds)))]
 
 
@@ -124,17 +123,12 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     return [-180 + float(angle) for angle in np.cumsum(gaps)[:-1]]
 
 
-def sides_of(angles: Sequence[float]) -> list[Way]:
-    """Returns the side to which each arm leads, for directions in degrees."""
-    return ["left" if angle > SIDE else "right" if angle < -SIDE else "straight" for angle in angles]
-
-
 def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     """Returns whether no arm is too near to another, and all arms lead where they are required."""
     apart = all(b - a >= ASTERN + 1 for a, b in pairwise([-180.0, *angles, 180.0]))
     unclear = [angle for angle in angles if STRAIGHT < abs(angle) < CLEAR]
     is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
-    has_ways = not clause.ways or sorted(sides_of(angles)) == sorted(clause.ways)
+    has_ways = not clause.ways or sorted(map(side_of, angles)) == sorted(clause.ways)
     return apart and is_clear and has_ways
 
 
@@ -160,7 +154,7 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
     take = clause.take
     if clause.kind == "y_junction":
         return {"left": len(angles) - 1, "right": 0}.get(take or "")
-    sides = sides_of(angles)
+    sides = [side_of(angle) for angle in angles]
     lefts = [n for n, angle in enumerate(angles) if angle > CLEAR]
     rights = [n for n, angle in enumerate(angles) if angle < -CLEAR]
     if take == "straight":

@@ -4,10 +4,10 @@ from bisect import bisect_right
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
+from roadgpt.brief.junctions import Control
 from roadgpt.drive.view import JunctionAhead
 from roadgpt.geometry import wrap_angle
 from roadgpt.network import Junction, Leg, RoadEnd, Route
-from roadgpt.network.network import Control
 
 if TYPE_CHECKING:
     from roadgpt.road import Road, World

@@ -9,9 +9,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import wrap_angle
 from roadgpt.network.building import Builder, Stub, connecting_road
-from roadgpt.network.network import Arm, Connection, Control, Junction, Kind
+from roadgpt.network.network import Arm, Connection, Junction, Kind
 from roadgpt.network.turning import STRAIGHT, curve_between, tangent_length
 
 NEAREST = 2.0  # m, from the node to a contact

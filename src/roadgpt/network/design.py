@@ -19,8 +19,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, ValidationError
 
+from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
-from roadgpt.network.network import Control, Kind
+from roadgpt.network.network import Kind
 from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
@@ -113,14 +114,11 @@ class JunctionDesign(FrozenFields):
         return _towards(self.kind, self.take, [arm.angle for arm in arms])
 
 
-AHEAD = 25.0  # degrees; an arm within this angle of straight on counts as straight on
-
-
 def _towards(kind: Kind, take: str, angles: Sequence[float]) -> int:
     """Returns the index of the arm on a side; in a fork the leftmost or the rightmost arm."""
     if kind == "y_junction" and take != "straight":
         return len(angles) - 1 if take == "left" else 0
-    sides = ["left" if angle > AHEAD else "right" if angle < -AHEAD else "straight" for angle in angles]
+    sides = [side_of(angle) for angle in angles]
     found = [n for n, side in enumerate(sides) if side == take]
     if len(found) != 1:
         word = "no arm leads" if not found else f"{len(found)} arms lead"

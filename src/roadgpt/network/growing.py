@@ -4,11 +4,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
+from roadgpt.brief.junctions import Control
 from roadgpt.errors import UsageError
 from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
 from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign
-from roadgpt.network.network import Control, Leg, RoadEnd, Roundabout
+from roadgpt.network.network import Leg, RoadEnd, Roundabout
 from roadgpt.network.ring import around_length, build_roundabout, contact_distance, smallest_radius
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import road_of

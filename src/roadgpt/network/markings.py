@@ -10,8 +10,9 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
-from roadgpt.network.network import Arm, Control, Junction, Network, NetworkRoad, Roundabout
+from roadgpt.network.network import Arm, Junction, Network, NetworkRoad, Roundabout
 from roadgpt.network.paved import paved_by, ribbon, stations_of
 from roadgpt.network.surface import roads_inside, roads_outside
 from roadgpt.road.profile import LINE

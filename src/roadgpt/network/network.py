@@ -12,13 +12,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import outline_of, paved_by
 from roadgpt.network.polygon import Area
 from roadgpt.road import Profile, Road
 
 Contact = Literal["start", "end"]
-Control = Literal["priority", "yield", "stop", "lights", "none"]
 Kind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
 
 

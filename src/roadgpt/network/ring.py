@@ -8,9 +8,10 @@ one connecting road leads along the ring, one from the ring to the arm, and one 
 import math
 from collections.abc import Sequence
 
+from roadgpt.brief.junctions import Control
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.network.building import Builder, Stub, connecting_road, level, one_way
-from roadgpt.network.network import Arm, Connection, Control, Junction, RoadEnd, Roundabout
+from roadgpt.network.network import Arm, Connection, Junction, RoadEnd, Roundabout
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Road
 

@@ -4,19 +4,12 @@ from typing import Literal, NamedTuple
 
 from matplotlib.axes import Axes
 
+from roadgpt.brief.junctions import NAMES
 from roadgpt.network import Route
-from roadgpt.network.network import Kind
 from roadgpt.report.canvas import HALO, SOFT
 from roadgpt.report.text_width import inches
 from roadgpt.road import Road
 
-WORDS: dict[Kind, str] = {
-    "t_junction": "T-junction",
-    "y_junction": "Y-junction",
-    "crossroads": "crossroads",
-    "star": "star junction",
-    "roundabout": "roundabout",
-}
 SHADE = "#e4e8ee"
 SIZE, LINE = 8.5, 0.16  # points; inches from one line of names to the next
 LINES = 3  # of names, where they stand close together
@@ -46,7 +39,7 @@ def junction_stretches(road: Road) -> tuple[JunctionStretch, ...]:
             found[-1] = found[-1]._replace(end=end)
         elif inside is not None:
             kind = "roundabout" if junction is None else road.network.junction(junction).kind
-            found.append(JunctionStretch(start, end, WORDS[kind]))
+            found.append(JunctionStretch(start, end, NAMES[kind][0]))
         last = inside
     return tuple(found)
 
