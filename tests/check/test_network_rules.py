@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from network.changing import (
-    WORLD,
     beside,
     built,
     design,
@@ -17,28 +16,14 @@ from network.changing import (
     with_plan,
     with_road,
 )
+from network.ruled import findings, the_finding
 from roadgpt import plugins
-from roadgpt.check import Finding
 from roadgpt.geometry import GradeProfile, Piece
-from roadgpt.network import Network, RoadEnd, Route
+from roadgpt.network import Network, RoadEnd
 from roadgpt.road import Limits, Profile, Site, World
 from roadgpt.road.profile import Lane
 
 KINDS = ("t_junction", "y_junction", "crossroads", "star", "roundabout")
-
-
-def findings(rule: str, network: Network | Route, world: World = WORLD) -> tuple[Finding, ...]:
-    route = network if isinstance(network, Route) else None
-    found: tuple[Finding, ...] = plugins.find("network_rules", rule)(
-        route.network if route else network, route, world
-    )
-    return found
-
-
-def the_finding(rule: str, network: Network | Route, world: World = WORLD) -> Finding:
-    (found,) = findings(rule, network, world)
-    assert found.rule == rule
-    return found
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from network.changing import (
-    WORLD,
     passing,
     raised,
     with_heights,
@@ -16,26 +15,11 @@ from network.changing import (
     with_plan,
     with_road,
 )
-from roadgpt import plugins
-from roadgpt.check import Finding
+from network.ruled import findings, the_finding
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece
-from roadgpt.network import Connection, Network, RoadEnd, Route
-from roadgpt.road import Profile, Road, World
+from roadgpt.network import Connection, Network, RoadEnd
+from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane
-
-
-def findings(rule: str, network: Network | Route, world: World = WORLD) -> tuple[Finding, ...]:
-    route = network if isinstance(network, Route) else None
-    found: tuple[Finding, ...] = plugins.find("network_rules", rule)(
-        route.network if route else network, route, world
-    )
-    return found
-
-
-def the_finding(rule: str, network: Network | Route, world: World = WORLD) -> Finding:
-    (found,) = findings(rule, network, world)
-    assert found.rule == rule
-    return found
 
 
 def radius_of_points(points: np.ndarray) -> float:

@@ -85,7 +85,7 @@ def test_the_designs_with_junctions_in_the_docs_are_valid(page: str, number: int
     design, remarks = read_network_design(json.loads(blocks(page, "json")[number]))
     assert remarks == ()
     route = build_route(design, World())
-    assert [junction.kind for _, junction in route.passed] == kinds
+    assert [each.entered.kind for each in route.passages] == kinds
     assert inspect(route, None, World()) == ()
 
 

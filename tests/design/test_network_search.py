@@ -125,7 +125,7 @@ def test_a_route_is_what_was_asked_for(line: str, seed: int, referee: ModuleType
 
 def turned(route: Route, junction: Junction) -> float:
     """How far the route turns in a junction, in degrees, by the directions of its roads 15 m away from it."""
-    at = next(s for s, passed in route.passed if passed.node == junction.node)
+    at = next(each.start for each in route.passages if each.entered.node == junction.node)
     after = next(s for s in route.starts if s > at and _is_outside(route, s))
     points = route.at(np.array([at - 15, at, after, after + 15]))[:, :2]
     before, behind = points[1] - points[0], points[3] - points[2]
@@ -154,14 +154,14 @@ def test_the_route_turns_to_the_side_that_was_asked_for(
     line: str, low: float, high: float, seed: int
 ) -> None:
     route = drafted(line, seed)
-    ((_, junction),) = route.passed
+    ((_, _, junction, *_),) = route.passages
     assert low <= turned(route, junction) <= high
 
 
 def test_five_junctions_find_a_place_on_the_usual_map() -> None:
     for seed in range(6):
         route = drafted(FIVE, seed)
-        assert [junction.kind for _, junction in route.passed] == [
+        assert [each.entered.kind for each in route.passages] == [
             "t_junction",
             "crossroads",
             "roundabout",

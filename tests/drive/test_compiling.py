@@ -70,7 +70,7 @@ print(called())
         ),
         (
             *("scene", "scene.surfaces", "PERIOD"),
-            *("export/exporters/opendrive/lanes.py", "DASH, GAP = 4.0", "DASH, GAP = 5.0"),
+            *("road/profile.py", "DASH, GAP = 4.0", "DASH, GAP = 5.0"),
         ),
     ],
 )

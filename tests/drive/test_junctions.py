@@ -10,7 +10,7 @@ import pytest
 
 from roadgpt import plugins
 from roadgpt.drive import Command, Drive, JunctionAhead, View, simulate
-from roadgpt.drive.passages import Outlook
+from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.beamng import BeamngSimulator
 from roadgpt.drive.turning import StopSigns, highest_speeds, kept_in_lane, turning_speed
 from roadgpt.errors import UsageError

@@ -79,8 +79,8 @@ def test_the_junctions_on_the_way_are_those_of_the_design(seed: int) -> None:
     data = random_design(seed)
     kinds = [data[f"junction{n}"]["kind"] for n in range(1, 9) if f"junction{n}" in data]
     route = drawn(seed)
-    assert [junction.kind for _, junction in route.passed] == kinds
-    for s, junction in route.passed:
+    assert [each.entered.kind for each in route.passages] == kinds
+    for s, _, junction, *_ in route.passages:
         x, y, _ = route.at(s)
         assert math.hypot(x - junction.node[0], y - junction.node[1]) < 60
         assert any(

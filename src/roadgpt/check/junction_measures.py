@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from roadgpt.brief.junctions import Control, JunctionKind, Way, side_of
-from roadgpt.network import Arm, Junction, Network, RoadEnd, Route
+from roadgpt.network import Network, Passage, RoadEnd, Route
 
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
 T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
@@ -54,51 +54,32 @@ class MeasuredJunction:
 
 def measured_junctions(route: Route) -> list[MeasuredJunction]:
     """Returns the junctions that a route passes, in driving order; each roundabout is one."""
-    return [_measured(route, s, junction) for s, junction in route.passed]
+    return [_measured(route.network, passage) for passage in route.passages]
 
 
-def _measured(route: Route, s: float, junction: Junction) -> MeasuredJunction:
-    network = route.network
-    ring = network.roundabout_of.get(junction.id)
-    arms = [junction.arms[0]] if ring is not None else list(junction.arms)
-    if ring is not None:  # the first arm of each of its junctions is no part of the ring
-        arms = [network.junction(number).arms[0] for number in ring.junctions]
-    start = next(n for n, at in enumerate(route.starts) if at == s)
-    here = [arm.end for arm in arms]
-    first = here.index(network.connection_of[route.legs[start].road][1].incoming)
-    last = here.index(_leaving(route, start, {arm.end for arm in arms}))
-    arms = arms[first:] + arms[:first]
-    directions = [_direction(network, arm) for arm in arms]
+def _measured(network: Network, passage: Passage) -> MeasuredJunction:
+    ring = network.roundabout_of.get(passage.entered.id)
+    directions = [_direction(network, end) for end in passage.arms]
     gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
-    exit_ = (last - first) % len(arms) or len(arms)
     return MeasuredJunction(
-        s,
+        passage.start,
         ("roundabout",) if ring is not None else _kinds(gaps),
         tuple(gaps),
-        180.0 if exit_ == len(arms) else ways[exit_ - 1],
-        exit_,
+        180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
+        passage.exit,
         ways,
-        arms[0].control,
+        passage.control,
         None if ring is None else 2 * (ring.radius + ring.width),
         None if ring is None else ring.radius,
     )
 
 
-def _leaving(route: Route, start: int, ends: set[RoadEnd]) -> RoadEnd:
-    """Returns the end of the road on which the route leaves a junction that it enters with leg ``start``."""
-    for leg in route.legs[start:]:
-        found = route.network.connection_of.get(leg.road)
-        if found is not None and found[1].outgoing in ends:
-            return found[1].outgoing
-    raise ValueError("a route ends on a road outside junctions")
-
-
-def _direction(network: Network, arm: Arm) -> float:
+def _direction(network: Network, end: RoadEnd) -> float:
     """Returns the direction of an arm out of its junction in degrees."""
-    road = network.road(arm.end.road).road
+    road = network.road(end.road).road
     far = min(OUT, road.length)
-    near, away = (0.0, far) if arm.end.contact == "start" else (road.length, road.length - far)
+    near, away = (0.0, far) if end.contact == "start" else (road.length, road.length - far)
     x, y = (road.at(away) - road.at(near))[:2].tolist()
     return math.degrees(math.atan2(y, x))
 

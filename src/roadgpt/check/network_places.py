@@ -14,7 +14,7 @@ def junction_finding(rule: str, route: Route | None, junction: Junction, what: s
     x, y, _ = junction.node
     s = None
     if route is not None:
-        s = next((s for s, passed in route.passed if passed.node == junction.node), None)
+        s = next((each.start for each in route.passages if each.entered.node == junction.node), None)
     return Finding(rule, f"at {name_of(junction)}: {what}", s, x, y)
 
 

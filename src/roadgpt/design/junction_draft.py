@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import pi
+from math import ceil, pi
 
 import numpy as np
 
@@ -46,19 +46,19 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
     for _ in range(ROUNDS):
         kind = _kind(asked, rng)
         clause = asked.model_copy(update={"kind": kind})
-        angles = _angles(clause, rng)
+        angles = [round(angle, 1) for angle in _angles(clause, rng)]
         taken = _taken(clause, angles, rng) if _has_ways(clause, angles) else None
         if taken is None:
             continue
         least, most = STUBS[0] - haste * (STUBS[0] - SHORT_STUB), STUBS[1] - haste * (STUBS[1] - STUBS[0])
         arms = tuple(
             ArmDesign(
-                angle=round(angle, 1),
+                angle=angle,
                 length=None if number == taken else round(float(rng.uniform(least, most)), 1),
             )
             for number, angle in enumerate(angles)
         )
-        radius = _radius(clause, angles, rng, haste)
+        radius = ceil(10 * _radius(clause, angles, rng, haste)) / 10
         if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
             continue
         kerb = float(rng.uniform(*KERBS))
@@ -68,7 +68,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             take=taken + 1,
             control=clause.control or "none",
             kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
-            radius=round(radius, 1),
+            radius=radius,
             arms=arms,
         )
     return None

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
 from roadgpt.network import JunctionDesign
-from roadgpt.network.crossing import Mouth, setbacks
 from roadgpt.network.design import STUB
-from roadgpt.network.ring import contact_distance, ring_width, smallest_radius
+from roadgpt.network.growing import contact_distances
+from roadgpt.network.ring import ring_width
 
 Complex = NDArray[np.complex128]
 STEP = 2.0  # m between points
@@ -36,8 +36,6 @@ class NetworkSketch(NamedTuple):
     """Shape (parts, parts): whether two parts meet, so that they may be near each other."""
     nodes: tuple[tuple[complex, float], ...]
     """The node of each junction, and the distance from it within which its arms may be near each other."""
-    is_possible: bool
-    """False if the island of a roundabout is too small for its arms."""
 
 
 def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], width: float) -> NetworkSketch:
@@ -55,7 +53,7 @@ def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], wid
     for a, b in pen.pairs:
         near[a, b] = True
     numbers = np.repeat(np.arange(len(pen.parts)), [len(z) for z in pen.parts])
-    return NetworkSketch(np.concatenate(pen.parts), numbers, near, tuple(pen.nodes), pen.is_possible)
+    return NetworkSketch(np.concatenate(pen.parts), numbers, near, tuple(pen.nodes))
 
 
 class _Pen:
@@ -65,13 +63,13 @@ class _Pen:
         self.parts: list[Complex] = [_thinned(line.z)]
         self.pairs: list[tuple[int, int]] = []
         self.nodes: list[tuple[complex, float]] = []
-        self.is_possible = True
         self._width = width
         self._arrival, self._end, self._way = 0, complex(line.z[-1]), _way(line.z)
 
     def pass_junction(self, junction: JunctionDesign, line: PlanLine) -> None:
         """Draws a junction, its arms, and the road on which the route goes on."""
-        far, way = self._distances(junction), self._way
+        directions = [pi, *(radians(arm.angle) for arm in junction.all_arms)]
+        far, way = contact_distances(junction, directions, self._width), self._way
         node = self._end + way * far[0]
         self.nodes.append((node, max(far) + AWAY))
         here = [self._arrival]
@@ -93,14 +91,6 @@ class _Pen:
         self.parts.append(z)
         return len(self.parts) - 1
 
-    def _distances(self, junction: JunctionDesign) -> list[float]:
-        """Returns the distances in metres from the node to the contacts, first of the road of arrival."""
-        directions = [pi, *(radians(arm.angle) for arm in junction.all_arms)]
-        if junction.kind != "roundabout":
-            return setbacks([Mouth(each, self._width, self._width) for each in directions], junction.kerb)
-        self.is_possible &= junction.radius >= smallest_radius(directions)
-        return [contact_distance(junction.radius)] * len(directions)
-
 
 def _thinned(z: Complex) -> Complex:
     return np.append(z[: -1 : int(STEP)], z[-1])
@@ -120,8 +110,6 @@ def is_clear(sketch: NetworkSketch, width: float, shoulder: float) -> bool:
         width: width in metres of each lane.
         shoulder: width in metres of each shoulder.
     """
-    if not sketch.is_possible:
-        return False
     apart = 2 * width + 2 * shoulder + MARGIN
     z, part = sketch.z, sketch.part
     of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < apart, 1))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from roadgpt.drive.driving_line import FULL_BRAKE, DrivingLine, FloatArray, pedals_for
-from roadgpt.drive.passages import passages
+from roadgpt.drive.outlook import passages
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:

@@ -17,6 +17,7 @@ from roadgpt.network.network import (
     RoadEnd,
     Roundabout,
 )
+from roadgpt.network.passages import Passage
 from roadgpt.network.route import Route
 from roadgpt.network.source import (
     AnyDesign,
@@ -39,6 +40,7 @@ __all__ = [
     "Network",
     "NetworkDesign",
     "NetworkRoad",
+    "Passage",
     "RoadEnd",
     "Roundabout",
     "Route",

@@ -12,7 +12,7 @@ import numpy as np
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 from roadgpt.network.polygon import Area
-from roadgpt.road import Edges, Road
+from roadgpt.road import Edges
 
 if TYPE_CHECKING:
     from roadgpt.network.route import Route
@@ -26,14 +26,9 @@ ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 
 def ground_of(route: "Route") -> Area:
     """Returns the paved area of the route's network, widened by its widest shoulder."""
-    shoulder = max(_shoulder(each.road) for each in route.network.roads)
+    shoulder = max(each.shoulder for each in route.network.roads)
     area = route.network.paved
     return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
-
-
-def _shoulder(road: Road) -> float:
-    assert road.profile is not None
-    return road.profile.reach - road.profile.paved_reach
 
 
 def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
@@ -54,11 +49,8 @@ def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
 def windows(route: "Route") -> list[tuple[float, float]]:
     """Returns the stretches of a route, in metres, at and around its junctions."""
     found: list[tuple[float, float]] = []
-    for start, end, leg in zip(route.starts, route.starts[1:], route.legs, strict=False):
-        inside = route.network.road(leg.road).junction is not None
-        if not inside and leg.road not in route.network.roundabout_of:
-            continue
-        low, high = max(0.0, start - AROUND), min(route.length, end + AROUND)
+    for each in route.passages:
+        low, high = max(0.0, each.start - AROUND), min(route.length, each.end + AROUND)
         if found and low <= found[-1][1]:
             found[-1] = (found[-1][0], high)
         else:

@@ -12,13 +12,13 @@ import numpy as np
 
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
-from roadgpt.network.network import Arm, Junction, Network, NetworkRoad, Roundabout
+from roadgpt.network.building import width_at
+from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, Roundabout
+from roadgpt.network.passages import STOP_LINE
 from roadgpt.network.paved import paved_by, ribbon, stations_of
 from roadgpt.network.surface import roads_inside, roads_outside
-from roadgpt.road.profile import LINE
+from roadgpt.road.profile import DASH, GAP, LINE
 
-DASH, GAP = 3.0, 6.0  # m, of a broken line
-STOP_LINE = 0.5  # m, width of stop and give-way lines (Germany, RMS-1)
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, of a give-way line (Germany, RMS-1)
 BEFORE = 1.0  # m, from a sign to the junction
 BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
@@ -189,10 +189,17 @@ def _blocks(line: Array) -> Iterator[Array]:
 
 
 def _sign(network: Network, arm: Arm) -> JunctionSign:
-    member, at_end = network.road(arm.end.road), arm.end.contact == "end"
-    before = min(BEFORE, member.road.length)
-    s = member.road.length - before if at_end else before
-    rims = member.profile.rims(s)
-    t = float(rims.right) - BESIDE if at_end else float(rims.left) + BESIDE
-    x, y, z = member.road.at(s, t).tolist()
+    member = network.road(arm.end.road)
+    x, y, z = member.road.at(*place_of_sign(member, arm.end.contact)).tolist()
     return JunctionSign(arm.control, (x, y, z), arm.direction + np.pi)
+
+
+def place_of_sign(member: NetworkRoad, contact: Contact) -> tuple[float, float]:
+    """Returns the station and the offset in metres of the sign at one end of a road, on the right of traffic
+    that drives towards this end.
+    """
+    before = min(BEFORE, member.road.length)
+    s = member.road.length - before if contact == "end" else before
+    lanes = member.profile.right if contact == "end" else member.profile.left
+    t = sum(width_at(lane.width, s) for lane in lanes) + BESIDE
+    return s, -t if contact == "end" else t

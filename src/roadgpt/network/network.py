@@ -55,6 +55,11 @@ class NetworkRoad:
         assert self.road.profile is not None
         return self.road.profile
 
+    @property
+    def shoulder(self) -> float:
+        """The width of its wider shoulder in metres, at most."""
+        return self.profile.reach - self.profile.paved_reach
+
 
 @dataclass(frozen=True)
 class Connection:

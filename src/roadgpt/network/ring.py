@@ -7,6 +7,7 @@ one connecting road leads along the ring, one from the ring to the arm, and one 
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry import Piece, PieceCurve
@@ -43,18 +44,17 @@ def mouth_of(radius: float, directions: Sequence[float]) -> float:
         radius: The radius of the central island in metres.
         directions: The directions of the arms from the centre in radians, counter-clockwise.
     """
-    gaps = [
-        (b - a) % (2 * math.pi) for a, b in zip(directions, [*directions[1:], directions[0]], strict=True)
-    ]
-    return min(MOUTH, (radius * min(gaps) - BETWEEN) / 2)
+    return min(MOUTH, (radius * _least_gap(directions) - BETWEEN) / 2)
 
 
 def smallest_radius(directions: Sequence[float]) -> float:
     """Returns the smallest radius in metres of an island around which the mouths of all arms fit."""
-    gaps = [
-        (b - a) % (2 * math.pi) for a, b in zip(directions, [*directions[1:], directions[0]], strict=True)
-    ]
-    return (2 * SMALLEST_MOUTH + BETWEEN) / min(gaps)
+    return (2 * SMALLEST_MOUTH + BETWEEN) / _least_gap(directions)
+
+
+def _least_gap(directions: Sequence[float]) -> float:
+    """Returns the least angle in radians between two neighbouring arms."""
+    return min((b - a) % (2 * math.pi) for a, b in pairwise([*directions, directions[0]]))
 
 
 def around_length(radius: float, directions: Sequence[float], angle: float) -> float:

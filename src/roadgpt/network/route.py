@@ -15,8 +15,9 @@ import numpy as np
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
 from roadgpt.network.ground import shoulders_on_ground
-from roadgpt.network.network import Junction, Leg, Network, NetworkRoad, RoadEnd
+from roadgpt.network.network import Leg, Network, NetworkRoad, RoadEnd
 from roadgpt.network.network_json import network_to_json
+from roadgpt.network.passages import Passage, passages_of
 from roadgpt.network.stretch import joined_grades
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane, Width
@@ -63,7 +64,7 @@ class Route(Road):
         )
 
     def __repr__(self) -> str:
-        kinds = ", ".join(junction.kind.replace("_", "-") for _, junction in self.passed)
+        kinds = ", ".join(each.entered.kind.replace("_", "-") for each in self.passages)
         return f"Route({self.length:.1f} m, junctions: {kinds or 'none'})"
 
     @cached_property
@@ -72,21 +73,9 @@ class Route(Road):
         return tuple(accumulate((self.network.road(leg.road).road.length for leg in self.legs), initial=0.0))
 
     @cached_property
-    def passed(self) -> tuple[tuple[float, Junction], ...]:
-        """The junctions on the way, each with the station in metres at which the route enters it.
-
-        A roundabout is given once, by the junction at which the route enters it.
-        """
-        found: list[tuple[float, Junction]] = []
-        last: object = None
-        for start, leg in zip(self.starts, self.legs, strict=False):
-            road = self.network.road(leg.road)
-            ring = self.network.roundabout_of.get(leg.road)
-            inside = road.junction if ring is None else id(ring)
-            if inside is not None and inside != last and road.junction is not None:
-                found.append((start, self.network.junction(road.junction)))
-            last = inside
-        return tuple(found)
+    def passages(self) -> tuple[Passage, ...]:
+        """The ways through the junctions, in driving order; each roundabout is one."""
+        return passages_of(self)
 
     def on_ground(self) -> Self:
         """Returns the route with shoulders that reach to the edge of the ground.

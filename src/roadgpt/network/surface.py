@@ -57,7 +57,7 @@ class NetworkSurface:
     def of(cls, network: Network) -> "NetworkSurface":
         """Returns the parts of a network's surface."""
         roads = roads_outside(network)
-        width = max((_shoulder(each) for each in network.roads), default=0.0)
+        width = max((each.shoulder for each in network.roads), default=0.0)
         beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
         areas = tuple(_area_of(network, kind, junctions, width, beside) for kind, junctions in network.nodes)
         return cls(roads, areas, width)
@@ -87,10 +87,6 @@ def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
         RoadEnd(road.id, "start") not in network.junction_at,
         RoadEnd(road.id, "end") not in network.junction_at,
     )
-
-
-def _shoulder(member: NetworkRoad) -> float:
-    return member.profile.reach - member.profile.paved_reach
 
 
 def _with_shoulders(member: NetworkRoad) -> Road:

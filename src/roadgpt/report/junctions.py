@@ -29,19 +29,7 @@ def junction_stretches(road: Road) -> tuple[JunctionStretch, ...]:
     """Returns the junctions that a route passes, in driving order; none for a road without junctions."""
     if not isinstance(road, Route):
         return ()
-    found: list[JunctionStretch] = []
-    last: object = None
-    for start, end, leg in zip(road.starts, road.starts[1:], road.legs, strict=False):
-        ring = road.network.roundabout_of.get(leg.road)
-        junction = road.network.road(leg.road).junction
-        inside = junction if ring is None else id(ring)
-        if inside is not None and inside == last:
-            found[-1] = found[-1]._replace(end=end)
-        elif inside is not None:
-            kind = "roundabout" if junction is None else road.network.junction(junction).kind
-            found.append(JunctionStretch(start, end, NAMES[kind][0]))
-        last = inside
-    return tuple(found)
+    return tuple(JunctionStretch(each.start, each.end, NAMES[each.entered.kind][0]) for each in road.passages)
 
 
 def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None = "top") -> None:

@@ -22,6 +22,7 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 
 LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+DASH, GAP = 4.0, 8.0  # m, of a broken line: middle line outside of towns (Germany, RMS-1)
 
 Kind = Literal["driving", "shoulder"]
 Marking = Literal["solid", "broken", "none"]

@@ -6,7 +6,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any, TypeVar
 
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
+from roadgpt.road.profile import DASH, GAP
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile
+from roadgpt.road.profile import DASH, GAP
 from roadgpt.scene.compiled import inlined
 from roadgpt.scene.light import SUN_X, SUN_Y, SUN_Z
 from roadgpt.scene.patterns import Tiles, bump, dashed, fine_noise, plain_noise, share, smooth

@@ -144,7 +144,7 @@ def _is_off_road(route: Route, drive: "Drive") -> BoolArray:
 
 def _stops_missed(route: Route, drive: "Drive") -> list[int]:
     """Returns the steps at which the front of the car crosses a stop line without having stood before it."""
-    from roadgpt.drive.passages import passages
+    from roadgpt.drive.outlook import passages
 
     front = drive["s"] + drive.car.ahead + drive.car.length / 2
     missed = []

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.driving_line import line_along, pedals_for, stations
-from roadgpt.drive.passages import passages
+from roadgpt.drive.outlook import passages
 from roadgpt.drive.view import Command, View
 
 if TYPE_CHECKING:

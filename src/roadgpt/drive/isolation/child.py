@@ -23,7 +23,7 @@ from roadgpt.drive.camera_sensor import camera_of
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.isolation import protocol
 from roadgpt.drive.loading import load_driver
-from roadgpt.drive.passages import Outlook
+from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.view import View
 from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts

@@ -7,14 +7,13 @@ import numpy as np
 from roadgpt.brief import sentence
 from roadgpt.check.describing import describe
 from roadgpt.errors import UsageError
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.network import Route
 from roadgpt.report.canvas import INK, LETTERS, OUTCOMES, SEVERE, VERMILLION, origin, outcome_of
 from roadgpt.report.places import places_of
 from roadgpt.report.view.columns import FINE, MILLIMETRES, road_columns, rounded
 from roadgpt.report.view.network import network_values
 from roadgpt.road import Road, World
-from roadgpt.road.profile import LINE
+from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 

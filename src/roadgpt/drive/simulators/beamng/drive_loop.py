@@ -14,7 +14,7 @@ from roadgpt.drive.drive import COLUMNS, Columns, Drive, Ended, FloatArray
 from roadgpt.drive.drive_monitor import STUCK_WAY, DriveMonitor
 from roadgpt.drive.driver_guard import DriverGuard
 from roadgpt.drive.marking_monitor import POSE
-from roadgpt.drive.passages import Outlook
+from roadgpt.drive.outlook import Outlook
 from roadgpt.drive.simulators.beamng.loaded_road import LoadedRoad
 from roadgpt.drive.simulators.beamng.tracking import LOCK, CarSample, RoadTracker, interpolate_samples
 from roadgpt.drive.view import View

@@ -8,7 +8,7 @@ import numpy as np
 
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
-from roadgpt.drive.passages import route_of
+from roadgpt.drive.outlook import route_of
 from roadgpt.drive.sampled_road import BANK, GRADE, SampledRoad, sample_road, stations_of
 from roadgpt.drive.simulators.mujoco import bridge
 from roadgpt.drive.simulators.mujoco.car import ETK_LIKE, Car, tables

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 from roadgpt.export.exporters.beamng.roads import GOAL, OWN, LevelRoad, Strip
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.geometry.curve import Array
 from roadgpt.road import World
+from roadgpt.road.profile import DASH, GAP
 
 Item = dict[str, Any]
 

@@ -11,12 +11,12 @@ from roadgpt.export.edges import line, normals, stations
 from roadgpt.export.ego import goal_of, on_the_ground, start_of
 from roadgpt.export.embankments import Embankment, embankments
 from roadgpt.export.exporters.gltf.container import TriangleMesh
-from roadgpt.export.exporters.opendrive.lanes import DASH, GAP
 from roadgpt.export.painted_lines import named_lines
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import FAR, Land
+from roadgpt.road.profile import DASH, GAP
 
 THICKNESS = 0.5  # m, of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution

@@ -13,9 +13,8 @@ from roadgpt.export.exporters.opendrive.heights import elevations, level_height,
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
-from roadgpt.road.profile import LINE, Lane, Marking, Profile, Width
+from roadgpt.road.profile import DASH, GAP, LINE, Lane, Marking, Profile, Width
 
-DASH, GAP = 4.0, 8.0  # m, middle line outside of towns (Germany, RMS-1)
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 

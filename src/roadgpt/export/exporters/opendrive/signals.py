@@ -4,18 +4,15 @@ Source: ASAM OpenDRIVE 1.8.1, signals; its catalogue of signals gives type 10000
 are those of the German road traffic regulations (StVO): 205 give way, 206 stop, 306 priority road.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from roadgpt.export.markup import XmlElement
-from roadgpt.geometry import CubicProfile
 from roadgpt.network import Arm, Network
-from roadgpt.road.profile import Lane
+from roadgpt.network.building import width_at
+from roadgpt.network.markings import place_of_sign
+from roadgpt.network.passages import STOP_LINE
 
-BEFORE = 1.0  # m, from a sign to the junction
-STOP_LINE = 0.5  # m, width of a stop line (Germany, RMS-1)
-GIVE_WAY_LINE = 0.5  # m, width of a give-way line (Germany, RMS-1)
-BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
 TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
 NAMES = {
     "stop": "stop sign",
@@ -89,9 +86,7 @@ class Signals:
         control, end = signal.arm.control, signal.arm.end
         member = self.network.road(end.road)
         at_end = end.contact == "end"
-        s = max(member.road.length - BEFORE, 0.0) if at_end else min(BEFORE, member.road.length)
-        rim = _width(member.profile.right if at_end else member.profile.left, s)
-        t = -rim - BESIDE if at_end else rim + BESIDE
+        s, t = place_of_sign(member, end.contact)
         height, width = SIZES[control]
         made = XmlElement(
             "signal",
@@ -123,11 +118,12 @@ class Signals:
         end = signal.arm.end
         member = self.network.road(end.road)
         at_end = end.contact == "end"
-        width = GIVE_WAY_LINE if signal.arm.control == "yield" else STOP_LINE
-        s = max(member.road.length - width / 2, 0.0) if at_end else min(width / 2, member.road.length)
+        half = min(STOP_LINE / 2, member.road.length)
+        s = member.road.length - half if at_end else half
         forward, backward = member.profile.count
         profile = member.profile
-        width_in = _width(profile.right[:forward] if at_end else profile.left[:backward], s)
+        lanes = profile.right[:forward] if at_end else profile.left[:backward]
+        width_in = sum(width_at(lane.width, s) for lane in lanes)
         outer = -width_in if at_end else width_in
         yield XmlElement(
             "object",
@@ -141,15 +137,9 @@ class Signals:
                 "zOffset": 0.0,
                 "hdg": 0.0,
                 "orientation": "+" if at_end else "-",
-                "length": width,
+                "length": STOP_LINE,
                 "width": abs(outer),
                 "height": 0.01,
                 "dynamic": "no",
             },
         )
-
-
-def _width(lanes: Sequence[Lane], s: float) -> float:
-    """Returns the width in metres of some lanes together at a station."""
-    widths = [lane.width for lane in lanes]
-    return sum(float(each.height(s)) if isinstance(each, CubicProfile) else each for each in widths)

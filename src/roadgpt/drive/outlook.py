@@ -1,0 +1,72 @@
+"""Tells a driver of a route which junctions lie ahead, and which lanes are beside its own."""
+
+from bisect import bisect_right
+from typing import TYPE_CHECKING
+
+from roadgpt.drive.view import JunctionAhead
+from roadgpt.geometry import wrap_angle
+from roadgpt.network import Leg, Passage, Route
+
+if TYPE_CHECKING:
+    from roadgpt.road import Road, World
+
+
+def route_of(road: "Road") -> Route | None:
+    """Returns the road if it is a route through a network, otherwise None."""
+    return road if isinstance(road, Route) else None
+
+
+def passages(road: "Road") -> tuple[Passage, ...]:
+    """Returns the ways of a route through its junctions in driving order; nothing for a single road."""
+    route = route_of(road)
+    return () if route is None else route.passages
+
+
+class Outlook:
+    """What a driver sees of its route at each station: the junctions ahead, and the lanes beside its own."""
+
+    def __init__(self, road: "Road", world: "World") -> None:
+        """Prepares the junctions and the lanes of a road or a route."""
+        self._route = route_of(road)
+        self._passages = passages(road)
+        self._ends = [each.end for each in self._passages]
+        self._turns = [
+            float(wrap_angle(road.heading(each.end) - road.heading(each.start))) for each in self._passages
+        ]
+        self._starts, self._beside = [0.0], [_beside_on_road(road, world)]
+        if self._route is not None:
+            self._starts = list(self._route.starts[:-1])
+            self._beside = [_beside_on_leg(self._route, leg) for leg in self._route.legs]
+        self._plain = (self._route, (), *self._beside[0])
+
+    def at(self, s: float) -> tuple[Route | None, tuple[JunctionAhead, ...], int, int]:
+        """Returns the last four fields of a View at station ``s``: route, junctions, lanes left and right."""
+        if self._route is None:
+            return self._plain
+        first = bisect_right(self._ends, s)
+        ahead = tuple(
+            JunctionAhead(
+                max(each.start - s, 0.0),
+                each.entered.kind,
+                turn,
+                each.exit,
+                each.control,
+                each.end - max(each.start, s),
+            )
+            for each, turn in zip(self._passages[first:], self._turns[first:], strict=True)
+        )
+        return self._route, ahead, *self._beside[max(bisect_right(self._starts, s) - 1, 0)]
+
+
+def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:
+    """Returns the number of driving lanes to the left and to the right of the driven lane."""
+    profile = world.profile_of(road)
+    forward, backward = profile.count
+    return profile.driven + backward, forward - 1 - profile.driven
+
+
+def _beside_on_leg(route: Route, leg: Leg) -> tuple[int, int]:
+    forward, backward = route.network.road(leg.road).profile.count
+    own, oncoming = (forward, backward) if leg.lane < 0 else (backward, forward)
+    number = abs(leg.lane)
+    return number - 1 + oncoming, own - number

@@ -1,0 +1,79 @@
+"""Lists the ways of a route through junctions. A roundabout, which has several junctions, is passed once."""
+
+from itertools import groupby
+from typing import TYPE_CHECKING, NamedTuple
+
+from roadgpt.brief.junctions import Control
+from roadgpt.network.network import Junction, Leg, RoadEnd
+
+if TYPE_CHECKING:
+    from roadgpt.network.route import Route
+
+STOP_LINE = 0.5  # m, width of a stop line, which ends where the junction begins (Germany, RMS-1)
+
+
+class Passage(NamedTuple):
+    """The way of a route through one junction or one roundabout."""
+
+    start: float
+    """Station in metres at which the route enters it."""
+    end: float
+    """Station in metres at which the route leaves it."""
+    entered: Junction
+    """The junction, or that of the roundabout's junctions at which the route enters it."""
+    arrival: RoadEnd
+    """The end of the road on which the route arrives."""
+    departure: RoadEnd
+    """The end of the road on which it goes on."""
+    arms: tuple[RoadEnd, ...]
+    """The ends of all roads that meet there, counter-clockwise from the road of arrival."""
+
+    @property
+    def exit(self) -> int:
+        """Number of the road of departure, counted counter-clockwise from the road of arrival."""
+        return self.arms.index(self.departure) or len(self.arms)
+
+    @property
+    def stop_line(self) -> float | None:
+        """Station in metres of the stop line of a stop sign; None if there is no stop sign."""
+        return self.start - STOP_LINE if self.control == "stop" else None
+
+    @property
+    def control(self) -> Control:
+        """The sign or the light that the route meets."""
+        return next(arm.control for arm in self.entered.arms if arm.end == self.arrival)
+
+
+def passages_of(route: "Route") -> tuple[Passage, ...]:
+    """Returns the ways of a route through its junctions, in driving order."""
+    groups = groupby(range(len(route.legs)), key=lambda n: _place(route, route.legs[n]))
+    return tuple(_passage(route, list(group)) for place, group in groups if place is not None)
+
+
+def _place(route: "Route", leg: Leg) -> tuple[str, int] | None:
+    """Returns what tells the junction or roundabout of a leg apart from others; None outside junctions."""
+    ring = route.network.roundabout_of.get(leg.road)
+    if ring is not None:
+        return "roundabout", ring.junctions[0]
+    junction = route.network.road(leg.road).junction
+    return None if junction is None else ("junction", junction)
+
+
+def _passage(route: "Route", inside: list[int]) -> Passage:
+    """Returns the way through a junction or roundabout; ``inside`` are the indices of its legs."""
+    network = route.network
+    entered, first = network.connection_of[route.legs[inside[0]].road]
+    last = network.connection_of[route.legs[inside[-1]].road][1]
+    ring = network.roundabout_of.get(entered.id)
+    # the first arm of each junction of a roundabout is the one that is no part of the ring
+    arms = entered.arms if ring is None else [network.junction(each).arms[0] for each in ring.junctions]
+    ends = [arm.end for arm in arms]
+    at = ends.index(first.incoming)
+    return Passage(
+        route.starts[inside[0]],
+        route.starts[inside[-1] + 1],
+        entered,
+        first.incoming,
+        last.outgoing,
+        (*ends[at:], *ends[:at]),
+    )
