@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from roadgpt.brief import read, sentence
 from roadgpt.brief.amount import Amount, at_least, between, exactly
 from roadgpt.brief.feasible import check
-from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Take, Way
+from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Side, Take, Way
 from roadgpt.brief.model import Brief, Clause
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
@@ -30,6 +30,11 @@ JUNCTIONS = st.builds(
     skew=st.booleans(),
     size=st.none() | st.sampled_from(get_args(IslandSize)),
     radius=st.none() | AMOUNTS,
+    lanes=st.none() | AMOUNTS,
+    side=st.none() | st.sampled_from(get_args(Side)),
+    length=st.none() | AMOUNTS,
+    all_way=st.booleans(),
+    crosswalk=st.booleans(),
 )
 ROADS = st.sampled_from(
     [
@@ -37,6 +42,8 @@ ROADS = st.sampled_from(
         Brief(slope="up"),
         Brief(clauses=(Clause(kind="turn", side="left", degrees=exactly(90)), Clause(kind="straight"))),
         Brief(turns=exactly(3), length=exactly(120)),
+        Brief(lanes=exactly(2), against=exactly(0)),
+        Brief(lanes=at_least(2), against=exactly(2), divided=True, centre="double", motorway=True),
     ]
 )
 
@@ -45,8 +52,8 @@ ROADS = st.sampled_from(
 def routes(draw: st.DrawFn) -> Brief:
     junctions = draw(st.lists(JUNCTIONS, min_size=1, max_size=4))
     stretches = draw(st.lists(ROADS, min_size=len(junctions) + 1, max_size=len(junctions) + 1))
-    length = draw(st.none() | AMOUNTS)
-    return Brief(junctions=tuple(junctions), stretches=tuple(stretches), length=length)
+    length, left_hand = draw(st.none() | AMOUNTS), draw(st.booleans())
+    return Brief(junctions=tuple(junctions), stretches=tuple(stretches), length=length, left_hand=left_hand)
 
 
 @given(routes())
@@ -87,7 +94,7 @@ def test_the_roads_of_a_route_are_plans_of_their_own() -> None:
         ("// t_junction left right //", "gives take of a junction twice"),
         ("// roundabout exit=third //", "is not a number in a plan"),
         ("// crossroads ways=up+down //", "ways are left or right or straight"),
-        ("// t_junction // || up", "only len and beside can be asked of a whole route"),
+        ("// t_junction // || up", "only len and left_hand and beside can be asked"),
         ("// t_junction // || hurry", "no word 'hurry'"),
         ("// t_junction // straigt", "no clause 'straigt'"),
     ],

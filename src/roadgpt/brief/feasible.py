@@ -5,7 +5,7 @@ change.
 from math import inf
 from typing import NamedTuple
 
-from roadgpt.brief.junction_check import check_junction, check_turning_back
+from roadgpt.brief.junction_check import check_junction, check_lanes, check_map, check_turning_back
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
@@ -77,6 +77,10 @@ def check(
         for stretch in brief.stretches:
             check(stretch, None, min_radius, max_grade, road_width)
         return
+    if brief.map is not None:
+        check_map(brief.map)
+        return
+    check_lanes(brief)
     _counts(brief)
     _limits_of_every_turn(brief)
     brief = normal(brief)

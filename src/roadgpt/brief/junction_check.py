@@ -3,7 +3,16 @@
 from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, JunctionKind, Way
+from roadgpt.brief.junctions import (
+    ARMS,
+    LANE_KINDS,
+    RAMPS,
+    SIZES,
+    JunctionClause,
+    JunctionKind,
+    Way,
+)
+from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import BriefError
 
@@ -14,8 +23,16 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "t_junction": ("left", "right", "straight"),
     "y_junction": ("left", "right"),
     "crossroads": ("left", "right", "straight"),
+    "merge": ("ramp", "main"),
+    "diverge": ("ramp", "main"),
+    "lane_drop": (),
+    "lane_gain": (),
+    "lane_change": ("left", "right"),
 }
 """The ways on that a kind of junction has; every way on is possible at the others."""
+MOST_LANES = 4  # in one direction
+MOST_BLOCKS = 8
+MOST_OF_KIND = 12
 CIRCULATORY = 10.0  # m, by which the outer diameter of a roundabout exceeds that of its island, about
 
 
@@ -27,6 +44,8 @@ def check_junction(junction: JunctionClause) -> None:
     """
     name, possible = junction.name, ARMS[junction.kind]
     is_ring = junction.kind == "roundabout"
+    if junction.kind in (*RAMPS, *LANE_KINDS):
+        _check_fields_of_lanes(junction)
     arms = overlap(possible, span(junction.arms))
     if arms is None or arms.lo > arms.hi:
         raise BriefError(f"a {name} has {possible} arms, not {junction.arms}; change one of them")
@@ -34,11 +53,19 @@ def check_junction(junction: JunctionClause) -> None:
         raise BriefError(f"at a {name}, a direction and an exit number are given; leave one of them out")
     _check_take(junction, name)
     if not is_ring:
-        for field in ("size", "radius", "exit"):
+        for field in ("size", "radius", "exit", "lanes"):
             if getattr(junction, field) is not None:
                 raise BriefError(f"a {name} has no {field}, only a roundabout has; leave it out")
     elif junction.exit is not None:
         _check_exit(junction.exit, arms)
+    if not _meets(junction.lanes, Range(1, 2)):
+        raise BriefError(f"the ring of a roundabout has one or two lanes, not {junction.lanes}; change it")
+    if (junction.side or junction.length) and junction.kind not in (*RAMPS, *LANE_KINDS):
+        raise BriefError(
+            f"a {name} has no side and no length; give the length with the road before or behind it"
+        )
+    if junction.all_way and junction.control not in ("stop", "yield", "lights"):
+        raise BriefError("all arms have the same sign or light: give stop or lights beside all_way")
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
     if junction.size is not None and junction.radius is not None:
@@ -50,6 +77,22 @@ def check_junction(junction: JunctionClause) -> None:
                 f"a {junction.size} roundabout is {SIZES[junction.size]} m wide; with a radius of "
                 f"{junction.radius} m it is not; leave one of them out"
             )
+
+
+OF_LANES = ("kind", "take", "side", "length")
+"""The fields that merges, exits and places where lanes change can have."""
+
+
+def _check_fields_of_lanes(junction: JunctionClause) -> None:
+    """Raises BriefError if a merge, an exit, or a place where lanes change has what only junctions have."""
+    usual = JunctionClause(kind=junction.kind)
+    for field in JunctionClause.model_fields:
+        if field not in OF_LANES and getattr(junction, field) != getattr(usual, field):
+            raise BriefError(f"a {junction.name} has no {field.replace('_', ' ')}; leave it out")
+    if junction.kind == "lane_change" and (junction.side or junction.length):
+        raise BriefError(
+            "a lane change goes left or right, and its length is not asked for; leave side and len out"
+        )
 
 
 def check_turning_back(brief: "Brief") -> None:
@@ -71,8 +114,11 @@ def _check_take(junction: JunctionClause, name: str) -> None:
     possible = POSSIBLE.get(junction.kind)
     if take == "back" and junction.kind != "roundabout":
         raise BriefError(f"one cannot turn back at a {name}, only at a roundabout; leave it out")
+    if take in ("ramp", "main") and junction.kind not in RAMPS:
+        raise BriefError(f"a {name} has no ramp, only a merge or an exit has; leave '{take}' out")
     if take is not None and possible is not None and take not in (*possible, "back"):
-        raise BriefError(f"at a {name} one can go {' or '.join(possible)}, not {take}; change one of them")
+        where = f"at a {name} one can go {' or '.join(possible)}" if possible else f"a {name} has no ways on"
+        raise BriefError(f"{where}, not {take}; change one of them")
     if not ways:
         return
     arms = ARMS[junction.kind]
@@ -81,6 +127,43 @@ def _check_take(junction: JunctionClause, name: str) -> None:
         raise BriefError(f"a {name} has {needed} different ways on, other than {' and '.join(ways)}")
     if take in ("left", "right", "straight") and take not in ways:
         raise BriefError(f"a {name} with ways on {_said(ways)} has none {take}; change one of them")
+
+
+def check_lanes(brief: "Brief") -> None:
+    """Checks the lanes that a Brief requires of a road.
+
+    Raises:
+        BriefError: A road cannot have them; the message says what to change.
+    """
+    if not _meets(brief.lanes, Range(1, MOST_LANES)):
+        raise BriefError(
+            f"a road has 1 to {MOST_LANES} lanes in each direction, not {brief.lanes}; change it"
+        )
+    if not _meets(brief.against, Range(0, MOST_LANES)):
+        raise BriefError(f"a road has 0 to {MOST_LANES} oncoming lanes, not {brief.against}; change it")
+    if brief.against is not None and span(brief.against).hi == 0 and (brief.divided or brief.centre):
+        raise BriefError("a one-way road has no oncoming lanes, so leave its median or centre line out")
+
+
+def check_map(asked: MapClause) -> None:
+    """Checks the map of roads that a Brief requires.
+
+    Raises:
+        BriefError: No such map can be built; the message says what to change.
+    """
+    for blocks in (asked.columns, asked.rows):
+        if not _meets(blocks, Range(1, MOST_BLOCKS)):
+            raise BriefError(f"a grid has 1 to {MOST_BLOCKS} blocks a side, not {blocks}; change it")
+    for each in asked.junctions:
+        if not _meets(each.count, Range(1, MOST_OF_KIND)):
+            raise BriefError(
+                f"a map has 1 to {MOST_OF_KIND} junctions of one kind, not {each.count}; change it"
+            )
+
+
+def _meets(amount: Amount | None, possible: Range) -> bool:
+    both = overlap(possible, span(amount))
+    return both is not None and both.lo <= both.hi
 
 
 def _said(ways: tuple[Way, ...]) -> str:

@@ -10,7 +10,8 @@ from typing import get_args
 
 from pydantic import ValidationError
 
-from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Take, Way
+from roadgpt.brief.amount import Amount
+from roadgpt.brief.junctions import Control, IslandSize, JunctionClause, JunctionKind, Side, Take, Way
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
@@ -22,23 +23,31 @@ WORDS = {
     **dict.fromkeys(get_args(IslandSize), "size"),
     **dict.fromkeys(get_args(Control), "control"),
 }
-KEYS = ("exit", "arms", "radius")
-SHORT = {"radius": "r"}
+KEYS = ("exit", "arms", "radius", "lanes", "length")
+SHORT = {"radius": "r", "length": "len"}
 LONG = {short: name for name, short in SHORT.items()}
 WAYS = "ways="
-SKEW = "skew"
+SIDE = "side="
+DIAMETER = "d"
+FLAGS = ("skew", "all_way", "crosswalk")
 
 
 def junction_plan(junction: JunctionClause) -> str:
     """Returns a junction as part of a plan, such as "crossroads left lights"."""
     words: list[str] = [junction.kind]
     words += [value for name in ("take", "size", "control") if (value := getattr(junction, name))]
-    words += [SKEW] if junction.skew else []
+    words += [flag for flag in FLAGS if getattr(junction, flag)]
+    words += [f"{SIDE}{junction.side}"] if junction.side else []
     words += [f"{WAYS}{'+'.join(junction.ways)}"] if junction.ways else []
     for name in KEYS:
         if (amount := getattr(junction, name)) is not None:
             words.append(f"{SHORT.get(name, name)}={amount_text(amount)}")
     return " ".join(words)
+
+
+def _half(amount: Amount) -> Amount:
+    lo, hi = (None if bound is None else bound / 2 for bound in (amount.lo, amount.hi))
+    return Amount(lo=lo, hi=hi)
 
 
 def is_junction(text: str) -> bool:
@@ -59,14 +68,18 @@ def read_junction(text: str) -> JunctionClause:
         name = LONG.get(key, key)
         if equals and name in KEYS:
             found: tuple[str, object] = (name, read_amount(value))
+        elif equals and key == DIAMETER:
+            found = ("radius", _half(read_amount(value)))
         elif word.startswith(WAYS):
             found = ("ways", tuple(value.split("+")))
-        elif word == SKEW:
-            found = (SKEW, True)
+        elif word.startswith(SIDE):
+            found = ("side", value)
+        elif word in FLAGS:
+            found = (word, True)
         elif word in WORDS:
             found = (WORDS[word], word)
         else:
-            known = ", ".join(sorted((*WORDS, SKEW, *(f"{SHORT.get(k, k)}=" for k in KEYS), WAYS)))
+            known = ", ".join(sorted((*WORDS, *FLAGS, *(f"{SHORT.get(k, k)}=" for k in KEYS), SIDE, WAYS)))
             raise BriefError(f"a plan has no word '{word[:40]}' for a junction; there are {known}")
         if found[0] in fields:
             raise BriefError(f"a plan gives {found[0]} of a junction twice: '{word[:40]}'; give it once")
@@ -74,7 +87,8 @@ def read_junction(text: str) -> JunctionClause:
     try:
         return JunctionClause.model_validate(fields)
     except ValidationError as error:
-        ways = " or ".join(get_args(Way))
+        ways, sides = (" or ".join(get_args(words)) for words in (Way, Side))
         raise BriefError(
-            f"the junction '{text.strip()[:60]}' in a plan cannot be read; ways are {ways}, joined by +"
+            f"the junction '{text.strip()[:60]}' in a plan cannot be read; ways are {ways}, joined by +, and "
+            f"a side is {sides}"
         ) from error

@@ -1,7 +1,7 @@
 """Writes the requirements of a junction as plain English."""
 
 from roadgpt.brief.amount import Amount
-from roadgpt.brief.junctions import CONTROLS, ORDINALS, TAKES, JunctionClause
+from roadgpt.brief.junctions import CONTROLS, LANE_KINDS, ORDINALS, TAKES, JunctionClause
 
 
 def junction_text(junction: JunctionClause) -> str:
@@ -17,12 +17,24 @@ def junction_text(junction: JunctionClause) -> str:
         place.append(f"whose island has a radius of {junction.radius} metres")
     if junction.ways:
         place.append(f"with ways on {_listed(junction.ways)}")
+    if junction.lanes is not None:
+        place.append(f"with {junction.lanes} lanes around it")
+    if junction.side is not None:
+        place.append(f"on the {junction.side}")
+    if junction.length is not None:
+        place.append(f"{junction.length} metres long")
     if junction.control is not None:
         place.append(CONTROLS[junction.control])
+    if junction.all_way:
+        place.append("at every arm")
+    if junction.crosswalk:
+        place.append("with a crosswalk")
     return f"{' '.join(place)} {_way_on(junction)}".strip()
 
 
 def _way_on(junction: JunctionClause) -> str:
+    if junction.kind in LANE_KINDS:
+        return f"to the {junction.take}" if junction.take else ""
     if junction.exit is not None:
         return f"take {exit_text(junction.exit)}"
     return TAKES[junction.take] if junction.take is not None else "go on somewhere"

@@ -1,15 +1,46 @@
-"""Defines what a description can ask of a junction on the route, and what its words mean."""
+"""Defines what a description can ask of a junction on the route, and what its words mean.
+
+Merges, exits of motorways, and places where lanes end, begin or are changed stand in one order with them.
+"""
 
 from collections.abc import Mapping
-from typing import Literal
+from typing import Literal, get_args
+
+from pydantic import field_validator
 
 from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.words import Range
 
-JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"]
-Take = Literal[
-    "left", "right", "straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right"
+JunctionKind = Literal[
+    "t_junction",
+    "y_junction",
+    "crossroads",
+    "star",
+    "roundabout",
+    "junction",
+    "merge",
+    "diverge",
+    "lane_drop",
+    "lane_gain",
+    "lane_change",
 ]
+LaneKind = Literal["lane_drop", "lane_gain", "lane_change"]
+RAMPS: tuple[JunctionKind, ...] = ("merge", "diverge")
+LANE_KINDS: tuple[JunctionKind, ...] = get_args(LaneKind)
+"""The kinds that are no junctions: the road goes on with other lanes, or the route changes its lane."""
+Take = Literal[
+    "left",
+    "right",
+    "straight",
+    "back",
+    "sharp_left",
+    "sharp_right",
+    "slight_left",
+    "slight_right",
+    "ramp",
+    "main",
+]
+Side = Literal["left", "right"]
 Way = Literal["left", "right", "straight"]
 Control = Literal["priority", "yield", "stop", "lights", "none"]
 IslandSize = Literal["mini", "normal", "large"]
@@ -21,6 +52,11 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
     "star": ("star junction", "five-way junction"),
     "roundabout": ("roundabout", "traffic circle"),
     "junction": ("junction",),
+    "merge": ("merge", "motorway entry"),
+    "diverge": ("motorway exit", "off-ramp"),
+    "lane_drop": ("lane drop", "end of a lane"),
+    "lane_gain": ("lane gain", "additional lane"),
+    "lane_change": ("lane change",),
 }
 """The English words for each kind; RoadGPT's own texts use the first one.
 
@@ -33,6 +69,9 @@ ARMS: Mapping[JunctionKind, Range] = {
     "star": Range(5, 6),
     "roundabout": Range(3, 5),
     "junction": Range(3, 6),
+    "merge": Range(3, 3),
+    "diverge": Range(3, 3),
+    **dict.fromkeys(LANE_KINDS, Range(2, 2)),
 }
 """The number of arms of each kind, with the road on which the route arrives."""
 SIZES: Mapping[IslandSize, Range] = {
@@ -55,6 +94,8 @@ TAKES: Mapping[Take, str] = {
     "sharp_right": "take the sharpest right",
     "slight_left": "bear slightly left",
     "slight_right": "bear slightly right",
+    "ramp": "use the ramp",
+    "main": "stay on the main road",
 }
 CONTROLS: Mapping[Control, str] = {
     "priority": "where the route has priority",
@@ -90,6 +131,20 @@ class JunctionClause(Frozen):
     """The size of a roundabout, if the description gives a word."""
     radius: Amount | None = None
     """The radius of the central island of a roundabout in metres."""
+    lanes: Amount | None = None
+    """The number of lanes of a roundabout's ring."""
+    side: Side | None = None
+    """The side of the ramp of a merge or an exit, or of the lane that ends or begins."""
+    length: Amount | None = None
+    """The length in metres of the lane for acceleration or deceleration, or of the taper of a lane."""
+    all_way: bool = False
+    """Whether every arm has the sign or the light of the route."""
+    crosswalk: bool = False
+
+    @field_validator("ways")
+    @classmethod
+    def _sorted(cls, ways: tuple[Way, ...]) -> tuple[Way, ...]:
+        return tuple(sorted(ways, key=get_args(Way).index))
 
     @property
     def name(self) -> str:

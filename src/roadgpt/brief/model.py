@@ -10,6 +10,7 @@ from pydantic import AfterValidator, Field, model_validator
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.map_clause import MapClause
 
 __all__ = [
     "OTHER_SIDE",
@@ -36,6 +37,7 @@ Side = Literal["left", "right"]
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]
+CentreLine = Literal["solid", "broken", "double", "none"]
 Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
 Kind = Literal[
     "straight",
@@ -143,6 +145,18 @@ class Brief(Frozen):
     """
     stretches: "tuple[Brief, ...]" = ()
     """The roads before, between and after the junctions; one more than there are junctions."""
+    lanes: Amount | None = None
+    """The number of lanes in the direction of the drive."""
+    against: Amount | None = None
+    """The number of oncoming lanes; 0 for a one-way road."""
+    divided: bool = False
+    """Whether a median separates the directions."""
+    centre: CentreLine | None = None
+    """The line between the directions: "solid" forbids overtaking."""
+    left_hand: bool = False
+    """Whether traffic drives on the left."""
+    map: MapClause | None = None
+    """The map of roads that is required instead of one road; then no other requirement is given."""
     other: str = ""
     """The plan of the second likeliest reading, if the reader is not sure of this one; otherwise empty."""
 

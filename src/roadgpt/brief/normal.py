@@ -33,6 +33,8 @@ SHAPED: frozenset[Kind] = frozenset({"turn", "s_bend", "winding", "serpentine", 
 """The kinds of turns whose sharpness is not fixed by their kind."""
 MOST_SINGLE = 60
 MOST_STEPS = 8  # one step may enable another; contradictory Briefs need the most steps
+UNSAID = {"words": "", "unused": (), "confidence": 1.0, "other": ""}
+"""The fields of a Brief that require nothing."""
 PLAIN: dict[Slope, Slope] = {
     "steeply_up": "up",
     "steeply_down": "down",
@@ -43,6 +45,9 @@ PLAIN: dict[Slope, Slope] = {
 
 def normal(brief: Brief) -> Brief:
     """Returns the normal form of a Brief; a Brief in normal form is returned unchanged."""
+    if brief.junctions or brief.map is not None:
+        stretches = tuple(map(_normal_stretch, brief.stretches))
+        return brief.model_copy(update={**UNSAID, "stretches": stretches})
     before, after = brief, _simpler(brief)
     for _ in range(MOST_STEPS):
         if after == before:
@@ -51,10 +56,17 @@ def normal(brief: Brief) -> Brief:
     return after
 
 
+def _normal_stretch(brief: Brief) -> Brief:
+    """Returns the normal form of the requirements for a road of a route, which needs no turn."""
+    if brief.clauses or brief.turns is not None:
+        return normal(brief)
+    return normal(brief).model_copy(update={"turns": None})
+
+
 def _simpler(brief: Brief) -> Brief:
     clauses = [one for clause in brief.clauses for one in _singles(_plain(clause))]
     whole = _plain_slope(_without_empty_bounds(brief))
-    whole = whole.model_copy(update={"words": "", "unused": (), "confidence": 1.0, "other": ""})
+    whole = whole.model_copy(update=UNSAID)
     whole, clauses = _ends(whole, clauses)
     whole, clauses = _turns_as_clause(whole, clauses)
     whole, clauses = _sided(whole, clauses)

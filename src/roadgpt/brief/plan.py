@@ -13,8 +13,10 @@ from typing import TypeVar, get_args
 
 from pydantic import ValidationError
 
+from roadgpt.brief.halfway import without_halfway
 from roadgpt.brief.junction_plan import BETWEEN, WHOLE, is_junction, junction_plan, read_junction
-from roadgpt.brief.model import Amount, Brief, Clause, Kind
+from roadgpt.brief.map_clause import is_map, map_plan, read_map
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Kind, exactly
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import BriefError
@@ -29,7 +31,10 @@ WORDS = {
 }
 BARE = dict.fromkeys(("straight", "crest", "dip"), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
-FLAGS = ("alternating", "hard", "motorway")
+FLAGS = ("alternating", "hard", "motorway", "divided", "left_hand")
+ONE_WAY = "oneway"
+NO_LANE = exactly(0)
+CENTRE = "centre="
 KEYS = {"deg": "degrees", "r": "radius", "len": "length", "pct": "incline"}
 ROAD_KEYS = {
     "turns": "turns",
@@ -39,6 +44,8 @@ ROAD_KEYS = {
     "steepest": "steepest",
     "climb": "climb",
     "hills": "hills",
+    "lanes": "lanes",
+    "against": "against",
     **KEYS,
 }
 PLACES = ("starts", "ends")
@@ -51,6 +58,8 @@ def plan(brief: Brief) -> str:
     """Returns the plan of a Brief, without ``words``, ``unused``, ``confidence`` and ``other``."""
     if brief.junctions:
         return _network_plan(brief)
+    if brief.map is not None:
+        return _with_whole(map_plan(brief.map), _wishes(brief))
     wishes = _wishes(brief)
     line = "; ".join(_clause(clause) for clause in brief.clauses)
     return f"{line} | {' '.join(wishes)}".strip() if wishes else line
@@ -59,12 +68,16 @@ def plan(brief: Brief) -> str:
 def _wishes(brief: Brief) -> list[str]:
     """Returns the requirements for the whole road as parts of a plan."""
     wishes = _mods(brief, ROAD_KEYS)
+    if brief.against == NO_LANE:
+        wishes[wishes.index("against=0")] = ONE_WAY
     for place in PLACES:
         clause = getattr(brief, place)
         if clause:
             wishes.append(f"{place}({_clause(clause)})")
     if brief.beside:
         wishes.append(f"beside({', '.join(brief.beside)})")
+    if brief.centre is not None:
+        wishes.append(f"{CENTRE}{brief.centre}")
     return wishes
 
 
@@ -73,7 +86,10 @@ def _network_plan(brief: Brief) -> str:
     for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
         parts += [junction_plan(junction), plan(stretch)]
     line = f" {BETWEEN} ".join(part for part in parts if part)
-    wishes = _wishes(brief)
+    return _with_whole(line, _wishes(brief))
+
+
+def _with_whole(line: str, wishes: list[str]) -> str:
     return f"{line} {WHOLE} {' '.join(wishes)}" if wishes else line
 
 
@@ -102,7 +118,9 @@ def read_plan(line: str) -> Brief:
     if line.lstrip().startswith("!"):
         raise refused(line)
     if BETWEEN in line or is_junction(line):
-        return _read_network(line)
+        return _read_network(without_halfway(line))
+    if is_map(line):
+        return _read_map(line)
     clauses, _, wishes = line.partition("|")
     fields: dict[str, object] = {
         "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
@@ -133,19 +151,30 @@ def _read_network(line: str) -> Brief:
             roads[-1] = part
     if not junctions:
         raise BriefError(f"a plan with {BETWEEN} needs a junction, such as crossroads left")
-    asked = read_plan(f"| {whole}") if whole.strip() else Brief()
-    if asked != Brief(length=asked.length, beside=asked.beside):
-        raise BriefError(
-            f"only len and beside can be asked of a whole route, after {WHOLE}; what holds for one of its "
-            "roads stands with this road, after |"
-        )
     fields: dict[str, object] = {
         "junctions": tuple(map(read_junction, junctions)),
         "stretches": tuple(map(read_plan, roads)),
-        "length": asked.length,
-        "beside": asked.beside,
+        **_read_whole(whole, ("length", "left_hand", "beside")),
     }
     return _made(Brief, fields, line)
+
+
+def _read_map(line: str) -> Brief:
+    """Returns the Brief of a plan that asks for a map."""
+    roads, _, whole = line.partition(WHOLE)
+    return _made(Brief, {"map": read_map(roads), **_read_whole(whole, ("left_hand", "beside"))}, line)
+
+
+def _read_whole(text: str, names: tuple[str, ...]) -> dict[str, object]:
+    """Returns the fields of a Brief that are asked of a whole route or map; only those with these names."""
+    asked = read_plan(f"| {text}") if text.strip() else Brief()
+    fields = {name: getattr(asked, name) for name in names}
+    if asked != Brief.model_validate(fields):
+        known = " and ".join("len" if name == "length" else name for name in names)
+        raise BriefError(
+            f"after {WHOLE}, only {known} can be asked; what holds for one road stands with it, after |"
+        )
+    return fields
 
 
 def _read_clause(text: str) -> Clause:
@@ -173,6 +202,10 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
         _set(fields, keys[key], read_amount(value))
     elif word in FLAGS:
         _set(fields, word, True)
+    elif word == ONE_WAY and keys is ROAD_KEYS:
+        _set(fields, "against", NO_LANE)
+    elif word.startswith(CENTRE) and keys is ROAD_KEYS and value in get_args(CentreLine):
+        _set(fields, "centre", value)
     elif word in WORDS:
         _set(fields, WORDS[word], word)
     else:

@@ -1,10 +1,18 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
 from roadgpt.brief.junction_sentence import junction_text
-from roadgpt.brief.model import Amount, Brief, Clause, Slope, at_least, exactly
+from roadgpt.brief.junctions import CONTROLS, NAMES
+from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
 
+CENTRES: dict[CentreLine, str] = {
+    "solid": "a solid centre line",
+    "broken": "a broken centre line",
+    "double": "a double centre line",
+    "none": "no centre line",
+}
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
 """The kinds whose name covers all their turns, so that a count is the number of turns."""
 
@@ -13,6 +21,8 @@ def sentence(brief: Brief) -> str:
     """Returns a sentence that states the requirements of a Brief, such as 'An uphill road with 3 turns.'"""
     if brief.junctions:
         return _route_sentence(brief)
+    if brief.map is not None:
+        return _map_sentence(brief.map, brief)
     said = normal(brief)
     road = _joined(_exact_metres(said.length), _slope(said), "motorway" if said.motorway else "road")
     if said.clauses:
@@ -33,6 +43,18 @@ def _route_sentence(brief: Brief) -> str:
     parts = [part for part in parts if part and not part.endswith("long in all")] + [whole] * bool(whole)
     text = ", then ".join(parts[: len(parts)])
     return text[0].upper() + text[1:] + "."
+
+
+def _map_sentence(asked: MapClause, brief: Brief) -> str:
+    """Returns a sentence about a map of roads."""
+    if asked.junctions:
+        kinds = [_counted(each.count, NAMES[each.kind][0]) for each in asked.junctions]
+        text = f"A map with {' and '.join(kinds)}"
+    else:
+        text = f"A grid of {asked.columns} by {asked.rows} blocks"
+    text += f" of {asked.length} metres" if asked.length else ""
+    text += f" {CONTROLS[asked.control]}" if asked.control else ""
+    return "; ".join([text, *_wishes(brief)]) + "."
 
 
 def _stretch(brief: Brief) -> str:
@@ -59,9 +81,24 @@ def _wishes(brief: Brief) -> list[str]:
         f"it starts with {clause_text(brief.starts)}" if brief.starts else "",
         f"it ends with {clause_text(brief.ends)}" if brief.ends else "",
         "hard for a lane keeper" if brief.hard else "",
+        *_lanes(brief),
         *(surface.said for name, surface in SURFACES.items() if name in brief.beside),
     ]
     return [wish for wish in out if wish]
+
+
+def _lanes(brief: Brief) -> list[str]:
+    """Returns the requirements for lanes and their markings."""
+    return [
+        f"{_counted(brief.lanes, 'lane')} along" if brief.lanes else "",
+        "one-way" if brief.against == exactly(0) else "",
+        f"{_counted(brief.against, 'oncoming lane')}"
+        if brief.against and brief.against != exactly(0)
+        else "",
+        "a median" if brief.divided else "",
+        CENTRES[brief.centre] if brief.centre else "",
+        "traffic on the left" if brief.left_hand else "",
+    ]
 
 
 def _turns(brief: Brief) -> str:
@@ -168,7 +205,9 @@ def _is_one(amount: Amount) -> bool:
 
 
 def _plural(noun: str, amount: Amount) -> str:
-    return noun if _is_one(amount) else noun + ("es" if noun.endswith("ch") else "s")
+    if _is_one(amount) or noun.endswith("s"):
+        return noun
+    return noun + ("es" if noun.endswith("ch") else "s")
 
 
 def _joined(*words: str) -> str:

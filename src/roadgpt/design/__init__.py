@@ -24,6 +24,7 @@ from typing import Protocol, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatSettings, instantiate, settings_for
+from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
 from roadgpt.network import NetworkDesign
 from roadgpt.road import Design, World
@@ -101,8 +102,10 @@ def check_designer(designer: Designer, brief: Brief) -> None:
     """Checks that a designer can make what a Brief asks for.
 
     Raises:
-        DesignError: the Brief has junctions, and the designer makes roads without junctions only.
+        DesignError: the Brief has junctions, and the designer makes roads without junctions only, or the
+            Brief asks for something that cannot be built yet.
     """
+    check_built(brief)
     if brief.junctions and not getattr(designer, "makes_junctions", False):
         raise DesignError("this designer makes roads without junctions; leave --designer out to have some")
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, pi
+from typing import cast
 
 import numpy as np
 
@@ -77,7 +78,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
 def _kind(asked: JunctionClause, rng: Rng) -> Kind:
     """Returns the kind of a junction; where the description names none, one of those that have its arms."""
     if asked.kind != "junction":
-        return asked.kind
+        return cast(Kind, asked.kind)
     arms = span(asked.arms)
     kinds: list[Kind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
     return kinds[int(rng.integers(len(kinds)))]

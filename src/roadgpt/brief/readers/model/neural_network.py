@@ -26,6 +26,8 @@ FAVOUR = 0.3
 """Exponent of the length normalisation: a plan's log-probability is divided by its length to this power."""
 LEAST = np.float32(-30)
 """Smaller log-probabilities count as this one, since differences between them say nothing."""
+UNKNOWN = np.float32(-1e4)
+"""The score of a token that the weights do not know."""
 REFUSED = [NUMBER_OF[word] for word in REFUSALS]
 
 
@@ -63,10 +65,10 @@ class NeuralNetwork:
     def _decoder(self) -> onnxruntime.InferenceSession:
         session = _session(self.folder / f"decoder{self.name}.onnx")
         known = session.get_outputs()[0].shape[1]
-        if known != len(TOKENS):
+        if known > len(TOKENS):
             raise PartError(
                 f"the weights in {self.folder} know {known} words of plans, and this version has "
-                f"{len(TOKENS)}; export them again with: roadgpt learn export"
+                f"{len(TOKENS)}; they are from a newer version"
             )
         return session
 
@@ -185,10 +187,14 @@ class NeuralNetwork:
     def _scored(
         self, token: Numbers, place: int, own: Array, across: Array, seen: Array
     ) -> tuple[Array, Array]:
-        """Returns the scores of the next tokens, and ``own`` extended by the keys and values of ``token``."""
+        """Returns the scores of the next tokens, and ``own`` extended by the keys and values of ``token``.
+
+        Tokens that are newer than the weights are never written.
+        """
         feed = {"token": token, "place": np.array([place]), "own": own, "across": across, "seen": seen}
         scores, kept = self._decoder.run(None, feed)
-        return scores, kept
+        newer = ((0, 0), (0, len(TOKENS) - scores.shape[1]))
+        return np.pad(scores, newer, constant_values=UNKNOWN), kept
 
 
 @dataclass(frozen=True, slots=True)

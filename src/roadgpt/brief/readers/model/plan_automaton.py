@@ -8,7 +8,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from roadgpt.brief.beside import BESIDE
-from roadgpt.brief.plan import ROAD_KEYS
+from roadgpt.brief.halfway import HALFWAY
+from roadgpt.brief.plan import ONE_WAY, ROAD_KEYS
 from roadgpt.brief.readers.model.evidence import Evidence
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import NumberSlot
@@ -26,12 +27,18 @@ from roadgpt.brief.readers.model.token_grammar import (
 )
 from roadgpt.brief.readers.model.vocabulary import (
     ALONE,
+    CENTRES,
     CLAUSE_KEYS,
+    CONTROLS,
     ENDS_OF_ROAD,
     FACTORS,
     FIXED,
+    FLAGS,
     HALVES,
+    JUNCTIONS,
     KINDS,
+    LANE_KINDS,
+    LISTED_WAYS,
     MEASURED,
     NEXT_TO,
     NOUNS,
@@ -39,12 +46,15 @@ from roadgpt.brief.readers.model.vocabulary import (
     PERCENTS,
     PLACES,
     POSITIONS,
+    RAMPS,
+    RING_SIZES,
     SHARPNESS,
     SIDES,
     SIZES,
     SLOPES,
     SLOT_TOKENS,
     SUPERLATIVES,
+    TAKES,
     UNIT_OF,
 )
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
@@ -56,7 +66,11 @@ ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 END = "<end>"
+IN_WORDS = {"against": ONE_WAY, "len": HALFWAY}
+"""Words in place of an amount, by the key of a road."""
 MOST_CLAUSES = 20
+MOST_JUNCTIONS = 9  # with merges and changes of lanes
+MOST_KINDS = 4  # of junctions on a map
 MOST_CHANGES = 8
 MOST_NAMES = 4
 MOST_NUMBERS = 8
@@ -196,21 +210,90 @@ def _refusals() -> tuple[Symbol, ...]:
 
 def _description(numbers: Numbers) -> Symbol:
     clause = _clause(numbers)
-    names = OneOf(sorted(BESIDE))
-    beside = Sequel(OneOf(("beside(",)), (names, ListTail(",", names, MOST_NAMES - 1), OneOf((")",))))
     placed = [Sequel(OneOf((place,)), (clause, OneOf((")",)))) for place in PLACES]
+    flags = (["alternating"], ["hard"], ["motorway"], ["divided"], ["left_hand"])
     wishes = InOrder(
         (
-            *(OneOf(words) for words in (SHARPNESS, SLOPES, ["alternating"], ["hard"])),
-            *(Keyed(f"{key}=", numbers) for key in ROAD_KEYS),
+            *(OneOf(words) for words in (SHARPNESS, SLOPES, *flags)),
+            *(_road_key(key, numbers) for key in ROAD_KEYS),
             *placed,
-            beside,
+            _beside(),
+            Sequel(OneOf(("centre=",)), (OneOf(CENTRES),)),
         ),
         least=1,
     )
     whole = Sequel(OneOf(("|",)), (wishes,))
     clauses = (ListTail(";", clause, MOST_CLAUSES - 1), replace(whole, is_open=True))
-    return AnyOf((whole, Sequel(clause, clauses)))
+    road = AnyOf((whole, Sequel(clause, clauses)))
+    return AnyOf((*_route(road, numbers), _map(numbers)))
+
+
+def _beside() -> Symbol:
+    names = OneOf(sorted(BESIDE))
+    return Sequel(OneOf(("beside(",)), (names, ListTail(",", names, MOST_NAMES - 1), OneOf((")",))))
+
+
+def _road_key(key: str, numbers: Numbers) -> Symbol:
+    """Returns a key and its amount, or the word that stands for an amount."""
+    keyed, word = Keyed(f"{key}=", numbers), IN_WORDS.get(key)
+    return AnyOf((OneOf((word,)), keyed)) if word else keyed
+
+
+def _route(road: Symbol, numbers: Numbers) -> tuple[Symbol, ...]:
+    """Returns the two ways in which a description begins: with a road or with a junction."""
+    whole = Sequel(
+        OneOf(("||",)),
+        (InOrder((OneOf(("left_hand",)), Keyed("len=", numbers), _beside()), least=1),),
+        is_open=True,
+    )
+    junction = junction_tokens(numbers)
+
+    def behind_junction(left: int) -> Symbol:
+        after = [
+            Sequel(road, (behind_road(left),)),
+            Sequel(junction, (Later(lambda: behind_junction(left - 1), True),)),
+        ]
+        return Sequel(OneOf(("//",) if left else ()), (AnyOf(tuple(after)),), is_open=True)
+
+    def behind_road(left: int) -> Symbol:
+        rest = (junction, Later(lambda: behind_junction(left - 1), True))
+        return Sequel(OneOf(("//",) if left else ()), rest, is_open=True)
+
+    first = Sequel(
+        OneOf(("//",)), (junction, Later(lambda: behind_junction(MOST_JUNCTIONS - 1), True), whole), True
+    )
+    return (
+        Sequel(road, (first,)),
+        Sequel(junction, (behind_junction(MOST_JUNCTIONS - 1), whole)),
+    )
+
+
+def junction_tokens(numbers: Numbers) -> Symbol:
+    """Returns what a plan can say of a junction, a merge or a change of lanes, in the order of printing."""
+    side, length = Sequel(OneOf(("side=",)), (OneOf(SIDES),)), Keyed("len=", numbers)
+    takes, controls = OneOf((*SIDES, *TAKES)), OneOf(CONTROLS)
+    flags = tuple(OneOf((flag,)) for flag in FLAGS)
+    ways = Sequel(OneOf(("ways=",)), (OneOf((*LISTED_WAYS, *SIDES, "straight")),))
+    exit_, arms, lanes = (Keyed(key, numbers) for key in ("exit=", "arms=", "lanes="))
+    radius = AnyOf((Keyed("r=", numbers), Keyed("d=", numbers)))
+    forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
+        (JUNCTIONS, (takes, controls, *flags, ways, arms)),
+        (("roundabout",), (takes, OneOf(RING_SIZES), controls, *flags[1:], ways, exit_, arms, radius, lanes)),
+        (RAMPS, (OneOf(("ramp", "main")), side, length)),
+        (LANE_KINDS, (side, length)),
+        (("lane_change",), (OneOf(SIDES),)),
+    )
+    return AnyOf(tuple(Sequel(OneOf(kinds), (InOrder(parts),)) for kinds, parts in forms))
+
+
+def _map(numbers: Numbers) -> Symbol:
+    count = InOrder((Keyed("x", numbers),))
+    kinds = OneOf((*JUNCTIONS, "roundabout"))
+    listed = Sequel(kinds, (count, ListTail(";", Sequel(kinds, (count,)), MOST_KINDS - 1)))
+    grid = Sequel(Keyed("columns=", numbers), (Keyed("rows=", numbers),))
+    tail = InOrder((Keyed("len=", numbers), OneOf(CONTROLS)))
+    whole = Sequel(OneOf(("||",)), (InOrder((OneOf(("left_hand",)), _beside()), least=1),), is_open=True)
+    return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), tail, whole))
 
 
 def _clause(numbers: Numbers) -> Symbol:

@@ -6,6 +6,7 @@ turn x3 left; straight len=91.4 | up        ->  turn x 3 left ; straight len= [1
 import re
 from collections.abc import Iterable, Sequence
 
+from roadgpt.brief.halfway import with_halfway
 from roadgpt.brief.readers.model.measures import LARGEST_SEEN
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot
 
@@ -82,17 +83,33 @@ CHANGES = [
     *POSITIONS, *ENDS_OF_ROAD, "but(", *MEASURED, "side", "other", "shape", *ALONE, "=", "+", *PERCENTS,
     "slightly", "much", "more", "less", "whole", *FACTORS, *NEWER, "turning=",
 ]  # fmt: skip
-TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
+JUNCTIONS = ["t_junction", "y_junction", "crossroads", "star", "junction"]
+RAMPS = ["merge", "diverge"]
+LANE_KINDS = ["lane_drop", "lane_gain"]
+TAKES = ["straight", "back", "sharp_left", "sharp_right", "slight_left", "slight_right"]
+RING_SIZES = ["mini", "normal", "large"]
+CONTROLS = ["priority", "yield", "stop", "lights", "none"]
+FLAGS = ["skew", "all_way", "crosswalk"]
+LISTED_WAYS = ["left+right", "left+straight", "right+straight", "left+right+straight"]
+CENTRES = ["solid", "broken", "double", "none"]
+NETWORKS = [
+    "//", "||", *JUNCTIONS, "roundabout", *RAMPS, *LANE_KINDS, "lane_change", *TAKES, "ramp", "main",
+    *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
+    "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
+    "d=",
+]  # fmt: skip
+"""Tokens of routes with junctions and of maps."""
+TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES, *NETWORKS]))
 """All tokens; the weights know them by their positions, so new ones stand at the end."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 PIECE = re.compile(
-    r"![a-z]+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
+    r"//|\|\||![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
 )
 LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 UNIT_OF = {
-    "deg=": "degrees", "r=": "metres", "len=": "metres", "climb=": "metres",
+    "deg=": "degrees", "r=": "metres", "d=": "metres", "len=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
 }  # fmt: skip
 """The unit of the number after a key; numbers after other keys are counts."""
@@ -107,7 +124,7 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
     out: list[str] = []
     key = ""
     taken: set[int] = set()
-    for piece in PIECE.findall(LISTED.sub(" ", plan)):
+    for piece in PIECE.findall(LISTED.sub(" ", with_halfway(plan))):
         if NUMERIC.fullmatch(piece):
             if out[-1] == "x" and key in MEASURED:
                 found = _factor_tokens(float(piece), slots)
@@ -115,6 +132,10 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
             else:
                 is_count = out[-1] in ("x", *NOUNS, *KINDS, *NUMBERS)
                 found = _number_tokens(piece, "" if is_count else key, slots, taken)
+            if out[-1] == "r=" and (found is None or found[0] not in SLOT_TOKENS):
+                across = _number_tokens(f"{2 * float(piece):g}", key, slots, taken)
+                if across and across[0] in SLOT_TOKENS:  # the text gives the diameter
+                    out[-1], found = "d=", across
             if found is None:
                 return None
             out += found

@@ -1,0 +1,58 @@
+"""Names what a plan can ask for and no designer can build yet."""
+
+from collections.abc import Iterator
+
+from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.model import Brief
+from roadgpt.errors import DesignError
+
+KINDS = {"merge": "a merge", "diverge": "a motorway exit", "lane_drop": "a lane that ends"} | {
+    "lane_gain": "an additional lane",
+    "lane_change": "a lane change",
+}
+
+
+def check_built(brief: Brief) -> None:
+    """Checks whether everything that a Brief asks for can be built.
+
+    Raises:
+        DesignError: It cannot be built yet; the message names each such thing.
+    """
+    found = list(dict.fromkeys(_unbuilt(brief)))
+    if found:
+        *others, last = found
+        named = f"{', '.join(others)} and {last}" if others else last
+        raise DesignError(f"{named} cannot be built yet; leave {'them' if others else 'it'} out")
+
+
+def _unbuilt(brief: Brief) -> Iterator[str]:
+    if brief.map is not None:
+        yield "a map without a route"
+    if brief.left_hand:
+        yield "traffic on the left"
+    for junction in brief.junctions:
+        yield from _of_junction(junction)
+    for road in (brief, *brief.stretches):
+        if _differs(road.lanes) or _differs(road.against):
+            yield "a road with other than one lane in each direction, in words"
+        if road.divided:
+            yield "a median"
+        if road.centre not in (None, "broken"):
+            yield "another centre line"
+
+
+def _of_junction(junction: JunctionClause) -> Iterator[str]:
+    if junction.kind in (*RAMPS, *LANE_KINDS):
+        yield KINDS[junction.kind]
+    if _differs(junction.lanes):
+        yield "a roundabout with two lanes"
+    if junction.all_way:
+        yield "the same sign at every arm"
+    if junction.crosswalk:
+        yield "a crosswalk"
+
+
+def _differs(lanes: Amount | None) -> bool:
+    """Returns whether something other than one lane is required."""
+    return lanes is not None and not span(lanes).lo <= 1 <= span(lanes).hi
