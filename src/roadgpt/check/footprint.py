@@ -135,10 +135,13 @@ class Footprint:
         for n, member in enumerate(self.network.roads):
             here = slice(first[n], first[n + 1])
             if _varies(member):
-                left[here] = _widths(member.profile.left, s[here])
-                right[here] = -_widths(member.profile.right, s[here])
+                centre = member.profile.centre(s[here])
+                left[here] = centre + _widths(member.profile.left, s[here])
+                right[here] = centre - _widths(member.profile.right, s[here])
             else:
-                left[here], right[here] = _width(member.profile.left), -_width(member.profile.right)
+                middle = member.profile.offset_range[0]
+                left[here] = middle + _width(member.profile.left)
+                right[here] = middle - _width(member.profile.right)
         sin, cos = np.sin(heading), np.cos(heading)
         return (
             np.stack((x - right * sin, y + right * cos), axis=1),
@@ -257,7 +260,7 @@ def _driving(lanes: tuple[Lane, ...]) -> list[Width]:
 
 
 def _varies(member: NetworkRoad) -> bool:
-    widths = _driving(member.profile.left) + _driving(member.profile.right)
+    widths = [*_driving(member.profile.left), *_driving(member.profile.right), member.profile.offset]
     return any(isinstance(width, CubicProfile) for width in widths)
 
 
@@ -278,7 +281,8 @@ def _widths(lanes: tuple[Lane, ...], s: Array) -> Array:
 
 
 def _reach(member: NetworkRoad) -> float:
-    return max(_width(member.profile.left), _width(member.profile.right))
+    low, high = member.profile.offset_range
+    return max(_width(member.profile.left) + high, _width(member.profile.right) - low)
 
 
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -67,7 +67,7 @@ def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
         pose, member = footprint(network).ends[end], network.road(end.road)
         s = 0.0 if end.contact == "start" else member.road.length
         for lanes in (into, out_of):
-            t = 0.0
+            t = width_at(member.profile.offset, s)
             for lane in lanes:
                 side = member.profile.right if lane < 0 else member.profile.left
                 width = width_at(side[abs(lane) - 1].width, s)

@@ -40,9 +40,9 @@ def filled(area: Area) -> Area:
 def ribbon(road: Road) -> "Polygon":
     """Returns the polygon of a road's carriageway, which begins along the right edge.
 
-    The ends of the centre line are corners of it, because lanes of other roads may end there: rounding would
-    otherwise leave a gap between this road and a corner of another road on its end. The road has no
-    superelevation.
+    The ends of the line between its lanes are corners of it, because lanes of other roads may end there:
+    rounding would otherwise leave a gap between this road and a corner of another road on its end. The road
+    has no superelevation.
     """
     from shapely import Polygon
 
@@ -50,8 +50,8 @@ def ribbon(road: Road) -> "Polygon":
     assert road.profile is not None
     edges, centre, heading = road.profile.edges(s), road.plan.at(s), road.plan.heading(s)
     to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
-    left, right = (centre + t[:, None] * to_left for t in edges)
-    return Polygon(np.concatenate((right, centre[-1:], left[::-1], centre[:1])))
+    left, right, middle = (centre + t[:, None] * to_left for t in (*edges, road.profile.centre(s)))
+    return Polygon(np.concatenate((right, middle[-1:], left[::-1], middle[:1])))
 
 
 def stations_of(road: Road) -> Array:
@@ -75,8 +75,8 @@ def stations_of(road: Road) -> Array:
 def _changes(road: Road) -> list[float]:
     """Returns stations, 1 m apart, at which widths vary."""
     assert road.profile is not None
-    lanes = (*road.profile.left, *road.profile.right)
-    if not any(isinstance(lane.width, CubicProfile) for lane in lanes):
+    widths = [road.profile.offset, *(lane.width for lane in (*road.profile.left, *road.profile.right))]
+    if not any(isinstance(width, CubicProfile) for width in widths):
         return []
     stations: list[float] = np.linspace(0.0, road.length, max(2, round(road.length) + 1)).tolist()
     return stations

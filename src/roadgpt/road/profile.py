@@ -72,6 +72,8 @@ class Profile:
         centre_marking: The marking on the centre line.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
+        offset: Offset in metres of the line between the lanes on the left and those on the right, where it
+            is not the centre line of the road itself: the element ``laneOffset`` of OpenDRIVE.
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
@@ -83,6 +85,7 @@ class Profile:
     driven: int = 0
     centre_marking: Marking = "broken"
     superelevation_angle: CubicProfile | None = None
+    offset: Width = 0.0
 
     def __post_init__(self) -> None:
         lanes = [*self.left, *self.right]
@@ -91,10 +94,8 @@ class Profile:
         for side in (self.left, self.right):
             if any(lane.kind == "driving" for lane in side[len(_driving(side)) :]):
                 raise ValueError("a driving lane cannot be outside a shoulder")
-        cubics = [lane.width for lane in lanes if isinstance(lane.width, CubicProfile)]
-        if any(
-            any(each.coefficients[-1][1:]) for each in [*cubics, *filter(None, [self.superelevation_angle])]
-        ):
+        of_station = [*(lane.width for lane in lanes), self.superelevation_angle, self.offset]
+        if any(any(each.coefficients[-1][1:]) for each in of_station if isinstance(each, CubicProfile)):
             raise ValueError("the last width of a lane, and the last superelevation, must be constant")
         if any(_extremes(lane.width)[0] < -NEGATIVE for lane in lanes):
             raise ValueError("a lane has a negative width")
@@ -143,7 +144,7 @@ class Profile:
 
         If the widths of several lanes vary, it is an upper bound.
         """
-        return max(_reach(_driving(self.left)), _reach(_driving(self.right)))
+        return self._with_offset(_driving(self.left), _driving(self.right))
 
     @cached_property
     def reach(self) -> float:
@@ -151,7 +152,20 @@ class Profile:
 
         If the widths of several lanes or shoulders vary, it is an upper bound.
         """
-        return max(_reach(self.left), _reach(self.right))
+        return self._with_offset(self.left, self.right)
+
+    @property
+    def offset_range(self) -> tuple[float, float]:
+        """The smallest and the largest offset of the line between the lanes."""
+        return _extremes(self.offset)
+
+    def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
+        low, high = self.offset_range
+        return max(_reach(left) + high, _reach(right) - low)
+
+    def centre(self, s: ArrayLike) -> Array:
+        """Returns the offset of the line between the lanes on the left and those on the right."""
+        return _at(self.offset, s)
 
     def width(self, s: ArrayLike) -> Array:
         """Returns the width of the driven lane."""
@@ -163,20 +177,22 @@ class Profile:
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
-        return -(_sum(self.right[: self.driven], s) + self.width(s) / 2)
+        return self.centre(s) - (_sum(self.right[: self.driven], s) + self.width(s) / 2)
 
     def lane(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the driven lane."""
-        inner = _sum(self.right[: self.driven], s)
-        return Edges(-inner, -(inner + self.width(s)))
+        inner, centre = _sum(self.right[: self.driven], s), self.centre(s)
+        return Edges(centre - inner, centre - (inner + self.width(s)))
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway."""
-        return Edges(_sum(_driving(self.left), s), -_sum(_driving(self.right), s))
+        centre = self.centre(s)
+        return Edges(centre + _sum(_driving(self.left), s), centre - _sum(_driving(self.right), s))
 
     def rims(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the shoulders."""
-        return Edges(_sum(self.left, s), -_sum(self.right, s))
+        centre = self.centre(s)
+        return Edges(centre + _sum(self.left, s), centre - _sum(self.right, s))
 
     def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
         """Returns the offsets of the outer edges of all lanes and shoulders, left and right of the centre.
@@ -184,8 +200,9 @@ class Profile:
         The result is a list for the left side and a list for the right side. Each list has one array per
         lane, from the centre line outwards.
         """
-        left = [_sum(self.left[: n + 1], s) for n in range(len(self.left))]
-        return left, [-_sum(self.right[: n + 1], s) for n in range(len(self.right))]
+        centre = self.centre(s)
+        left = [centre + _sum(self.left[: n + 1], s) for n in range(len(self.left))]
+        return left, [centre - _sum(self.right[: n + 1], s) for n in range(len(self.right))]
 
     def boundaries(self, s: ArrayLike) -> list[tuple[Marking, Array]]:
         """Returns the boundaries of all driving lanes from left to right, each with its marking and offsets.
@@ -195,10 +212,9 @@ class Profile:
         left, right = self.lane_edges(s)
         lanes = [*zip(self.left, left, strict=True)][: self.count[1]][::-1]
         lanes_right = [*zip(self.right, right, strict=True)][: self.count[0]]
-        centre = (self.centre_marking, np.zeros(np.shape(s)))
         return [
             *((lane.marking, t) for lane, t in lanes),
-            centre,
+            (self.centre_marking, self.centre(s)),
             *((lane.marking, t) for lane, t in lanes_right),
         ]
 

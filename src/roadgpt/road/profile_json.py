@@ -26,6 +26,8 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
         "driven": profile.driven,
         "centre_marking": profile.centre_marking,
     }
+    if profile.offset != 0:
+        out["offset"] = _written(profile.offset)
     angle = profile.superelevation_angle
     return out if angle is None else {**out, "superelevation": _rows(angle)}
 
@@ -37,7 +39,7 @@ def profile_from_json(data: Any) -> Profile:
         UsageError: A field is missing, unknown, of the wrong type or out of range.
     """
     try:
-        known = {"left", "right", "driven", "centre_marking", "superelevation"}
+        known = {"left", "right", "driven", "centre_marking", "superelevation", "offset"}
         _only(data, known)
         angle = data.get("superelevation")
         driven = data["driven"]
@@ -49,6 +51,7 @@ def profile_from_json(data: Any) -> Profile:
             driven,
             _one_of(data["centre_marking"], Marking),
             None if angle is None else _cubics(angle, STEEPEST),
+            _width(data.get("offset", 0.0), -WIDEST),
         )
     except KeyError as error:
         raise UsageError(f"the profile of the road cannot be read: {error} is missing; add it") from error
@@ -57,8 +60,11 @@ def profile_from_json(data: Any) -> Profile:
 
 
 def _lane_to_json(lane: Lane) -> dict[str, Any]:
-    width = _rows(lane.width) if isinstance(lane.width, CubicProfile) else lane.width
-    return {"kind": lane.kind, "width": width, "marking": lane.marking}
+    return {"kind": lane.kind, "width": _written(lane.width), "marking": lane.marking}
+
+
+def _written(width: Width) -> float | list[list[float]]:
+    return _rows(width) if isinstance(width, CubicProfile) else width
 
 
 def _rows(cubics: CubicProfile) -> list[list[float]]:
@@ -76,11 +82,11 @@ def _lanes(rows: Any) -> tuple[Lane, ...]:
     )
 
 
-def _width(data: Any) -> Width:
+def _width(data: Any, least: float = 0.0) -> Width:
     if isinstance(data, list):
         return _cubics(data, WIDEST)
-    if isinstance(data, bool) or not isinstance(data, (int, float)) or not 0 <= data <= WIDEST:
-        raise ValueError(f"a width is a number from 0 to {WIDEST:g}, or rows [s, a, b, c, d]")
+    if isinstance(data, bool) or not isinstance(data, (int, float)) or not least <= data <= WIDEST:
+        raise ValueError(f"a width is a number from {least:g} to {WIDEST:g}, or rows [s, a, b, c, d]")
     return float(data)
 
 

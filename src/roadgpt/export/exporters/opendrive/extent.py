@@ -53,7 +53,8 @@ def reaches(profile: Profile) -> tuple[float, float]:
     Where widths vary, they are upper bounds.
     """
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
-    return left, right
+    low, high = profile.offset_range
+    return left + high, right - low
 
 
 def _widest(width: Width) -> float:

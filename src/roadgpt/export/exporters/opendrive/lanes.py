@@ -57,7 +57,8 @@ class RoadParts:
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
-        key = (profile.left, profile.right, profile.centre_marking, length, links and tuple(links.items()))
+        own = (profile.left, profile.right, profile.centre_marking, profile.offset)
+        key = (*own, length, links and tuple(links.items()))
         if key not in self._made:
             self._made[key] = self._lanes(profile, road.length, links)
         return self._made[key]
@@ -69,7 +70,8 @@ class RoadParts:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, links)))
         section.add("right").extended(*self._side(profile.right, -1, length, links))
-        return XmlElement("lanes", is_shared=True).extended(section)
+        offset = rows("laneOffset", "s", _cubics(profile.offset), length) if profile.offset != 0 else []
+        return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
         self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks | None
@@ -95,7 +97,8 @@ class RoadParts:
 
 
 def _is_constant(profile: Profile) -> bool:
-    return not any(isinstance(lane.width, CubicProfile) for lane in (*profile.left, *profile.right))
+    widths = [profile.offset, *(lane.width for lane in (*profile.left, *profile.right))]
+    return not any(isinstance(width, CubicProfile) for width in widths)
 
 
 def lateral_profile(road: Road) -> list[XmlElement]:
