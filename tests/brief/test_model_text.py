@@ -115,7 +115,8 @@ def test_whatever_the_grammar_allows_is_a_brief(seed: int, values: list[float]) 
         try:
             brief = read_plan(line)
         except BriefError as error:
-            assert "'halfway' in a plan needs" in str(error)
+            if "'halfway' in a plan needs" not in str(error):
+                raise
             return
         assert plan(brief) == line or "halfway" in line or "d=" in line
         assert read_plan(plan(brief)) == brief

@@ -11,10 +11,14 @@ from roadgpt.learn.mentions import DENIED, SAID, TALK, names_in, with_mention, w
 LANGUAGES = {"en", "de", "fr", "es", "it"}
 
 
+PARTS_OF_ROUTES = {"junction", "crossroads", "roundabout", "merge", "exit", "lane_change"}
+
+
 def test_every_name_has_words_in_five_languages() -> None:
     assert {*SAID} == {*DENIED} == LANGUAGES
     for table in SAID.values():
-        assert {name for names in table for name in names.split(", ")} == BESIDE
+        named = {name for names in table for name in names.split(", ")}
+        assert BESIDE - named == {*PARTS_OF_ROUTES, "traffic_light", "lanes"}
     for table in (*SAID.values(), *DENIED.values()):
         for names, phrases in table.items():
             assert {*names.split(", ")} <= BESIDE
@@ -48,6 +52,23 @@ def test_names_are_added_to_those_that_are_there() -> None:
     assert with_names("| turns=3 beside(wet)", ["wet", "rain"]) == "| turns=3 beside(wet, rain)"
     assert names_in("turn | up beside(wet, rain)") == ["wet", "rain"]
     assert names_in("turn") == []
+
+
+def test_what_is_named_on_a_route_stands_behind_two_bars_and_no_junction_is_denied() -> None:
+    rng = np.random.default_rng(7)
+    route = "turn left // crossroads straight"
+    for language in sorted(LANGUAGES):
+        for _ in range(200):
+            found = with_mention("a left, then a crossroads", route, language, rng)
+            assert found is not None
+            text, line = found
+            if line == route:
+                assert not {"junctions", "Kreuzung", "roundabout", "rond-point", "rotonda"} & {*text.split()}
+            else:
+                brief = read_plan(line)
+                assert brief.beside
+                assert not PARTS_OF_ROUTES & {*brief.beside}
+                assert brief.model_copy(update={"beside": ()}) == read_plan(route)
 
 
 def test_a_refusal_mentions_nothing() -> None:

@@ -15,7 +15,7 @@ FILES = sorted(FOLDER.glob("*.jsonl"))
 
 
 def test_the_pairs_are_there() -> None:
-    assert len(FILES) == 11
+    assert len(FILES) >= 11
     assert sum(len(path.read_text(encoding="utf-8").splitlines()) for path in FILES) > 2000
 
 

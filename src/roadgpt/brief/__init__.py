@@ -82,8 +82,8 @@ __all__ = [
 ]
 
 PLAN = "plan"
-"""The name of the plan reader. A plan may list a junction or the like in ``beside(...)``: the road is then
-built without the junction. With other readers, ``read`` refuses a description that asks for one."""
+"""The name of the plan reader. A plan may list a roundabout or the like in ``beside(...)``: the road is then
+built without it. If another reader does so, ``read`` refuses the description."""
 
 
 class Reader(Protocol):
@@ -142,8 +142,8 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
-        NotBuiltError: the description asks for a junction, a roundabout or the like; the message proposes a
-            plan of the road without it.
+        NotBuiltError: the reader named a roundabout or the like beside the road instead of on it; the message
+            proposes a plan of the road without it.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.
@@ -162,10 +162,9 @@ def read(
         check(brief, *limits)
     if reader != PLAN and (missing := beside.networks_in(brief.beside)):
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
-        raise NotBuiltError(
-            f"{missing} {beside.why_not(brief.beside)}; the road without it", plan(rest), rest
-        )
-    return brief.model_copy(update={"motorway": True}) if says_motorway(words) else brief
+        raise NotBuiltError(f"{missing}; the road without it", plan(rest), rest)
+    is_road = not brief.junctions and brief.map is None
+    return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
 
 
 def alternatives(

@@ -1,4 +1,4 @@
-"""Lists things that descriptions mention but no requirement of a Brief can express, such as a roundabout.
+"""Lists things that descriptions mention but no requirement of a Brief can express, such as a bridge.
 
 A reader that recognises such a thing adds the name of the thing to ``Brief.beside``. RoadGPT then tells the
 user that the thing is not built, must be given as a number, is set by an option or sets the friction, so that
@@ -54,15 +54,19 @@ NOT_BUILT = {
     "cobbles": "a cobbled surface",
 }
 """The things that RoadGPT does not build, by name, with their wording in the remark."""
-NETWORKS = ("junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "loop")
-"""Names of the things that are not a single road. If a description asks for one of them, ``brief.read``
-raises NotBuiltError, which proposes the road without it."""
-IN_PLANS = {
-    "junction": "t_junction left",
-    "crossroads": "crossroads straight",
-    "roundabout": "roundabout exit=2",
+ON_ROUTES = {
+    "junction": "a T-junction, turn left",
+    "crossroads": "a crossroads, straight on",
+    "roundabout": "a roundabout, second exit",
+    "merge": "from the ramp onto the motorway",
+    "exit": "take the exit on the right",
+    "lane_change": "change to the left lane",
 }
-"""The things among ``NETWORKS`` that plans can ask for, though the reader of words cannot: with examples."""
+"""The things that are built as parts of a route, with words that ask for them. Here they are named only by
+plans, and by readers that do not know routes."""
+NETWORKS = (*ON_ROUTES, "loop")
+"""Names of the things that are not a single road. If a reader names one of them beside a road, ``brief.read``
+raises NotBuiltError, which proposes the road without it."""
 NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
@@ -89,7 +93,12 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
         friction: friction coefficient of the road; with None, a surface among the things sets it.
     """
     for name in names:
-        if name in NOT_BUILT:
+        if name in ON_ROUTES:
+            yield (
+                f"{NOT_BUILT[name]} is built as a part of a route, such as '{ON_ROUTES[name]}'; the road is"
+                " made without it"
+            )
+        elif name in NOT_BUILT:
             yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
         elif name not in SURFACES:
             yield SAID_OTHERWISE[name]
@@ -97,19 +106,20 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
         yield said
 
 
-def why_not(names: Iterable[str]) -> str:
-    """Returns why a road with those things among the names that are not a single road is not built."""
-    examples = [IN_PLANS.get(name) for name in names if name in NETWORKS]
-    if examples and all(examples):
-        return f"can be asked for only in a plan so far, such as --plan '{examples[0]}'"
-    return "cannot be built yet"
-
-
 def networks_in(names: Iterable[str]) -> str:
-    """Returns the wording of those things that are not a single road, joined by "and", such as "a junction
-    and a roundabout"; empty if there are none.
+    """Returns why those things that are not a single road are not built beside one; empty if there are none.
+
+    The sentence has no full stop, such as "it is not clear where a roundabout should be; say it in driving
+    order, such as 'a roundabout, second exit'".
     """
-    return " and ".join(NOT_BUILT[name] for name in names if name in NETWORKS)
+    named = [name for name in names if name in NETWORKS]
+    if not named:
+        return ""
+    said = " and ".join(NOT_BUILT[name] for name in named)
+    example = next((ON_ROUTES[name] for name in named if name in ON_ROUTES), "")
+    if not example:
+        return f"{said} cannot be built yet"
+    return f"it is not clear where {said} should be; say it in driving order, such as '{example}'"
 
 
 def friction_of(names: Iterable[str]) -> float | None:

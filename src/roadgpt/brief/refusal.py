@@ -4,7 +4,7 @@
 ``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
 """
 
-from roadgpt.brief.beside import IN_PLANS, NOT_BUILT, SAID_OTHERWISE, why_not
+from roadgpt.brief.beside import NOT_BUILT, ON_ROUTES, SAID_OTHERWISE, networks_in
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
@@ -18,7 +18,7 @@ ADVICE = {
     "!contradiction": "the description contradicts itself; leave something out, or say which part of"
     " the road is meant",
     "!impossible": "no such road can be built: loops, radii below 15 m and grades above 15 percent are not"
-    " possible, and junctions are so far only in plans; leave that out",
+    " possible; leave that out",
     "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
 }
 """The refusals of the plan language, with the message of each if no cause is named."""
@@ -79,8 +79,8 @@ def refused(line: str) -> BriefError:
         return BriefError(ADVICE[kind])
     if kind == "!contradiction":
         return BriefError(f"the description contradicts itself about {said}; leave one of them out")
-    if all(cause in IN_PLANS for cause in line.split()[1:]):
-        return BriefError(f"{said} {why_not(line.split()[1:])}")
+    if all(cause in ON_ROUTES for cause in line.split()[1:]):
+        return BriefError(networks_in(line.split()[1:]))
     if BY_OPTION.keys() & {*line.split()}:
         return BriefError(f"words do not do this: {said}")
     return BriefError(f"no such road can be built: {said}; leave that out")
@@ -114,7 +114,7 @@ class AnotherRoadError(BriefError):
 
 
 class NotBuiltError(AnotherRoadError):
-    """Raised if a description asks for something that is not a single road, such as a roundabout; the road
+    """Raised if a reader names something beside a road that cannot be there, such as a roundabout; the road
     without it is offered.
     """
 

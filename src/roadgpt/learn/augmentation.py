@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from roadgpt.brief.plan import read_plan
-from roadgpt.brief.readers.model.mirror import mirrored
+from roadgpt.brief.readers.model.mirror import is_of_junctions, mirrored
 from roadgpt.brief.readers.model.numerals import plain, spell
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.errors import BriefError
@@ -41,7 +41,9 @@ def augmented(pair: Pair, others: Mapping[str, Sequence[Pair]], rng: np.random.G
     if rng.random() < 0.5:
         pair = _made(pair, mirrored(pair.text, pair.plan))
     other = _one_of(others.get(pair.lang, ()), rng)
-    if pair.is_change:
+    if is_of_junctions(pair.plan):
+        pair = _made(pair, recounted(pair, rng)) if rng.random() < 0.4 else pair
+    elif pair.is_change:
         pair = _made(pair, both_changes(pair, other, rng)) if other and rng.random() < 0.2 else pair
     else:
         pair = _description(pair, other, rng)

@@ -1,5 +1,6 @@
 """Converts generated and hand-written pairs to batches of numbers for training."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -7,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
@@ -14,21 +16,29 @@ from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
 from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
 from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.mentions import with_mention, with_talk
+from roadgpt.learn.mentions import READ, names_in, with_mention, with_talk
+from roadgpt.learn.routes import routes
 from roadgpt.learn.shared_values import with_shared_values
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES = {
-    "hand": 0.26,
-    "free": 0.17,
-    "contrasts": 0.10,
-    "changes": 0.10,
-    "generated": 0.04,
-    "generated contrasts": 0.10,
-    "generated changes": 0.12,
-    "generated specs": 0.11,
+    "networks": 0.30,
+    "routes": 0.08,
+    "hand": 0.161,
+    "free": 0.105,
+    "contrasts": 0.062,
+    "changes": 0.062,
+    "generated": 0.025,
+    "generated contrasts": 0.062,
+    "generated changes": 0.075,
+    "generated specs": 0.068,
 }
+"""The share of each series of pairs. ``networks`` are hand-written routes with junctions, ``routes`` are put
+together of those and of hand-written roads.
+"""
+NETWORK = "networks/"
+"""How the families of the pairs of data/networks begin, once they are read."""
 KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
 """Beginnings of the names of families whose pairs have a share of their own in SHARES. The texts of ``free``
 were written without thought of their plans, which were added later.
@@ -39,6 +49,7 @@ TALK = 0.07
 """Share of all pairs that get additional small talk, such as a greeting."""
 CAUSED = ("!contradiction", "!impossible")
 """Refusals that have a cause; a plan that consists of only this word does not label the cause."""
+MOTORWAY = re.compile(r" ?\bmotorway\b")
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 
@@ -61,7 +72,7 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     that nothing is learnt about what follows.
     """
     taken = slotted(pair.text, pair.is_change)
-    plan = pair.plan if pair.is_change else with_shared_values(pair.plan, taken.slots)
+    plan = pair.plan if pair.is_change else with_shared_values(_without_motorway(pair.plan), taken.slots)
     tokens = tokens_of(plan, taken.slots)
     if tokens is None or len(tokens) > LONGEST_PLAN - 2 or any(token not in NUMBER_OF for token in tokens):
         return None
@@ -71,6 +82,13 @@ def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = No
     numbers, _ = pieces.encode(words)
     end = () if plan in CAUSED else (2,)
     return Example(tuple(numbers), (1, *(NUMBER_OF[token] for token in tokens), *end))
+
+
+def _without_motorway(plan: str) -> str:
+    """Returns the plan of a single road without "motorway", which ``brief.read`` takes from the words."""
+    if is_of_junctions(plan) or not MOTORWAY.search(plan):
+        return plan
+    return MOTORWAY.sub("", plan).rstrip(" |") or "| turns=0.."
 
 
 def _reslotted(
@@ -99,9 +117,19 @@ def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Ex
             pair = replace(pair, text=more[0], plan=more[1]) if more else pair
         if rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
-        made = None if is_held_out(pair.text) else example(pair, pieces, rng)
+        made = None if is_held_out(pair.text) or is_outdated(pair) else example(pair, pieces, rng)
         if made:
             yield made
+
+
+def is_outdated(pair: Pair) -> bool:
+    """Returns whether the plan says of something that it is not built, or stands beside the road, that plans
+    can now ask for.
+    """
+    if pair.is_change or pair.family.startswith(NETWORK):
+        return False
+    named = pair.plan.split() if pair.plan.startswith("!") else names_in(pair.plan)
+    return not READ.isdisjoint(named)
 
 
 def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
@@ -114,11 +142,27 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
     }
     kinds: dict[str, list[Pair]] = {}
     for pair in hand:
-        kind = "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
+        kind = _kind(pair)
         kinds.setdefault(kind, []).append(pair)
     for kind, its in kinds.items():
         found[kind] = _varied(its, np.random.default_rng([seed, len(kind)]))
+    if "networks" in kinds:
+        roads = [pair for kind in ("hand", "free") for pair in kinds.get(kind, ())]
+        found["routes"] = _typed(routes(roads, kinds["networks"], np.random.default_rng([seed, 4])), seed)
     return found
+
+
+def _kind(pair: Pair) -> str:
+    if pair.family.startswith(NETWORK):
+        return "networks"
+    return "changes" if pair.is_change else KINDS_OF_FAMILIES.get(pair.family[:2], "hand")
+
+
+def _typed(stream: Iterator[Pair], seed: int) -> Iterator[Pair]:
+    """Yields the pairs of a series, some of them in a mirror and with typing errors."""
+    rng = np.random.default_rng([seed, 5])
+    for pair in stream:
+        yield augmented(pair, {}, rng)
 
 
 def _varied(hand: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:

@@ -9,14 +9,24 @@ from importlib.resources import files
 
 import numpy as np
 
+from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.learn.noise import tidy
 
 Phrases = Mapping[str, Mapping[str, Mapping[str, Sequence[str]]]]
 WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(encoding="utf-8"))
+READ = frozenset({
+    "junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes",
+})  # fmt: skip
+"""Names that plans once listed for words that are now read as parts of a route."""
 SAID: Phrases = WORDS["said"]
 """Phrases that can stand "before" or "after" a description, by language and then by the names that plans list
 for them."""
 DENIED: Phrases = WORDS["denied"]
+DENIED_ON_ROUTES: Phrases = {
+    language: {names: ways for names, ways in its.items() if READ.isdisjoint(re.split(", *", names))}
+    for language, its in DENIED.items()
+}
+"""The phrases of ``DENIED`` that do not deny what a route consists of."""
 TALK: Mapping[str, Mapping[str, Sequence[str]]] = json.loads(
     (files("roadgpt.learn") / "words" / "talk.json").read_text(encoding="utf-8")
 )
@@ -35,7 +45,8 @@ def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) 
     are no phrases in the language.
     """
     is_said = rng.random() < 0.7
-    table = (SAID if is_said else DENIED).get(language)
+    denied = DENIED_ON_ROUTES if is_of_junctions(plan) else DENIED
+    table = (SAID if is_said else denied).get(language)
     if plan.startswith("!") or not table:
         return None
     names = list(table)[int(rng.integers(len(table)))]
@@ -74,7 +85,8 @@ def names_in(plan: str) -> list[str]:
 def with_names(plan: str, names: Sequence[str]) -> str:
     """Returns the plan with these names in ``beside(...)`` instead of its own."""
     bare = NAMED.sub("", plan).rstrip(" |")
-    joint = " " if "|" in bare else " | "
+    whole = "||" if is_of_junctions(plan) else "|"
+    joint = " " if whole in bare else f" {whole} "
     return f"{bare}{joint}beside({', '.join(names)})".strip()
 
 

@@ -4,7 +4,7 @@ readers.
 
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,6 +38,10 @@ CHANGES = Option(
     "--changes", "Folder with hand-written change requests, as JSON lines in its subfolder 'train'.",
     folder, Path("data/changes"),
 )
+NETWORKS = Option(
+    "--networks", "Folder with hand-written routes with junctions, as JSON lines in its subfolder 'train'.",
+    folder, Path("data/networks"),
+)
 OUT = Argument("out", "OUT", "Name the folder to write into.", folder)
 CHECKPOINT = Argument("checkpoint", "CHECKPOINT", kind=folder)
 OF_DATA = (
@@ -46,7 +50,7 @@ OF_DATA = (
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_TRAIN = (
-    *(OUT, HAND, CHANGES),
+    *(OUT, HAND, CHANGES, NETWORKS),
     Option("--weights", "Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.", folder),
     Option("--installed", "Start from the installed reader instead.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
@@ -61,7 +65,7 @@ OF_TRAIN = (
     options.seed("The same seed gives the same pairs.", 1),
 )
 OF_EXPORT = (
-    *(CHECKPOINT, OUT, HAND, CHANGES),
+    *(CHECKPOINT, OUT, HAND, CHANGES, NETWORKS),
     Option("--second", "Folder of another training run; its network becomes the reader's second network.",
            folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
@@ -129,6 +133,7 @@ def train(
     out: Path,
     hand: Path,
     changes: Path,
+    networks: Path,
     weights: Path | None,
     installed: bool,
     second: bool,
@@ -156,7 +161,7 @@ def train(
     installed |= second
     if weights and installed:
         raise LearnError("a training starts from --weights or from what is --installed; name one of them")
-    pairs = [*_trained_on(hand, changes), *(_pairs_of(own) if own else [])]
+    pairs = [*_trained_on(hand, changes, networks), *(_pairs_of(own) if own else [])]
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
@@ -172,7 +177,14 @@ def train(
 
 @command.command(params=[*OF_EXPORT])
 def export(
-    checkpoint: Path, out: Path, hand: Path, changes: Path, second: Path | None, chats: int | None, seed: int
+    checkpoint: Path,
+    out: Path,
+    hand: Path,
+    changes: Path,
+    networks: Path,
+    second: Path | None,
+    chats: int | None,
+    seed: int,
 ) -> None:
     """Write the reader saved in the folder CHECKPOINT into the folder OUT, quantised to int8."""
     try:
@@ -182,17 +194,19 @@ def export(
     from roadgpt.learn.filler_words import filler_words
 
     held_back = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
+    held_back += _network_pairs_of(networks / "validation")
     held_back += _pairs_of(changes / "validation", is_change=True)
-    fillers = filler_words(_trained_on(hand, changes))
+    fillers = filler_words(_trained_on(hand, changes, networks))
     export_checkpoints([checkpoint, *([second] if second else [])], out, held_back, fillers)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)
 
 
-def _trained_on(hand: Path, changes: Path) -> list["Pair"]:
+def _trained_on(hand: Path, changes: Path, networks: Path) -> list["Pair"]:
     """Returns all hand-written pairs for training."""
     pairs = [pair for folder in TRAINED_ON for pair in _pairs_of(hand / folder)]
+    pairs += _network_pairs_of(networks / "train")
     return [*pairs, *_pairs_of(changes / "train", is_change=True)]
 
 
@@ -257,6 +271,13 @@ def _write_card(path: Path, hand: Path, found: "dict[str, list[Reading]]", shown
 def _key(pair: "Pair") -> str:
     """Returns a text that is equal for descriptions that differ in blanks and capitals only."""
     return " ".join(pair.text.lower().split())
+
+
+def _network_pairs_of(place: Path) -> "list[Pair]":
+    """Returns the pairs of a folder, with a mark in their families that they are routes with junctions."""
+    from roadgpt.learn.data import NETWORK
+
+    return [replace(pair, family=f"{NETWORK}{pair.family}") for pair in _pairs_of(place)]
 
 
 def _pairs_of(place: Path, is_change: bool = False) -> "list[Pair]":

@@ -22,6 +22,7 @@ from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
@@ -99,6 +100,8 @@ class ModelReader:
             brief = self._read(turned.rest) if turned.is_more_said else Brief(turns=at_least(1))
         except TooMuchError as error:
             raise TooMuchError(str(error), error.brief.model_copy(update=update)) from error
+        if brief.junctions or brief.map is not None:  # the sum of which turns is meant is not said
+            return self._read(words)
         return brief.model_copy(update=update)
 
     def _read(self, words: str) -> Brief:
@@ -268,6 +271,8 @@ class ModelReader:
         unused = unused_words(self._network, *(seen or (text, draft.tokens)), self._fillers)
         sure = confidence(self._settings["confidence"], features(draft, text), unused)
         found = {"words": words, "unused": unused, "confidence": sure}
+        # brief.read decides by the words whether a road without junctions is a motorway
+        found["motorway"] = False
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
 
     @cached_property
@@ -308,7 +313,12 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
     sides = listed_sides(text)
     if not sides or not found or found[0].is_refusal:
         return None
-    kept = (draft for draft in found if not draft.is_refusal and _can_be_kept(draft.line))
+    is_route = is_of_junctions(found[0].line)
+    kept = (
+        draft
+        for draft in found
+        if not draft.is_refusal and is_of_junctions(draft.line) == is_route and _can_be_kept(draft.line)
+    )
     return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
 
 
@@ -330,7 +340,7 @@ def _can_be_kept(line: str) -> bool:
         check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
     except BriefError:
         return False
-    return _sides_add_up(normal(brief))
+    return all(map(_sides_add_up, normal(brief).stretches or (normal(brief),)))
 
 
 def _sides_add_up(brief: Brief) -> bool:

@@ -15,7 +15,7 @@ from roadgpt.brief.readers.model.word_set import word_set
 
 Bound = Literal["lo", "hi", "none"]
 """'lo' is a lower bound, 'hi' an upper bound, 'none' certainly no bound ("60 m or so")."""
-KEYS = frozenset(["deg=", "r=", "len=", "pct=", "steepest="])
+KEYS = frozenset(["deg=", "r=", "d=", "len=", "pct=", "steepest="])
 """Plan keys whose bounds are corrected. The climb is left out: downhill it is negative, so
 its lower and upper bounds change places."""
 SMALLER = word_set(

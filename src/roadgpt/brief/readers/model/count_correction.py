@@ -34,7 +34,12 @@ MOST_COUNTS = 8
 
 
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief with its counts corrected to follow from the numbers in the text."""
+    """Returns the Brief with its counts corrected to follow from the numbers in the text.
+
+    The counts of a route with junctions stay, because a number may count its turns or its junctions.
+    """
+    if brief.junctions or brief.map is not None:
+        return brief
     words = {word.text for word in text.words}
     said = [int(word.text) for word in text.words if word.text.isdecimal() and word.written]
     brief = _without_more(brief, words)

@@ -4,6 +4,8 @@ A small network loses count of repetitions. If all sides in a description are pa
 turns have these sides is preferred to a likelier plan whose turns do not.
 """
 
+from itertools import zip_longest
+
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import SINGLE, STRAIGHT, normal
 from roadgpt.brief.readers.model.count_correction import MULTIPLES
@@ -37,8 +39,27 @@ def listed_sides(text: SlottedText) -> tuple[str, ...]:
 
 
 def sides_of(brief: Brief) -> tuple[str | None, ...]:
-    """Returns the side of every turn in order; empty if the number of turns is not exact."""
+    """Returns the side of every turn in order; empty if the number of turns is not exact.
+
+    Of a route, the sides to which it leaves its junctions are listed as well.
+    """
+    if brief.junctions:
+        return _along(brief)
     turning = [clause for clause in normal(brief).clauses if clause.kind not in STRAIGHT]
     if any(clause.kind not in SINGLE or not clause.count.exact for clause in turning):
         return ()
     return tuple(clause.side for clause in turning for _ in range(int(clause.count.lo or 0)))
+
+
+def _along(route: Brief) -> tuple[str | None, ...]:
+    out: list[str | None] = []
+    for stretch, junction in zip_longest(route.stretches, route.junctions):
+        if any(clause.kind not in STRAIGHT for clause in stretch.clauses):
+            own = sides_of(stretch)
+            if not own:
+                return ()
+            out += own
+        side = (junction.take or "").rpartition("_")[2] if junction else ""
+        if side in ("left", "right"):
+            out.append(side)
+    return tuple(out)

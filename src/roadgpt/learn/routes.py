@@ -1,0 +1,153 @@
+"""Routes that are made of hand-written pairs: descriptions of roads and of junctions, one after the other."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from roadgpt.brief.feasible import check
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.errors import RoadGPTError
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.standard import standard
+
+JOINTS: Mapping[str, Sequence[str]] = {
+    "en": (
+        ", then ", "; then ", ". Then ", ", and then ", ". After that, ", ". At its end: ", ", followed by ",
+        "; after that, ", ". Next: ", ", next ", "; ", ", ", " - then ", " then ", ". Behind it: ", "\n",
+        ". ", ". And after that ",
+    ),
+    "de": (
+        ", dann ", "; dann ", ". Dann ", ". Danach ", ", danach ", ", und dann ", ". Am Ende davon: ",
+        "; anschließend ", ". Dahinter ", "; ", ", ", " dann ", "\n", ". ", ", gefolgt von: ",
+    ),
+    "fr": (
+        ", puis ", " puis ", ". Puis ", ". Ensuite, ", ", ensuite ", ", et ensuite ", ". Au bout : ",
+        ". Après ça, ", "; ", ", ", "\n", ". ", "; après, ",
+    ),
+    "es": (
+        ", luego ", ". Luego ", ", después ", ". Después, ", ", y después ", ". Al final: ", " y luego ",
+        "; ", ", ", "\n", ". ", "; a continuación, ",
+    ),
+    "it": (
+        ", poi ", ". Poi ", ", e poi ", ". Dopo, ", ", quindi ", ". Alla fine: ", " e poi ", "; ", ", ", "\n",
+        ". ", "; dopo di che ",
+    ),
+}  # fmt: skip
+"""What stands between the descriptions of two parts of a route."""
+LONGEST = 330  # letters of a joined text
+LONGEST_ROAD = 110  # letters of the description of one road
+MOST_JUNCTIONS = 6
+WHOLE_DRIVE = re.compile(
+    r"\b(?:all|whole|entire|total|everything|everywhere|throughout|always|each|every|only|just|no|not|without|"
+    r"never|end|ends|last|first|finally|start|starts|begin\w*|ganz\w*|alle\w*|insgesamt|immer|überall|nur|kein\w*|"
+    r"nicht|ohne|ende|letzt\w*|erst\w*|start|anfang\w*|beginn\w*|tout\w*|tous|total\w*|toujours|partout|seul\w*|sans|"
+    r"pas|fin|dernière?|premi\w+|début\w*|commence\w*|todo\w*|toda\w*|siempre|sólo|solo|sin|nada|fin\w*|últim\w+|"
+    r"primer\w*|comienz\w*|empie\w*|inicio|tutt\w+|sempre|solo|senza|niente|fine|ultim\w+|prim\w+|inizi\w*|"
+    r"\d+ in)\b",
+    re.I,
+)
+"""Words that may speak of the whole drive, or of its beginning or end; texts with them are not joined."""
+OF_ROADS = re.compile(
+    r"bend|curve|hairpin|straight (?:for|of|road|bit|stretch|section)|corner|\bturns\b|chicane|winding|crest|"
+    r"dip\b|switchback|kurve|kehre|bogen|serpentin|schikane|kuppe|senke|gerade \w*strecke|virage|courbe|"
+    r"lacet|épingle|chicane|ligne droite|curva|tornant|rettili|horquilla|tramo recto|eses\b|esse\b",
+    re.I,
+)
+"""Nouns that only a road has; without one, "turn left" may be meant at a junction."""
+OWN_LENGTH = re.compile(
+    r"\b(?:len|hills|climb|steepest|turns|lefts|rights|turning)=|starts\(|ends\(|\bhard\b"
+)
+
+
+def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
+    """Yields an endless series of routes of two or three parts, each described by a hand-written text.
+
+    Args:
+        roads: pairs of roads.
+        junctions: pairs of routes with junctions.
+        rng: source of randomness.
+    """
+    of_roads, of_junctions = _by_language(roads, _is_road), _by_language(junctions, _is_open)
+    languages = [code for code in JOINTS if of_roads.get(code) and of_junctions.get(code)]
+    while languages:
+        code = languages[int(rng.integers(len(languages)))] if rng.random() < 0.7 else languages[0]
+        shape = ("RJ", "JR", "JJ", "RJR", "RJJ", "JRJ")[int(rng.integers(6))]
+        parts = [_one_of((of_roads if kind == "R" else of_junctions)[code], rng) for kind in shape]
+        if pair := route_of(parts, code, rng):
+            yield pair
+
+
+def route_of(parts: Sequence[Pair], language: str, rng: np.random.Generator) -> Pair | None:
+    """Returns the texts, joined by words such as "then", with their plans as one route; None if that is too
+    long, or does not make sense.
+    """
+    text = parts[0].text.strip()
+    for part in parts[1:]:
+        ways = JOINTS[language]
+        joint = ways[int(rng.integers(len(ways)))]
+        is_new = joint.endswith((". ", "\n", ": "))
+        text = (
+            text.rstrip(" .!")
+            + joint
+            + (part.text.strip() if is_new else _lowered(part.text.strip(), language))
+        )
+    asked = " // ".join(part.plan for part in parts)
+    if len(text) > LONGEST:
+        return None
+    try:
+        brief = read_plan(asked)
+        check(brief, map_size=None)
+    except RoadGPTError:
+        return None
+    if len(brief.junctions) > MOST_JUNCTIONS:
+        return None
+    return Pair(text, standard(brief), "networks/routes", language)
+
+
+def _lowered(text: str, language: str) -> str:
+    keeps = not text[:1].isupper() or text[1:2].isupper() or text[1:2] in "-' " or language == "de"
+    return text if keeps else text[:1].lower() + text[1:]
+
+
+def _is_road(pair: Pair) -> bool:
+    """Returns whether a pair describes a road that can be a part of a route."""
+    return (
+        not pair.is_change
+        and len(pair.text) <= LONGEST_ROAD
+        and not pair.plan.startswith(("!", "|"))
+        and not pair.text.rstrip().endswith("?")
+        and "beside(" not in pair.plan
+        and not is_of_junctions(pair.plan)
+        and not OWN_LENGTH.search(pair.plan)
+        and not WHOLE_DRIVE.search(pair.text)
+        and OF_ROADS.search(pair.text) is not None
+    )
+
+
+def _is_open(pair: Pair) -> bool:
+    """Returns whether a pair describes a route that begins and ends with a junction and can go on."""
+    if pair.plan.startswith("!") or "||" in pair.plan or pair.plan.startswith("map"):
+        return False
+    parts = [part.strip() for part in pair.plan.split("//")]
+    return (
+        is_of_junctions(parts[0])
+        and is_of_junctions(parts[-1])
+        and not parts[-1].startswith(("merge", "diverge", "lane_"))
+        and " back" not in parts[-1]
+        and not WHOLE_DRIVE.search(pair.text)
+        and not pair.text.rstrip().endswith("?")
+    )
+
+
+def _by_language(pairs: Sequence[Pair], fits: Callable[[Pair], bool]) -> dict[str, list[Pair]]:
+    out: dict[str, list[Pair]] = {}
+    for pair in pairs:
+        if fits(pair):
+            out.setdefault(pair.lang, []).append(pair)
+    return out
+
+
+def _one_of(pairs: Sequence[Pair], rng: np.random.Generator) -> Pair:
+    return pairs[int(rng.integers(len(pairs)))]

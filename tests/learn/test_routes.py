@@ -1,0 +1,169 @@
+"""Routes put together of hand-written pairs, and the sides of routes swapped: the labels stay true."""
+
+import json
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.mirror import (
+    in_mirror_plan,
+    in_mirror_tokens,
+    is_of_junctions,
+    mirrored,
+)
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
+from roadgpt.learn.data import NETWORK, is_outdated
+from roadgpt.learn.generator import Pair
+from roadgpt.learn.labels import read_pairs
+from roadgpt.learn.routes import route_of, routes
+from roadgpt.learn.standard import standard
+
+DATA = Path(__file__).parents[2] / "data"
+
+
+def of_networks() -> list[Pair]:
+    pairs, problems = read_pairs((DATA / "networks" / "train").glob("*.jsonl"))
+    assert not problems
+    return pairs
+
+
+PAIRS = of_networks()
+PLANS = sorted({pair.plan for pair in PAIRS if not pair.plan.startswith("!")})
+
+
+def other_way(junction: JunctionClause) -> JunctionClause:
+    """The same junction seen in a mirror, by its fields."""
+    swap = {"left": "right", "right": "left"}
+
+    def turned(word: str | None) -> str | None:
+        head, bar, tail = (word or "").rpartition("_")
+        return f"{head}{bar}{swap.get(tail, tail)}" or None
+
+    order = ("left", "right", "straight")
+    ways = tuple(way for way in order if way in {swap.get(each, each) for each in junction.ways})
+    return junction.model_copy(
+        update={"take": turned(junction.take), "side": turned(junction.side), "ways": ways}
+    )
+
+
+def test_a_mirror_of_a_mirror_is_the_plan_itself() -> None:
+    for line in PLANS:
+        assert in_mirror_plan(in_mirror_plan(line)) == line
+    assert in_mirror_tokens(in_mirror_tokens(TOKENS)) == TOKENS
+
+
+def test_a_mirrored_plan_takes_every_junction_on_the_other_side() -> None:
+    for line in PLANS:
+        brief, seen = read_plan(line), read_plan(in_mirror_plan(line))
+        assert [other_way(junction) for junction in brief.junctions] == list(seen.junctions)
+        assert len(brief.stretches) == len(seen.stretches)
+        assert brief.left_hand == seen.left_hand
+
+
+def test_tokens_and_words_of_a_plan_are_mirrored_alike() -> None:
+    for pair in PAIRS:
+        slots = slotted(pair.text).slots
+        tokens = None if pair.plan.startswith("!") else tokens_of(pair.plan, slots)
+        if tokens:
+            seen = plan_of(in_mirror_tokens(tokens), slots)
+            assert standard(read_plan(seen)) == standard(read_plan(in_mirror_plan(pair.plan)))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "seen"),
+    [
+        (
+            "turn right at the lights, then the second exit, then left",
+            "crossroads right lights // roundabout exit=2 // junction left",
+            ("turn left at the lights, then the second exit, then right", "left lights // roundabout exit=2"),
+        ),
+        (
+            "past a side road on the left",
+            "t_junction straight ways=left+straight",
+            ("past a side road on the right", "t_junction straight ways=right+straight"),
+        ),
+        (
+            "am Stern scharf links",
+            "star sharp_left",
+            ("am Stern scharf rechts", "star sharp_right"),
+        ),
+    ],
+)
+def test_texts_of_routes_are_mirrored(text: str, line: str, seen: tuple[str, str]) -> None:
+    found = mirrored(text, line)
+    assert found is not None
+    assert found[0] == seen[0]
+    assert seen[1] in found[1]
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        ("left at the roundabout, that is the third exit", "roundabout exit=3 // junction left"),
+        ("rechts vor links, dann links", "crossroads yield // junction left"),
+        ("left-hand traffic, turn left", "junction left || left_hand"),
+        ("you have the right of way, go left", "junction left priority"),
+        ("a T-junction with a right angle, turn left", "t_junction left"),
+        ("Rechtsabbiegespur, dann links", "junction right // junction left"),
+    ],
+)
+def test_where_right_is_more_than_the_other_side_of_left_nothing_is_swapped(text: str, line: str) -> None:
+    if "that is the third exit" in text:
+        line = "roundabout exit=3"
+    assert mirrored(text, line) is None
+
+
+def test_routes_put_together_ask_for_their_parts_in_order() -> None:
+    rng = np.random.default_rng(1)
+    roads = [
+        Pair("two bends uphill", "turn x2 | up", "f", "en"),
+        Pair("A hairpin bend.", "hairpin", "f", "en"),
+    ]
+    junctions = [
+        Pair("A crossroads, right.", "crossroads right", "networks/f", "en"),
+        Pair("roundabout, second exit", "roundabout exit=2", "networks/f", "en"),
+    ]
+    texts = {pair.plan: pair.text.strip(" .").lower() for pair in (*roads, *junctions)}
+    for pair in islice(routes(roads, junctions, rng), 300):
+        assert pair.plan == plan(read_plan(pair.plan))
+        assert pair.family.startswith(NETWORK)
+        place = -1
+        for part in pair.plan.split(" // "):
+            place = pair.text.lower().index(texts[part], place + 1)
+
+
+def test_what_speaks_of_the_whole_drive_is_no_part_of_a_route() -> None:
+    rng = np.random.default_rng(2)
+    whole = [
+        Pair("flat all the way, two bends", "turn x2 | flat", "f", "en"),
+        Pair("a 300 m road with a bend", "turn | len=300", "f", "en"),
+        Pair("two bends?", "turn x2", "f", "en"),
+    ]
+    assert not list(islice(routes(whole, [Pair("a fork", "y_junction", "networks/f", "en")], rng), 1))
+
+
+def test_nothing_follows_where_the_route_turns_back() -> None:
+    back = Pair("back at the roundabout", "roundabout back", "networks/f", "en")
+    after = Pair("a crossroads", "crossroads", "networks/f", "en")
+    assert route_of([back, after], "en", np.random.default_rng(0)) is None
+
+
+def test_pairs_that_call_a_junction_unbuilt_are_outdated() -> None:
+    assert is_outdated(Pair("a roundabout", "| beside(roundabout)", "f", "en"))
+    assert is_outdated(Pair("a roundabout", "!impossible roundabout", "f", "en"))
+    assert not is_outdated(Pair("in the rain", "| beside(rain)", "f", "en"))
+    assert not is_outdated(Pair("make it a roundabout", "!impossible roundabout", "f", "en", True))
+    assert all(map(is_of_junctions, ("crossroads", "| up // star", "map star")))
+    assert not is_of_junctions("turn x2 | lanes=2")
+
+
+def test_no_pair_of_networks_is_also_one_of_roads() -> None:
+    texts = {" ".join(pair.text.lower().split()) for pair in PAIRS}
+    for path in sorted((DATA / "descriptions" / "train").glob("*.jsonl")):
+        for line in path.read_text(encoding="utf-8").splitlines():
+            assert " ".join(json.loads(line)["text"].lower().split()) not in texts
