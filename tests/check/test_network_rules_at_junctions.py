@@ -17,7 +17,7 @@ from network.changing import (
 )
 from network.ruled import findings, the_finding
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece
-from roadgpt.network import Connection, Network, RoadEnd
+from roadgpt.network import Connection, LaneLink, Network, RoadEnd
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane
 
@@ -179,16 +179,21 @@ class TestLanesDoNotMatch:
 
     @pytest.mark.parametrize(
         ("lanes", "what"),
-        [(((-2, -1),), "has no lane -2"), (((1, -1),), "has no lane 1"), (((-1, -2),), "no lane -2 along")],
+        [
+            (LaneLink(-2, -1, -1), "has no lane -2"),
+            (LaneLink(1, -1, -1), "has no lane 1"),
+            (LaneLink(-1, -2, -1), "no lane -2 along"),
+            (LaneLink(-1, -1, -3), "has no lane -3 that leads out of it"),
+        ],
     )
-    def test_a_lane_that_does_not_exist(self, lanes: tuple[tuple[int, int], ...], what: str) -> None:
+    def test_a_lane_that_does_not_exist(self, lanes: LaneLink, what: str) -> None:
         network = passing("crossroads").network
         number = network.junctions[0].id
         damaged = with_junction(
             network,
             number,
             lambda each: replace(
-                each, connections=(replace(each.connections[0], lanes=lanes), *each.connections[1:])
+                each, connections=(replace(each.connections[0], lanes=(lanes,)), *each.connections[1:])
             ),
         )
         assert what in the_finding("lanes_do_not_match", damaged).sentence

@@ -113,7 +113,9 @@ def test_a_route_that_turns_back_takes_the_last_exit() -> None:
 
 
 def test_the_number_of_junctions_is_compared_first() -> None:
-    assert told("crossroads left // crossroads left", CROSS) == ["asked for 2 junctions, passes 1"]
+    assert told("crossroads left // crossroads left", CROSS) == [
+        "asked for 2 junctions and places where lanes change, passes 1"
+    ]
     assert told("crossroads left lights // roundabout exit=3", CROSS, RING) == []
 
 

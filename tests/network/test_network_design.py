@@ -134,8 +134,10 @@ def test_a_junction_that_is_no_object(value: Any) -> None:
         ({"width": 1.9}, "width: is out of range; give 2 or more"),
         ({"width": True}, "width: is not a number"),
         ({"width": math.nan}, "width: is not finite"),
-        ({"forward": 2}, "forward: is out of range; give 1 or less"),
-        ({"backward": 0}, "backward: is out of range; give 1 or more"),
+        ({"forward": 5}, "forward: is out of range; give 4 or less"),
+        ({"forward": 0}, "forward: is out of range; give 1 or more"),
+        ({"backward": -1}, "backward: is out of range; give 0 or more"),
+        ({"centre": "dotted"}, "centre: is unknown"),
         ({"wide": 3}, "wide: is not a field"),
     ],
 )

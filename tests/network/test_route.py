@@ -157,7 +157,7 @@ class TestRefusals:
     def test_roads_that_are_not_joined(self) -> None:
         (_, way, after) = self.route.legs
         assert "no way leads from road 1 to road" in self.refused((1, -1), (after.road, -1))
-        assert "no way leads from road 1 to road 1" in self.refused((1, -1), (1, -1))
+        assert "cannot change from lane -1 to lane -1 of road 1" in self.refused((1, -1), (1, -1))
         assert "no way leads from road 1 to road" in self.refused((1, 1), way, after)
         other = next(
             arm.end.road

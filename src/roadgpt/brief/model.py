@@ -179,6 +179,12 @@ class Brief(Frozen):
         return self.model_copy(update=said) == Brief()
 
     @property
+    def has_free_shape(self) -> bool:
+        """Whether nothing but lanes and markings is required of the road."""
+        lanes = {"lanes": None, "against": None, "divided": False, "centre": None, "motorway": False}
+        return self.model_copy(update=lanes).is_open
+
+    @property
     def as_stretch(self) -> "Brief":
         """The requirements for a road between junctions: it needs no turn unless turns are asked for."""
         if self.clauses or self.turns is not None:

@@ -5,12 +5,18 @@ counts as well.
 """
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from roadgpt.brief.junctions import Control, JunctionKind, Way, side_of
-from roadgpt.network import Network, Passage, RoadEnd, Route
+import numpy as np
 
+from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
+from roadgpt.geometry import CubicProfile
+from roadgpt.network import Network, NetworkRoad, Passage, RoadEnd, Route
+
+FAR = 1e6  # m, behind the end of a connecting road
+FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
 T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
 T_OTHERS = 55.0  # degrees, least other gap
@@ -40,6 +46,12 @@ class MeasuredJunction:
     """Outer diameter of a roundabout; None for other junctions."""
     island: float | None
     """Radius of the central island of a roundabout; None for other junctions."""
+    is_ramp: bool | None = None
+    """Whether the route comes from the ramp (merge) or goes to it (diverge); None for other junctions."""
+    beside: float | None = None
+    """Length of the full lane for acceleration or deceleration of a merge or exit."""
+    all_controls: tuple[Control, ...] = ()
+    """The sign or the light of each arm with lanes into the junction."""
 
     @property
     def arms(self) -> int:
@@ -57,14 +69,84 @@ def measured_junctions(route: Route) -> list[MeasuredJunction]:
     return [_measured(route.network, passage) for passage in route.passages]
 
 
+@dataclass(frozen=True)
+class MeasuredLanes:
+    """A place where the number of lanes changes, or where the route changes its lane."""
+
+    s: float
+    """Station in metres."""
+    kind: LaneKind
+    side: Side | None
+    """The side of the lane that ends or begins, or to which the route changes."""
+
+
+def measured_places(route: Route) -> list[MeasuredJunction | MeasuredLanes]:
+    """Returns what a route passes, in driving order: junctions, and places where lanes change."""
+    found: list[MeasuredJunction | MeasuredLanes] = [*measured_junctions(route), *_lane_places(route)]
+    return sorted(found, key=lambda each: each.s)
+
+
+def _lane_places(route: Route) -> Iterator[MeasuredLanes]:
+    network = route.network
+    for (_, one), (start, two) in pairwise(route.roads):
+        if RoadEnd(one.id, "end") not in network.continued_at or is_beside_ramp(network, one, two):
+            continue
+        before, after = one.profile.count[0], two.profile.count[0]
+        lanes = [leg.lane for leg in route.legs if leg.road == two.id]
+        if after != before:
+            pairs = network.continued_at[RoadEnd(two.id, "start")].lanes
+            side: Side = "right" if (-1, -1) in pairs else "left"
+            yield MeasuredLanes(start, "lane_drop" if after < before else "lane_gain", side)
+        elif len(lanes) > 1:
+            yield MeasuredLanes(start, "lane_change", "left" if abs(lanes[1]) < abs(lanes[0]) else "right")
+
+
+def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
+    """Returns whether one of two roads that continue each other has the lane of a ramp."""
+    ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
+    return any(
+        (number := network.junction_at.get(end)) is not None and network.junction(number).kind == kind
+        for end, kind in ends
+    )
+
+
+def _ramp_of(network: Network, passage: Passage) -> tuple[bool, float] | None:
+    """Returns whether the route uses the ramp, and the length of its lane; None if there is no ramp.
+
+    The ramp is the one of two roads on the same side of the junction that turns more.
+    """
+    junction = passage.entered
+    if junction.kind not in RAMPS:
+        return None
+    is_merge = junction.kind == "merge"
+    own = passage.arrival if is_merge else passage.departure
+    common = passage.departure if is_merge else passage.arrival
+    turns = {
+        (each.incoming if is_merge else each.outgoing): abs(
+            float(network.road(each.road).road.heading(FAR) - network.road(each.road).road.heading(0.0))
+        )
+        for each in junction.connections
+        if (each.outgoing if is_merge else each.incoming) == common
+    }
+    beside = network.road(common.road)
+    count = beside.profile.count[0]
+    width = beside.profile.right[count - 1].width
+    full = 0.0
+    if isinstance(width, CubicProfile):
+        s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
+        full = float(np.mean(width.height(s) > FULL * width.extremes()[1])) * beside.road.length
+    return turns[own] == max(turns.values()), full
+
+
 def _measured(network: Network, passage: Passage) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
     directions = [_direction(network, end) for end in passage.arms]
+    ramp = _ramp_of(network, passage)
     gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
     return MeasuredJunction(
         passage.start,
-        ("roundabout",) if ring is not None else _kinds(gaps),
+        _kinds(gaps) if ring is None and ramp is None else (passage.entered.kind,),
         tuple(gaps),
         180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
         passage.exit,
@@ -72,7 +154,15 @@ def _measured(network: Network, passage: Passage) -> MeasuredJunction:
         passage.control,
         None if ring is None else 2 * (ring.radius + ring.width),
         None if ring is None else ring.radius,
+        ramp and ramp[0],
+        ramp and ramp[1],
+        tuple(arm.control for arm in passage.entered.arms if _leads_in(network, arm.end)),
     )
+
+
+def _leads_in(network: Network, end: RoadEnd) -> bool:
+    forward, backward = network.road(end.road).profile.count
+    return bool(forward if end.contact == "end" else backward)
 
 
 def _direction(network: Network, end: RoadEnd) -> float:

@@ -34,17 +34,9 @@ def gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
 
 
 def reached(network: Network, connection: Connection) -> Iterator[LaneEnd]:
-    """Yields the lanes out of a junction to which the lanes of a connection lead: those nearest to them."""
-    targets = lanes_out_of(network, connection.outgoing)
-    end = RoadEnd(connection.road, "end")
-    for _, own in connection.lanes:
-        if targets:
-            yield (
-                connection.outgoing,
-                targets[0]
-                if len(targets) == 1
-                else min(targets, key=lambda lane: gap(network, (end, own), (connection.outgoing, lane))),
-            )
+    """Yields the lanes out of a junction to which the lanes of a connection lead."""
+    for lanes in connection.lanes:
+        yield connection.outgoing, lanes.outgoing
 
 
 @lru_cache(maxsize=2)

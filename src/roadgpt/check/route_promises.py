@@ -7,15 +7,22 @@ and compared with its own requirements, as a single road is by the rule ``promis
 from collections.abc import Iterator
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import SIZES, TAKES, JunctionClause
+from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, SIZES, TAKES, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
-from roadgpt.check.junction_measures import SKEW, MeasuredJunction, measured_junctions
+from roadgpt.check.junction_measures import (
+    SKEW,
+    MeasuredJunction,
+    MeasuredLanes,
+    is_beside_ramp,
+    measured_places,
+)
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints
-from roadgpt.network import Route
+from roadgpt.network import NetworkRoad, RoadEnd, Route
+from roadgpt.network.stretch import joined_roads
 from roadgpt.road import Road
 
 RULE = "promises"
@@ -25,16 +32,19 @@ ROUNDING = 0.5  # m, around the outer diameter of a size
 
 def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
     """Returns one Finding for each requirement that a route does not meet."""
-    found = measured_junctions(route)
+    found = measured_places(route)
     if len(found) != len(brief.junctions):
-        text = f"asked for {len(brief.junctions)} junctions, passes {len(found)}"
+        text = (
+            f"asked for {len(brief.junctions)} junctions and places where lanes change, passes {len(found)}"
+        )
         return (Finding(RULE, text),)
     out = []
-    for number, (junction, asked) in enumerate(zip(found, brief.junctions, strict=True), 1):
-        x, y = route.at(junction.s)[:2].tolist()
+    for number, (place, asked) in enumerate(zip(found, brief.junctions, strict=True), 1):
+        x, y = route.at(place.s)[:2].tolist()
+        texts = place_complaints(place, asked)
         out += [
-            Finding(RULE, f"junction {number} at s = {junction.s:.0f} m: {text}", junction.s, x, y)
-            for text in junction_complaints(junction, asked)
+            Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
+            for text in texts
         ]
     for (start, road), stretch in zip(stretches_of(route), brief.stretches, strict=False):
         if not stretch.is_open:
@@ -44,20 +54,60 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
 
 def stretches_of(route: Route) -> list[tuple[float, Road]]:
     """Returns the roads of a route outside junctions in driving order, each with the station of its start."""
-    network = route.network
-    return [
-        (start, network.road(leg.road).road)
-        for start, leg in zip(route.starts, route.legs, strict=False)
-        if network.road(leg.road).junction is None and leg.road not in network.roundabout_of
-    ]
+    found: list[tuple[float, list[NetworkRoad]]] = []
+    for start, member in route.roads:
+        last = found[-1][1][-1] if found else None
+        is_continued = RoadEnd(member.id, "start") in route.network.continued_at
+        if last is not None and is_continued and is_beside_ramp(route.network, last, member):
+            found[-1][1].append(member)
+        else:
+            found.append((start, [member]))
+    return [(start, joined_roads([member.road for member in own])) for start, own in found]
 
 
 def _broken(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
+    yield from _broken_lanes(start, road, asked)
     wanted = outline(asked.as_stretch)
     for complaint in complaints(measure(road.centreline(), wanted.widest), wanted):
         s = start if complaint.s is None else start + complaint.s
         x, y = road.at(min(s - start, road.length))[:2].tolist()
         yield Finding(RULE, f"on the road from s = {start:.0f} m: {complaint.sentence}", s, x, y)
+
+
+def _broken_lanes(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
+    """Yields a Finding for each requirement for lanes that a road does not meet."""
+    profile = road.profile
+    assert profile is not None
+    forward, backward = profile.count
+    x, y = road.at(0.0)[:2].tolist()
+    wrong = []
+    if asked.lanes is not None and forward not in span(asked.lanes):
+        wrong.append(f"asked for {asked.lanes} lanes, has {forward}")
+    if asked.against is not None and backward not in span(asked.against):
+        wrong.append(f"asked for {asked.against} oncoming lanes, has {backward}")
+    if asked.centre is not None and backward and profile.centre_marking != asked.centre:
+        wrong.append(f"asked for a {asked.centre} centre line, has a {profile.centre_marking} one")
+    for text in wrong:
+        yield Finding(RULE, f"on the road from s = {start:.0f} m: {text}", start, x, y)
+
+
+def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
+    """Yields what is wrong with a junction or a place where lanes change, as text."""
+    if isinstance(found, MeasuredLanes):
+        yield from lane_complaints(found, asked)
+    elif asked.kind in LANE_KINDS:
+        yield f"asked for a {asked.name}, has a {found.kinds[0] if found.kinds else 'junction'}"
+    else:
+        yield from junction_complaints(found, asked)
+
+
+def lane_complaints(found: MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
+    """Yields what is wrong with a place where lanes change, as text."""
+    if found.kind != asked.kind:
+        yield f"asked for a {asked.name}, has a {NAMES[found.kind][0]}"
+    side = asked.take or asked.side
+    if side is not None and found.side != side:
+        yield f"asked for the {side} side, is on the {found.side}"
 
 
 def _length(route: Route, brief: Brief) -> Iterator[Finding]:
@@ -81,7 +131,7 @@ def length_range(length: Amount) -> Range:
 
 def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     """Yields what is wrong with a junction, as text."""
-    is_any = asked.kind == "junction" and "roundabout" not in found.kinds
+    is_any = asked.kind == "junction" and not {"roundabout", *RAMPS} & {*found.kinds}
     if not is_any and asked.kind not in found.kinds:
         gaps = ", ".join(f"{gap:.0f}" for gap in found.gaps)
         yield f"asked for a {asked.name}, has arms {gaps} degrees apart"
@@ -98,11 +148,27 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     if asked.skew and min(found.gaps) >= SKEW:
         yield f"asked for skew crossroads, the least angle is {min(found.gaps):.0f} degrees"
     yield from _sizes(found, asked)
+    yield from _of_ramp(found, asked)
+    if asked.all_way and set(found.all_controls) != {asked.control}:
+        yield f"asked for {asked.control} at every arm, has {', '.join(found.all_controls)}"
+
+
+def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    if found.beside is None or asked.length is None:
+        return
+    wanted = span(asked.length)
+    if asked.length.exact:
+        slack = ROAD["length"].slack(wanted.lo)
+        wanted = Range(wanted.lo - slack, wanted.hi + slack)
+    if found.beside not in wanted:
+        yield f"asked for a lane of {asked.length} m, has {found.beside:.0f} m"
 
 
 def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:
     """Returns whether the route leaves a junction in the required direction."""
     take, turn = asked.take, found.turn
+    if take in ("ramp", "main"):
+        return found.is_ramp is (take == "ramp")
     if take == "back":
         return found.exit == found.arms
     if found.exit == found.arms:

@@ -12,11 +12,11 @@ from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, side_of
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
-from roadgpt.network.network import Kind
+from roadgpt.network.network import JunctionKind
 from roadgpt.network.ring import BETWEEN, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
-ANY: tuple[Kind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
+ANY: tuple[JunctionKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
 """The kinds of a junction whose kind is not said; T-junctions are twice as frequent."""
 
 KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
@@ -56,6 +56,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             ArmDesign(
                 angle=angle,
                 length=None if number == taken else round(float(rng.uniform(least, most)), 1),
+                control=clause.control if clause.all_way else None,
             )
             for number, angle in enumerate(angles)
         )
@@ -75,12 +76,14 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
     return None
 
 
-def _kind(asked: JunctionClause, rng: Rng) -> Kind:
+def _kind(asked: JunctionClause, rng: Rng) -> JunctionKind:
     """Returns the kind of a junction; where the description names none, one of those that have its arms."""
     if asked.kind != "junction":
-        return cast(Kind, asked.kind)
+        return cast(JunctionKind, asked.kind)
     arms = span(asked.arms)
-    kinds: list[Kind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    kinds: list[JunctionKind] = [
+        kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo
+    ]
     return kinds[int(rng.integers(len(kinds)))]
 
 

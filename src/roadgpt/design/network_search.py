@@ -7,25 +7,34 @@ accept the network that is built from it.
 
 from collections import Counter
 from collections.abc import Sequence
-from itertools import accumulate
+from itertools import accumulate, pairwise
+from math import inf
 
 import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.amount import between, exactly, span
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.junction_draft import drawn_junction
+from roadgpt.design.lane_draft import SHORT_ROAD, drawn_change, drawn_ramp, lanes_of_roads
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
-from roadgpt.errors import DesignError
-from roadgpt.network import JunctionDesign, NetworkDesign, build_route, passing_length
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.network import NetworkDesign, build_route
+from roadgpt.network.design import PlaceDesign, ends_route
+from roadgpt.network.growing import length_inside
+from roadgpt.network.lane_design import LanesDesign, RampDesign
+from roadgpt.network.ramps import TAPER as RAMP_TAPER
+from roadgpt.network.ramps import length_beside
+from roadgpt.network.stretch_profiles import profiles_between
 from roadgpt.plural import plural
-from roadgpt.road import Segment, World
+from roadgpt.road import Profile, Segment, World
 
 DRAFTS = 400  # for one route, at most
 NO_HASTE = 12  # drafts without haste
@@ -38,11 +47,18 @@ LONG = 150.0  # m, of a road that is easier to place if it has several turns
 HURRIED = 1 / 8  # of haste from the start, for each junction beyond the second
 CURVED = 0.4  # share of roads without requirements that have a turn
 SHORTEST = 30.0  # m, of a road without requirements
+SHORTEST_WITH_LANES = 80.0  # m, where lanes end, begin or are changed
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
 MOST = 130.0  # m, of one such road
 TURNING = 45.0  # m more for such a road with a turn
 PARTS = 250.0  # m, the usual map
+ROOM_TO_TURN = 20.0  # m, of a road whose length is required and that is partly beside the lane of a ramp
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
+
+
+def is_kind(place: PlaceDesign, kind: str) -> bool:
+    """Returns whether a place is of this kind."""
+    return place.kind == kind
 
 
 Draft = tuple[DraftSearch, PlacedPlan]
@@ -61,6 +77,8 @@ class NetworkSearch:
             rng: random number generator.
         """
         self.brief, self.world, self.rng = brief, world, rng
+        self.usual = LanesDesign(width=world.section.lane_width)
+        self.lanes = lanes_of_roads(brief, world.section.lane_width)
         self.failed: Counter[str] = Counter()
 
     def run(self) -> NetworkDesign:
@@ -76,7 +94,10 @@ class NetworkSearch:
             if design is None:
                 continue
             built += 1
-            route = build_route(design, self.world)
+            try:
+                route = build_route(design, self.world)
+            except UsageError as error:
+                raise DesignError(str(error)) from error
             findings = check.inspect(route, self.brief, self.world)
             if not findings:
                 return design
@@ -86,7 +107,7 @@ class NetworkSearch:
         raise DesignError(self._advice())
 
     def _draft(self, haste: float) -> NetworkDesign | None:
-        junctions = self._junctions(haste)
+        junctions = self._places(haste)
         drafts = None if junctions is None else self._stretches(junctions, haste)
         if junctions is None or drafts is None:
             return None
@@ -95,7 +116,7 @@ class NetworkSearch:
         if pose is None or segments is None:
             return None
         after = accumulate(map(len, segments))
-        driven = segments[:-1] if junctions[-1].taken is None else segments
+        driven = segments[:-1] if ends_route(junctions[-1]) else segments
         every = tuple(segment for part in driven for segment in part)
         low, high = STARTS_AT
         ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
@@ -107,27 +128,50 @@ class NetworkSearch:
                 junction.model_copy(update={"after": number})
                 for junction, number in zip(junctions, after, strict=False)
             ),
+            lanes=None if self._has_usual_lanes else self.lanes[0],
         )
 
-    def _junctions(self, haste: float) -> list[JunctionDesign] | None:
-        found = []
-        for clause in self.brief.junctions:
+    @property
+    def _has_usual_lanes(self) -> bool:
+        return all(each == self.usual for each in self.lanes)
+
+    def _places(self, haste: float) -> list[PlaceDesign] | None:
+        """Returns what the route passes; None if a junction cannot be drawn."""
+        found: list[PlaceDesign] = []
+        for number, clause in enumerate(self.brief.junctions):
+            if clause.kind in LANE_KINDS:
+                found.append(drawn_change(clause))
+                continue
+            lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            if clause.kind in RAMPS:
+                room = self._room_beside(number)
+                found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
+                continue
             junction = drawn_junction(clause, 1, self.rng, haste)
             if junction is None:
                 is_ring = clause.kind == "roundabout"
                 why = "such an island is too small for so many arms" if is_ring else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
-            found.append(junction)
+            found.append(junction if lanes is None else junction.model_copy(update={"lanes": lanes}))
         return found
 
-    def _stretches(self, junctions: Sequence[JunctionDesign], haste: float) -> list[Draft] | None:
+    def _room_beside(self, number: int) -> float:
+        """Returns the length in metres that a lane for acceleration or deceleration can have."""
+        is_exit = self.brief.junctions[number].kind == "diverge"
+        asked = self.brief.stretches[number if is_exit else number + 1].length
+        return inf if asked is None else span(asked).hi - RAMP_TAPER - SHORT_ROAD - ROOM_TO_TURN
+
+    def _profiles(self, places: Sequence[PlaceDesign], lengths: Sequence[float]) -> list[Profile]:
+        return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)
+
+    def _stretches(self, junctions: Sequence[PlaceDesign], haste: float) -> list[Draft] | None:
         """Returns a draft of each road between the junctions; None if one of them cannot be drafted.
 
         The roads of which nothing is required are drafted last: they make up the length of the whole route.
         """
         briefs = self.brief.stretches
-        free = [n for n, brief in enumerate(briefs) if brief.is_open]
+        free = [n for n, brief in enumerate(briefs) if brief.has_free_shape]
         found: dict[int, Draft] = {}
         rest = self._rest(junctions)
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
@@ -135,40 +179,61 @@ class NetworkSearch:
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
                 share = left / sum(each not in found for each in free)
-            draft = self._stretch(briefs[n], haste, share)
+            draft = self._stretch(self._without_ramps(n, junctions), haste, share, self._shortest(n))
             if draft is None:
                 self.failed["one of its roads cannot be drafted"] += 1
                 return None
             found[n] = draft
         return [found[n] for n in range(len(briefs))]
 
-    def _rest(self, junctions: Sequence[JunctionDesign]) -> float | None:
+    def _shortest(self, n: int) -> float:
+        """Returns the least length in metres of a road of which no length is required."""
+        around = self.brief.junctions[max(n - 1, 0) : n + 1]
+        changes = any(place.kind in LANE_KINDS for place in around) or self.lanes[n].forward > 1
+        return SHORTEST_WITH_LANES if changes else SHORTEST
+
+    def _without_ramps(self, n: int, places: Sequence[PlaceDesign]) -> Brief:
+        """Returns the requirements for the part of a road that is not beside a lane of a ramp."""
+        asked = self.brief.stretches[n]
+        beside = [place for place in places[max(n - 1, 0) : n] if is_kind(place, "merge")]
+        beside += [place for place in places[n : n + 1] if is_kind(place, "diverge")]
+        less = sum(length_beside(place) for place in beside if isinstance(place, RampDesign))
+        if asked.length is None or not less:
+            return asked
+        low, high = span(asked.length).lo - less, span(asked.length).hi - less
+        return asked.model_copy(update={"length": between(max(low, 0.0), max(high, SHORT_ROAD))})
+
+    def _rest(self, junctions: Sequence[PlaceDesign]) -> float | None:
         """Returns the length in metres that the roads between junctions share; None if it is open."""
         if self.brief.length is None:
             return None
         asked = length_range(self.brief.length)
         low = asked.lo if asked.lo > 0 else LEAST_OF_MOST * asked.hi
         high = min(asked.hi, MOST_OF_LEAST * low)
-        inside = sum(passing_length(junction, self.world.section.lane_width) for junction in junctions)
+        profiles = self._profiles(junctions, [LONG] * (len(junctions) + 1))
+        inside = sum(
+            length_inside(place, *pair) for place, pair in zip(junctions, pairwise(profiles), strict=True)
+        )
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, haste: float, length: float | None) -> Draft | None:
+    def _stretch(self, brief: Brief, haste: float, length: float | None, shortest: float) -> Draft | None:
         """Returns a draft of a road between junctions; None if no draft was accepted.
 
         Args:
             brief: the requirements for the road.
             haste: from 0 to 1; the larger it is, the shorter the road.
             length: the length in metres that the road should have; None if it is open.
+            shortest: the least length in metres of a road of which no length is required.
         """
         wanted = brief
         if length is not None:
             if length < SHORTEST:
                 return None
             wanted = Brief(length=between(0.97 * length, 1.03 * length))
-        elif brief.is_open:
-            wanted = self._open(haste)
+        elif brief.has_free_shape:
+            wanted = self._open(haste, shortest, is_straight=brief.motorway)
         elif brief.length is None and not brief.clauses and brief.turns is None:
-            free = self._open(haste, is_straight=True)
+            free = self._open(haste, shortest, is_straight=True)
             needs_room = brief.hills is not None or brief.climb is not None
             wanted = brief.model_copy(
                 update={"length": None if needs_room else free.length, "turns": free.turns}
@@ -193,23 +258,25 @@ class NetworkSearch:
             found.append(climbing(segments, is_level, 100 * self.world.limits.max_grade))
         return found
 
-    def _open(self, haste: float, is_straight: bool = False) -> Brief:
+    def _open(self, haste: float, shortest: float, is_straight: bool = False) -> Brief:
         """Returns requirements for a road of which nothing is required: short, and with a turn at most."""
         count = len(self.brief.stretches)
         most = min(MOST, ROOM * self.world.site.map_size / PARTS / count)
-        high = SHORTEST + 5 + (most - SHORTEST) * (1 - haste) * float(self.rng.random())
+        most = max(most, shortest)
+        high = shortest + 5 + (most - shortest) * (1 - haste) * float(self.rng.random())
         if is_straight or self.rng.random() > CURVED * (1 - haste):
-            return Brief(turns=exactly(0), length=between(SHORTEST * (1 - 0.3 * haste), high))
-        return Brief(turns=exactly(1), degrees=between(18, 70), length=between(SHORTEST, high + TURNING))
+            return Brief(turns=exactly(0), length=between(shortest * (1 - 0.3 * haste), high))
+        return Brief(turns=exactly(1), degrees=between(18, 70), length=between(shortest, high + TURNING))
 
-    def _place(self, drafts: Sequence[Draft], junctions: Sequence[JunctionDesign]) -> MapPose | None:
+    def _place(self, drafts: Sequence[Draft], junctions: Sequence[PlaceDesign]) -> MapPose | None:
         """Returns the start of a route on the map; None if it overlaps itself or does not fit."""
-        section = self.world.section
-        if junctions[-1].taken is None and not self.brief.stretches[-1].is_open:
+        if ends_route(junctions[-1]) and not self.brief.stretches[-1].is_open:
             self.failed["it turns back, so it cannot go on on another road"] += 1
             return None
-        sketch = sketched([drafted.line for _, drafted in drafts], junctions, section.lane_width)
-        if not is_clear(sketch, section.lane_width, section.shoulder):
+        lines = [drafted.line for _, drafted in drafts]
+        profiles = self._profiles(junctions, [float(line.s[-1]) for line in lines])
+        sketch = sketched(lines, junctions, profiles)
+        if not is_clear(sketch, max(profile.reach for profile in profiles)):
             self.failed["its roads would overlap"] += 1
             return None
         pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng)

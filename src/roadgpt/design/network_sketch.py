@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 
 from roadgpt.design.layout import PlanLine
 from roadgpt.network import JunctionDesign
-from roadgpt.network.design import STUB
-from roadgpt.network.growing import contact_distances
+from roadgpt.network.design import STUB, PlaceDesign
+from roadgpt.network.growing import contact_distances, profiles_of_arms
+from roadgpt.network.lane_design import RampDesign
+from roadgpt.network.ramps import lines_at_ramp
 from roadgpt.network.ring import ring_width
+from roadgpt.road import Profile
 
 Complex = NDArray[np.complex128]
 STEP = 2.0  # m between points
@@ -34,42 +37,76 @@ class NetworkSketch(NamedTuple):
     """The number of the road or junction to which each point belongs, ``(n,)``."""
     near: NDArray[np.bool_]
     """Shape (parts, parts): whether two parts meet, so that they may be near each other."""
+    joined: NDArray[np.bool_]
+    """Shape (parts, parts): whether two parts are roads that continue each other or meet at a small angle, so
+    that they may be near each other anywhere."""
     nodes: tuple[tuple[complex, float], ...]
     """The node of each junction, and the distance from it within which its arms may be near each other."""
 
 
-def sketched(lines: Sequence[PlanLine], junctions: Sequence[JunctionDesign], width: float) -> NetworkSketch:
+def sketched(
+    lines: Sequence[PlanLine], places: Sequence[PlaceDesign], profiles: Sequence[Profile]
+) -> NetworkSketch:
     """Returns the sketch of a route.
 
     Args:
-        lines: the roads before, between and after the junctions.
-        junctions: the junctions.
-        width: width in metres of each lane.
+        lines: the roads before, between and after the places that the route passes.
+        places: these places.
+        profiles: the cross-section of each road.
     """
-    pen = _Pen(lines[0], width)
-    for junction, line in zip(junctions, lines[1:], strict=True):
-        pen.pass_junction(junction, line)
-    near = np.eye(len(pen.parts), dtype=bool)
-    for a, b in pen.pairs:
-        near[a, b] = True
+    pen = _Pen(lines[0])
+    for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):
+        if isinstance(place, JunctionDesign):
+            pen.pass_junction(place, line, (profiles[number], profiles[number + 1]))
+        elif isinstance(place, RampDesign):
+            pen.pass_ramp(place, line)
+        else:
+            pen.go_on(line)
+    near, joined = (np.eye(len(pen.parts), dtype=bool) for _ in range(2))
+    for pairs, table in ((pen.pairs, near), (pen.joined, joined)):
+        for a, b in pairs:
+            table[a, b] = table[b, a] = True
     numbers = np.repeat(np.arange(len(pen.parts)), [len(z) for z in pen.parts])
-    return NetworkSketch(np.concatenate(pen.parts), numbers, near, tuple(pen.nodes))
+    return NetworkSketch(np.concatenate(pen.parts), numbers, near | joined, joined, tuple(pen.nodes))
 
 
 class _Pen:
     """Draws the parts of a sketch one after another, in driving order."""
 
-    def __init__(self, line: PlanLine, width: float) -> None:
+    def __init__(self, line: PlanLine) -> None:
         self.parts: list[Complex] = [_thinned(line.z)]
         self.pairs: list[tuple[int, int]] = []
+        self.joined: list[tuple[int, int]] = []
         self.nodes: list[tuple[complex, float]] = []
-        self._width = width
         self._arrival, self._end, self._way = 0, complex(line.z[-1]), _way(line.z)
 
-    def pass_junction(self, junction: JunctionDesign, line: PlanLine) -> None:
+    def go_on(self, line: PlanLine) -> None:
+        """Draws a road that continues the one on which the route has arrived."""
+        before, way = self._arrival, self._way
+        self._arrival = self._drawn(self._end + way * _thinned(line.z))
+        self._end, self._way = self._end + way * complex(line.z[-1]), way * _way(line.z)
+        self.joined.append((before, self._arrival))
+
+    def pass_ramp(self, ramp: RampDesign, line: PlanLine) -> None:
+        """Draws a merge or an exit, the road that the route does not take, and that on which it goes on."""
+        first = self._arrival
+        on_route, beside = lines_at_ramp(ramp)
+        at, way = self._end, self._way
+        parts = [self._drawn(at + way * np.array(each)) for each in (on_route, beside)]
+        self._arrival, self._end = parts[0], at + way * on_route[-1]
+        self._way = way * (on_route[-1] - on_route[-2]) / abs(on_route[-1] - on_route[-2])
+        here = [first, *parts]
+        self.go_on(line)
+        here.append(self._arrival)
+        self.joined += [(a, b) for a in here for b in here]
+
+    def pass_junction(
+        self, junction: JunctionDesign, line: PlanLine, profiles: tuple[Profile, Profile]
+    ) -> None:
         """Draws a junction, its arms, and the road on which the route goes on."""
         directions = [pi, *(radians(arm.angle) for arm in junction.all_arms)]
-        far, way = contact_distances(junction, directions, self._width), self._way
+        arms = [profiles[0], *profiles_of_arms(junction, *profiles)]
+        far, way = contact_distances(junction, directions, arms), self._way
         node = self._end + way * far[0]
         self.nodes.append((node, max(far) + AWAY))
         here = [self._arrival]
@@ -102,19 +139,18 @@ def _way(z: Complex) -> complex:
     return step / abs(step)
 
 
-def is_clear(sketch: NetworkSketch, width: float, shoulder: float) -> bool:
+def is_clear(sketch: NetworkSketch, reach: float) -> bool:
     """Returns whether roads and junctions that do not meet keep their distance.
 
     Args:
         sketch: the sketch.
-        width: width in metres of each lane.
-        shoulder: width in metres of each shoulder.
+        reach: distance in metres from the reference line of a road to the outer edge of its shoulder.
     """
-    apart = 2 * width + 2 * shoulder + MARGIN
+    apart = 2 * reach + MARGIN
     z, part = sketch.z, sketch.part
     of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < apart, 1))
-    other_parts = part[of] != part[others]
-    of, others = of[other_parts], others[other_parts]
+    apart_from = ~sketch.joined[part[of], part[others]]
+    of, others = of[apart_from], others[apart_from]
     meet = sketch.near[part[of], part[others]]
     if not meet.all():
         return False

@@ -3,14 +3,9 @@
 from collections.abc import Iterator
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.junctions import RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
-
-KINDS = {"merge": "a merge", "diverge": "a motorway exit", "lane_drop": "a lane that ends"} | {
-    "lane_gain": "an additional lane",
-    "lane_change": "a lane change",
-}
 
 
 def check_built(brief: Brief) -> None:
@@ -34,21 +29,15 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
     for junction in brief.junctions:
         yield from _of_junction(junction)
     for road in (brief, *brief.stretches):
-        if _differs(road.lanes) or _differs(road.against):
-            yield "a road with other than one lane in each direction, in words"
         if road.divided:
             yield "a median"
-        if road.centre not in (None, "broken"):
-            yield "another centre line"
 
 
 def _of_junction(junction: JunctionClause) -> Iterator[str]:
-    if junction.kind in (*RAMPS, *LANE_KINDS):
-        yield KINDS[junction.kind]
+    if junction.kind in RAMPS and junction.side == "left":
+        yield "a ramp on the left"
     if _differs(junction.lanes):
         yield "a roundabout with two lanes"
-    if junction.all_way:
-        yield "the same sign at every arm"
     if junction.crosswalk:
         yield "a crosswalk"
 

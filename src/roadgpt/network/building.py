@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
-from roadgpt.network.network import Junction, Network, NetworkRoad, RoadEnd, Roundabout
+from roadgpt.network.network import Continuation, Junction, Network, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.road import Profile, Road
 from roadgpt.road.profile import Lane, Width
 
@@ -17,6 +17,7 @@ class Builder:
     roads: dict[int, NetworkRoad] = field(default_factory=dict)
     junctions: list[Junction] = field(default_factory=list)
     roundabouts: list[Roundabout] = field(default_factory=list)
+    continuations: list[Continuation] = field(default_factory=list)
     _last: int = 0
 
     def number(self) -> int:
@@ -33,7 +34,7 @@ class Builder:
     def network(self) -> Network:
         """Returns the finished network; roads stand in the order of their ids."""
         ordered = tuple(self.roads[number] for number in sorted(self.roads))
-        return Network(ordered, tuple(self.junctions), tuple(self.roundabouts))
+        return Network(ordered, tuple(self.junctions), tuple(self.roundabouts), tuple(self.continuations))
 
 
 @dataclass(frozen=True)
@@ -61,9 +62,31 @@ class Stub:
         """Returns the id of a lane that leads into the junction; lanes count from 0 at the centre line."""
         return -(index + 1) if self.end.contact == "end" else index + 1
 
+    def id_out_of(self, index: int) -> int:
+        """Returns the id of a lane that leads out of the junction; lanes count from 0 at the centre line."""
+        return index + 1 if self.end.contact == "end" else -(index + 1)
+
     def width_of(self, lane: Lane) -> float:
         """Returns the width in metres of a lane at the junction."""
         return width_at(lane.width, self.station)
+
+    def inside_into(self, index: int) -> float:
+        """Returns the distance in metres from the reference line to the left edge of a lane into the
+        junction, positive to the right as one drives.
+        """
+        sign = -1 if self.end.contact == "end" else 1
+        return sign * self._offset + sum(map(self.width_of, self.into[:index]))
+
+    def inside_out_of(self, index: int) -> float:
+        """Returns the distance in metres from the reference line to the left edge of a lane out of the
+        junction, positive to the right as one drives.
+        """
+        sign = 1 if self.end.contact == "end" else -1
+        return sign * self._offset + sum(map(self.width_of, self.out_of[:index]))
+
+    @property
+    def _offset(self) -> float:
+        return width_at(self.profile.offset, self.station)
 
     @property
     def mouth(self) -> tuple[float, float]:
@@ -85,27 +108,44 @@ def level(length: float, z: float) -> GradeProfile:
     return GradeProfile(z, (0.0, length), (0.0, 0.0))
 
 
-def one_way(first: float, last: float, length: float) -> Profile:
-    """Returns the cross-section of a connecting road with one lane on the right, without markings.
+Change = tuple[float, float]
+"""A width or an offset in metres at the start and at the end of a road."""
 
-    Its width in metres changes smoothly from ``first`` to ``last``.
+
+def one_way(widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0)) -> Profile:
+    """Returns the cross-section of a connecting road with lanes on the right only, without markings.
+
+    Args:
+        widths: The width of each lane, from left to right; it changes smoothly.
+        length: Length of the road in metres.
+        offset: The offset of the left edge of the leftmost lane.
     """
+    lanes = tuple(Lane("driving", _changing(each, length)) for each in widths)
+    return Profile((), lanes, 0, "none", offset=_changing(offset, length))
+
+
+def _changing(change: Change, length: float) -> Width:
+    first, last = change
     same = math.isclose(first, last, abs_tol=1e-9)
-    width: Width = first if same else CubicProfile.smooth([(0.0, first), (length, last)])
-    return Profile((), (Lane("driving", width),), 0, "none")
+    return first if same else CubicProfile.smooth([(0.0, first), (length, last)])
 
 
 def connecting_road(
-    start: tuple[float, float, float], heading: float, pieces: Sequence[Piece], widths: tuple[float, float]
+    start: tuple[float, float, float],
+    heading: float,
+    pieces: Sequence[Piece],
+    widths: Sequence[Change],
+    offset: Change = (0.0, 0.0),
 ) -> Road:
-    """Returns a level connecting road with one lane.
+    """Returns a level connecting road.
 
     Args:
         start: The point in metres at which its reference line begins.
         heading: The heading there in radians.
         pieces: The lines, arcs and clothoids of its reference line.
-        widths: The width of its lane in metres at the start and at the end.
+        widths: The width of each of its lanes, from left to right.
+        offset: The offset of the left edge of its leftmost lane from the reference line.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))
-    return Road(plan, level(plan.length, z), profile=one_way(*widths, plan.length))
+    return Road(plan, level(plan.length, z), profile=one_way(widths, plan.length, offset))

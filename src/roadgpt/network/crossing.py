@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import wrap_angle
 from roadgpt.network.building import Builder, Stub, connecting_road
-from roadgpt.network.network import Arm, Connection, Junction, Kind
+from roadgpt.network.crossing_lanes import LaneWay, lane_ways
+from roadgpt.network.network import Arm, Connection, Junction, Kind, LaneLink
 from roadgpt.network.turning import STRAIGHT, curve_between, tangent_length
 
 NEAREST = 2.0  # m, from the node to a contact
@@ -77,12 +78,10 @@ def build_crossing(
     """
     number = builder.number()
     connections = []
-    for i, start in enumerate(stubs):
-        for j, end in enumerate(stubs):
-            if i != j and start.into and end.out_of:
-                connections.append(
-                    _connection(builder, number, node, (start, end), (distances[i], distances[j]))
-                )
+    for i in range(len(stubs)):
+        for j, way in lane_ways(stubs, i):
+            ends, far = (stubs[i], stubs[j]), (distances[i], distances[j])
+            connections.append(_connection(builder, number, node, ends, far, way))
     arms = tuple(
         Arm(stub.end, stub.direction, control) for stub, control in zip(stubs, controls, strict=True)
     )
@@ -97,6 +96,7 @@ def _connection(
     node: tuple[float, float, float],
     ends: tuple[Stub, Stub],
     distances: tuple[float, float],
+    way: LaneWay,
 ) -> Connection:
     start, end = ends
     x, y, z = node
@@ -108,6 +108,9 @@ def _connection(
         z,
     )
     pieces = curve_between(*distances, turn if abs(turn) >= STRAIGHT else 0.0)
-    widths = (start.width_of(start.into[0]), end.width_of(end.out_of[0]))
-    road = builder.add(connecting_road(contact, heading, pieces, widths), junction)
-    return Connection(road, start.end, end.end, ((start.id_into(0), -1),))
+    widths = [(start.width_of(start.into[i]), end.width_of(end.out_of[j])) for i, j in way]
+    first_in, first_out = way[0]
+    offset = (-start.inside_into(first_in), -end.inside_out_of(first_out))
+    road = builder.add(connecting_road(contact, heading, pieces, widths, offset), junction)
+    lanes = [LaneLink(start.id_into(i), -1 - n, end.id_out_of(j)) for n, (i, j) in enumerate(way)]
+    return Connection(road, start.end, end.end, tuple(lanes))

@@ -9,7 +9,9 @@ It is written in RoadGPT's JSON format, with two additions:
 ``after`` is the number of segments before the junction. ``arms`` are the other roads that meet there;
 ``angle`` is the direction in which one leaves on them, in degrees from the direction in which the route
 arrives, positive to the left. ``take`` names the arm on which the route goes on: "left", "right" or
-"straight", or the number of the exit, counted counter-clockwise from the road on which one arrives.
+"straight", or the number of the exit, counted counter-clockwise from the road on which one arrives. ``lanes``
+of a junction are those of the road on which the route goes on. Merges, exits and places where lanes change
+are described in ``network.lane_design``.
 """
 
 import re
@@ -21,7 +23,8 @@ from pydantic import BaseModel, Field, ValidationError
 
 from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
-from roadgpt.network.network import Kind
+from roadgpt.network.lane_design import LANE_KINDS, RAMP_KINDS, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.network import JunctionKind
 from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
@@ -34,7 +37,7 @@ ASTERN = 25.0  # degrees; an arm nearer to the road on which one arrives cannot 
 MOST_JUNCTIONS = 100
 MOST_ARMS = 7
 
-USUAL_ARMS: dict[Kind, tuple[float, ...]] = {
+USUAL_ARMS: dict[JunctionKind, tuple[float, ...]] = {
     "t_junction": (-90.0, 90.0),
     "y_junction": (-60.0, 60.0),
     "crossroads": (-90.0, 0.0, 90.0),
@@ -42,7 +45,7 @@ USUAL_ARMS: dict[Kind, tuple[float, ...]] = {
     "roundabout": (-90.0, 0.0, 90.0),
 }
 """The arms of a junction for which none are given, as angles in degrees."""
-COUNTS: dict[Kind, tuple[int, int]] = {
+COUNTS: dict[JunctionKind, tuple[int, int]] = {
     "t_junction": (2, 2),
     "y_junction": (2, 2),
     "crossroads": (3, 3),
@@ -52,17 +55,6 @@ COUNTS: dict[Kind, tuple[int, int]] = {
 """The smallest and the largest number of arms, besides the road on which one arrives."""
 
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1, le=MOST_ARMS + 1)]
-
-
-class LanesDesign(FrozenFields):
-    """The cross-section of all roads of a network."""
-
-    forward: Annotated[int, Field(ge=1, le=1)] = 1
-    """Number of lanes in the direction of the route."""
-    backward: Annotated[int, Field(ge=1, le=1)] = 1
-    """Number of oncoming lanes."""
-    width: Annotated[float, Field(ge=2, le=10, allow_inf_nan=False)] = 4.0
-    """Width of every lane in metres."""
 
 
 class ArmDesign(FrozenFields):
@@ -81,7 +73,7 @@ class JunctionDesign(FrozenFields):
 
     after: Annotated[int, Field(ge=1, le=500)]
     """Number of segments of the route before it."""
-    kind: Kind
+    kind: JunctionKind
     take: Take
     control: Control = "none"
     """What the driver of the route meets: "priority", "yield", "stop", "lights" or "none"."""
@@ -89,6 +81,8 @@ class JunctionDesign(FrozenFields):
     """Radius in metres of the kerb between two neighbouring arms; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=200, allow_inf_nan=False)] = ISLAND
     """Radius in metres of the central island of a roundabout."""
+    lanes: LanesDesign | None = None
+    """The lanes of the road on which the route goes on; None for those of the road before."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
     """The arms other than the one of arrival, in any order; empty for the usual arms of the kind."""
 
@@ -114,7 +108,7 @@ class JunctionDesign(FrozenFields):
         return _towards(self.kind, self.take, [arm.angle for arm in arms])
 
 
-def _towards(kind: Kind, take: str, angles: Sequence[float]) -> int:
+def _towards(kind: JunctionKind, take: str, angles: Sequence[float]) -> int:
     """Returns the index of the arm on a side; in a fork the leftmost or the rightmost arm."""
     if kind == "y_junction" and take != "straight":
         return len(angles) - 1 if take == "left" else 0
@@ -126,6 +120,15 @@ def _towards(kind: Kind, take: str, angles: Sequence[float]) -> int:
     return found[0]
 
 
+PlaceDesign = JunctionDesign | RampDesign | LanesChangeDesign
+"""What a route passes: a junction, a ramp, or a place where lanes change."""
+
+
+def ends_route(place: PlaceDesign) -> bool:
+    """Returns whether the route ends on the road on which it arrived, because it turned back."""
+    return isinstance(place, JunctionDesign) and place.taken is None
+
+
 class NetworkDesign(FrozenFields):
     """Where a route starts, its heading there, its segments and its junctions in driving order."""
 
@@ -133,9 +136,10 @@ class NetworkDesign(FrozenFields):
     theta: Finite
     """Heading at the start in degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
-    junctions: Annotated[tuple[JunctionDesign, ...], Field(min_length=1, max_length=MOST_JUNCTIONS)]
+    junctions: Annotated[tuple[PlaceDesign, ...], Field(min_length=1, max_length=MOST_JUNCTIONS)]
+    """The junctions, and what stands in one order with them."""
     lanes: LanesDesign | None = None
-    """None for the lanes of the World."""
+    """The lanes of the first road; None for those of the World."""
 
     def __repr__(self) -> str:
         kinds = ", ".join(junction.kind.replace("_", "-") for junction in self.junctions)
@@ -159,8 +163,10 @@ class NetworkDesign(FrozenFields):
         for number, segment in enumerate(self.segments, 1):
             out[f"road_segment{number}"] = _plain(segment)
         for number, junction in enumerate(self.junctions, 1):
-            row = _plain(junction, exclude={"arms"})
-            arms = [_plain(arm) for arm in junction.arms]
+            row = _plain(junction, exclude={"arms", "lanes"})
+            if not isinstance(junction, LanesChangeDesign) and junction.lanes is not None:
+                row["lanes"] = _plain(junction.lanes)
+            arms = [_plain(arm) for arm in junction.arms] if isinstance(junction, JunctionDesign) else []
             out[f"junction{number}"] = {**row, "arms": arms} if arms else row
         return out
 
@@ -188,7 +194,7 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
     if not 1 <= len(numbered) <= MOST_JUNCTIONS:
         raise UsageError(f"the design has {len(numbered)} junctions; give 1 to {MOST_JUNCTIONS}")
-    junctions = [_junction(number, raw) for number, raw in numbered]
+    junctions = [_place(number, raw) for number, raw in numbered]
     junctions.sort(key=lambda each: each.after)
     lanes = None if data.get("lanes") is None else _lanes(data["lanes"])
     _check_order(junctions, len(design.segments))
@@ -225,31 +231,49 @@ def _check_object(what: str, raw: Any, fields: str) -> None:
     no_truths(what, raw)
 
 
-def _check_order(junctions: Sequence[JunctionDesign], segments: int) -> None:
+def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:
     after = [junction.after for junction in junctions]
     for n, place in enumerate(after):
         if n and place == after[n - 1]:
             raise UsageError(f"two junctions stand after segment {place}; put a segment between them")
-        if n and junctions[n - 1].taken is None:
+        if n and ends_route(junctions[n - 1]):
             raise UsageError(
                 f"the roundabout after segment {after[n - 1]} leads back on the road of arrival, so no "
                 f"junction can stand after segment {place}; take another exit"
             )
-        if junctions[n].taken is None and place < segments:
+        if ends_route(junctions[n]) and place < segments:
             raise UsageError(
                 f"the roundabout after segment {place} leads back on the road of arrival, so the segments "
                 "behind it are never reached; leave them out or take another exit"
             )
-        if place >= segments and junctions[n].taken is not None:
+        if place >= segments and not ends_route(junctions[n]):
             raise UsageError(
                 f"a junction stands after segment {place}, and there are {segments}; add a segment behind it "
                 "for the road on which the route goes on"
             )
 
 
-def _junction(number: int, raw: Any) -> JunctionDesign:
+OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
+    **dict.fromkeys(RAMP_KINDS, RampDesign),
+    **dict.fromkeys(LANE_KINDS, LanesChangeDesign),
+}
+
+
+def _place(number: int, raw: Any) -> PlaceDesign:
     what = f"junction {number}"
     _check_object(what, raw, "after, kind and take")
+    if raw.get("lanes") is not None:
+        _check_object(f"the lanes of {what}", raw["lanes"], "forward, backward and width")
+    made = OF_LANES.get(str(raw.get("kind")))
+    if made is None:
+        return _junction(what, raw)
+    try:
+        return made.model_validate(raw)
+    except ValidationError as error:
+        raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
+
+
+def _junction(what: str, raw: Mapping[str, Any]) -> JunctionDesign:
     arms = raw.get("arms", ())
     if not isinstance(arms, (list, tuple)) or len(arms) > MOST_ARMS:
         raise UsageError(f"{what} cannot be read: arms: give a list of at most {MOST_ARMS} arms")

@@ -4,20 +4,25 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
 from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
-from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign
-from roadgpt.network.network import Leg, RoadEnd, Roundabout
+from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign, PlaceDesign
+from roadgpt.network.lane_design import LanesChangeDesign, RampDesign
+from roadgpt.network.lane_legs import legs_along
+from roadgpt.network.network import Connection, Continuation, RoadEnd, Roundabout
+from roadgpt.network.pose import NetworkPose
+from roadgpt.network.ramps import RampBuilder, length_at_ramp
 from roadgpt.network.ring import around_length, build_roundabout, contact_distance, smallest_radius
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import road_of
+from roadgpt.network.stretch_profiles import stretch_profiles
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Profile, Segment, World
 from roadgpt.road.road import check_length
-from roadgpt.road.world import OWN
 
+FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # of an arm that lies opposite another one
 
 
@@ -30,25 +35,17 @@ def build_route(design: NetworkDesign, world: World) -> Route:
 
     Raises:
         UsageError: The World asks for lanes or banked bends that networks do not have, the island of a
-            roundabout is too small for its arms, or a road is longer than 50 km.
+            roundabout is too small for its arms, a lane that the route needs cannot be reached, or a road is
+            longer than 50 km.
     """
-    grown = _RouteGrowth(design, _profile(design, world))
-    for number, junction in enumerate(design.junctions, 1):
+    grown = _RouteGrowth(design, stretch_profiles(design, world))
+    for number, place in enumerate(design.junctions, 1):
         try:
-            grown.pass_junction(number, junction)
+            grown.pass_place(number, place)
         except UsageError as error:
             raise UsageError(f"junction {number}: {error}") from error
-    return Route.along(grown.builder.network(), grown.legs)
-
-
-def _profile(design: NetworkDesign, world: World) -> Profile:
-    section = world.section
-    changed = [name for name, usual in OWN.items() if getattr(section, name) != usual]
-    if changed:
-        flags = ", ".join(f"--{name.replace('_', '-')}" for name in changed)
-        raise UsageError(f"a network has level roads with one lane in each direction; leave out {flags}")
-    width = section.lane_width if design.lanes is None else design.lanes.width
-    return Profile.of(1, 1, width, section.shoulder)
+    network = grown.builder.network()
+    return Route.along(network, legs_along(network, grown.passed, grown.shifts))
 
 
 @dataclass
@@ -56,82 +53,160 @@ class _RouteGrowth:
     """A network that is being built along its route."""
 
     design: NetworkDesign
-    profile: Profile
+    profiles: list[Profile]
+    """The cross-section of each road before, between and behind the places that the route passes."""
     builder: Builder = field(default_factory=Builder)
-    legs: list[Leg] = field(default_factory=list)
-    _number: int = 0
-    """The id of the road on which the route has arrived."""
+    passed: list[int] = field(default_factory=list)
+    """The ids of the roads of the route; the last one is that on which it has arrived."""
+    shifts: dict[int, int] = field(default_factory=dict)
+    """For the id of a road on which the route changes lanes, the number of lanes to the left."""
 
     def __post_init__(self) -> None:
         x, y, z = self.design.starting_point
-        first = self.design.stretches[0]
-        self._number = self._road(first, (x, y, z), math.radians(self.design.theta), (False, True))
-        self.legs.append(Leg(self._number, -1))
+        self.passed.append(
+            self._road(0, NetworkPose((x, y, z), math.radians(self.design.theta)), (False, True))
+        )
 
-    def _road(
-        self,
-        segments: Sequence[Segment],
-        start: tuple[float, float, float],
-        heading: float,
-        is_level: tuple[bool, bool],
-    ) -> int:
+    def _road(self, number: int, start: NetworkPose, is_level: tuple[bool, bool]) -> int:
+        """Adds the road behind the place with this number (0: the first road); returns its id.
+
+        ``is_level`` is whether it is level at its start, and at its end.
+        """
+        segments = self.design.stretches[number]
         check_length(sum(segment.distance for segment in segments))
-        return self.builder.add(road_of(segments, start, heading, self.profile, is_level))
+        return self.builder.add(road_of(segments, *start, self.profiles[number], is_level))
 
-    def pass_junction(self, number: int, junction: JunctionDesign) -> None:
-        """Builds a junction of the design, with its arms and the road on which the route goes on."""
-        arrival = self.builder.roads[self._number].road
+    def _end(self) -> NetworkPose:
+        """Returns the pose at the end of the road on which the route has arrived."""
+        arrival = self.builder.roads[self.passed[-1]].road
         x, y, z = arrival.at(arrival.length).tolist()
-        heading = float(arrival.heading(arrival.length))
-        arms, taken = junction.all_arms, junction.taken
-        directions = [heading + math.pi, *(heading + math.radians(arm.angle) for arm in arms)]
-        distances = contact_distances(junction, directions, float(self.profile.width(0.0)))
-        far = distances[0]
-        node = (x + far * math.cos(heading), y + far * math.sin(heading), z)
-        stubs = [Stub(RoadEnd(self._number, "end"), directions[0], self.profile, arrival.length)]
-        ends_here = number == len(self.design.junctions)
+        return NetworkPose((x, y, z), float(arrival.heading(arrival.length)))
+
+    def pass_place(self, number: int, place: PlaceDesign) -> None:
+        """Builds a place of the design, with its arms and the road on which the route goes on."""
+        is_level = number < len(self.design.junctions)
+        if isinstance(place, JunctionDesign):
+            self._pass_junction(number, place, is_level)
+        elif isinstance(place, LanesChangeDesign):
+            self._go_on(number, place, is_level)
+        else:
+            self._pass_ramp(number, place, is_level)
+
+    def _pass_ramp(self, number: int, ramp: RampDesign, is_level: bool) -> None:
+        profiles = self.profiles[number - 1], self.profiles[number]
+        made = RampBuilder(self.builder, ramp, self.passed[-1], self._end(), *profiles)
+        road = self._road(number, made.where_it_goes_on(), (True, is_level))
+        self.passed += [*made.build(road), road]
+
+    def _go_on(self, number: int, place: LanesChangeDesign, is_level: bool) -> None:
+        """Lets another road continue the one on which the route has arrived, with other lanes."""
+        before, lanes = (
+            self.passed[-1],
+            continued_lanes(place, self.profiles[number - 1], self.profiles[number]),
+        )
+        road = self._road(number, self._end(), (True, is_level))
+        self.builder.continuations.append(Continuation(RoadEnd(before, "end"), RoadEnd(road, "start"), lanes))
+        if place.kind == "lane_change":
+            self.shifts[road] = 1 if place.side == "left" else -1
+        self.passed.append(road)
+
+    def _pass_junction(self, number: int, junction: JunctionDesign, is_level: bool) -> None:
+        end, arms, taken = self._end(), junction.all_arms, junction.taken
+        directions = [end.heading + math.pi, *(end.heading + math.radians(arm.angle) for arm in arms)]
+        before = self.profiles[number - 1]
+        profiles = [before, *profiles_of_arms(junction, before, self.profiles[number])]
+        distances = contact_distances(junction, directions, profiles)
+        node = end.ahead(distances[0]).point
+        arrival = self.passed[-1]
+        stubs = [
+            Stub(RoadEnd(arrival, "end"), directions[0], profiles[0], self.builder.roads[arrival].road.length)
+        ]
         for n, (arm, direction) in enumerate(zip(arms, directions[1:], strict=True)):
-            out = distances[n + 1]
-            start = (node[0] + out * math.cos(direction), node[1] + out * math.sin(direction), z)
+            start = NetworkPose(node, direction).ahead(distances[n + 1])
             if n == taken:
-                road = self._road(self.design.stretches[number], start, direction, (True, not ends_here))
+                road = self._road(number, start, (True, is_level))
             else:
+                check_length(arm.length or STUB)
                 side = (Segment(distance=arm.length or STUB, direction="straight"),)
-                road = self._road(side, start, direction, (True, False))
-            stubs.append(Stub(RoadEnd(road, "start"), direction, self.profile, 0.0))
+                road = self.builder.add(road_of(side, *start, profiles[n + 1], (True, False)))
+            stubs.append(Stub(RoadEnd(road, "start"), direction, profiles[n + 1], 0.0))
         controls = controls_of(junction)
         to = 0 if taken is None else taken + 1
         if junction.kind == "roundabout":
+            _check_one_lane(stubs)
             ring = build_roundabout(self.builder, node, junction.radius, stubs, controls, junction.kerb)
-            self.legs += _around(self.builder, ring, to)
+            self.passed += _around(self.builder, ring, to)
         else:
             built = build_crossing(
                 self.builder, junction.kind, node, stubs, distances, controls, junction.kerb
             )
-            way = next(
-                each
-                for each in built.connections
-                if each.incoming == stubs[0].end and each.outgoing == stubs[to].end
-            )
-            self.legs.append(Leg(way.road, -1))
-        self._number = stubs[to].end.road
-        self.legs.append(Leg(self._number, -1 if to else 1))
+            self.passed.append(_way(built.connections, stubs[0], stubs[to]))
+        self.passed.append(stubs[to].end.road)
 
 
-def contact_distances(junction: JunctionDesign, directions: Sequence[float], width: float) -> list[float]:
+def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
+    """Returns the cross-section of each arm but that of arrival.
+
+    A road that the route does not take has one lane in each direction; but straight ahead, it has as many as
+    the road of arrival.
+
+    Args:
+        junction: The junction.
+        before: The cross-section of the road on which the route arrives.
+        after: The cross-section of the road on which it goes on.
+    """
+    width, shoulder = float(after.width(FAR)), after.shoulder_width
+    side, ahead = (Profile.of(*count, width, shoulder) for count in ((1, 1), before.count))
+    return [
+        after if n == junction.taken else ahead if side_of(arm.angle) == "straight" else side
+        for n, arm in enumerate(junction.all_arms)
+    ]
+
+
+def _way(connections: Sequence[Connection], start: Stub, end: Stub) -> int:
+    """Returns the id of the connecting road from one arm to another.
+
+    Raises:
+        UsageError: There is none.
+    """
+    for each in connections:
+        if (each.incoming, each.outgoing) == (start.end, end.end):
+            return each.road
+    raise UsageError("the route cannot go on there: no lane leads out of the junction; give that road a lane")
+
+
+def _check_one_lane(stubs: Sequence[Stub]) -> None:
+    if any(len(stub.into) > 1 or len(stub.out_of) > 1 for stub in stubs):
+        raise UsageError("a roundabout has one lane, so the roads to it have one lane in each direction")
+
+
+def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -> tuple[tuple[int, int], ...]:
+    """Returns pairs of lane ids that continue each other where lanes change."""
+    is_left = place.side == "left"
+    drop, gain = place.kind == "lane_drop" and is_left, place.kind == "lane_gain" and is_left
+    count = min(before.count[0], after.count[0])
+    right = [(-1 - n - drop, -1 - n - gain) for n in range(count)]
+    return (*right, *((n, n) for n in range(1, min(before.count[1], after.count[1]) + 1)))
+
+
+def contact_distances(
+    junction: JunctionDesign, directions: Sequence[float], profiles: Sequence[Profile]
+) -> list[float]:
     """Returns the distance in metres from the node of a junction to the contact of each arm.
 
     Args:
         junction: The junction.
         directions: The headings of its arms out of the junction in radians, counter-clockwise, first that of
             the road on which the route arrives.
-        width: The width of every lane in metres.
+        profiles: The cross-section of each arm: that of the road on which the route arrives ends here, the
+            others begin.
 
     Raises:
         UsageError: The island of a roundabout is too small for its arms.
     """
     if junction.kind != "roundabout":
-        return setbacks([Mouth(each, width, width) for each in directions], junction.kerb)
+        mouths = [mouth_of_arm(each, directions[n], n == 0) for n, each in enumerate(profiles)]
+        return setbacks(mouths, junction.kerb)
     least = smallest_radius(directions)
     if junction.radius < least:
         raise UsageError(
@@ -141,19 +216,44 @@ def contact_distances(junction: JunctionDesign, directions: Sequence[float], wid
     return [contact_distance(junction.radius)] * len(directions)
 
 
-def passing_length(junction: JunctionDesign, width: float) -> float:
+def mouth_of_arm(profile: Profile, direction: float, is_arrival: bool) -> Mouth:
+    """Returns what the layout of a junction needs to know of an arm.
+
+    Args:
+        profile: Its cross-section.
+        direction: The heading in radians out of the junction.
+        is_arrival: Whether its end meets the junction, not its start.
+    """
+    edges = profile.edges(FAR if is_arrival else 0.0)
+    left, right = float(edges.left), -float(edges.right)
+    return Mouth(direction, right, left) if is_arrival else Mouth(direction, left, right)
+
+
+def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
+    """Returns the length in metres of a route at a place, without the roads before and behind it.
+
+    The arguments are those of ``passing_length``.
+    """
+    if isinstance(place, JunctionDesign):
+        return passing_length(place, before, after)
+    return length_at_ramp(place) if isinstance(place, RampDesign) else 0.0
+
+
+def passing_length(junction: JunctionDesign, before: Profile, after: Profile) -> float:
     """Returns the length in metres of a route inside a junction, from contact to contact.
 
     Args:
         junction: The junction.
-        width: The width of every lane in metres.
+        before: The cross-section of the road on which the route arrives.
+        after: The cross-section of the road on which it goes on.
 
     Raises:
         UsageError: The island of a roundabout is too small for its arms.
     """
     arms, taken = junction.all_arms, junction.taken
     directions = [math.pi, *(math.radians(arm.angle) for arm in arms)]
-    distances = contact_distances(junction, directions, width)
+    profiles = [before, *profiles_of_arms(junction, before, after)]
+    distances = contact_distances(junction, directions, profiles)
     if junction.kind == "roundabout":
         angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
         return around_length(junction.radius, directions, angle)
@@ -163,17 +263,17 @@ def passing_length(junction: JunctionDesign, width: float) -> float:
     return sum(piece.length for piece in pieces)
 
 
-def _around(builder: Builder, ring: Roundabout, to: int) -> list[Leg]:
-    """Returns the legs of a route around a roundabout, from its first arm to the arm with index ``to``."""
+def _around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
+    """Returns the ids of the roads around a roundabout, from its first arm to the arm with index ``to``."""
     mouths = {each.id: each.connections for each in builder.junctions if each.id in ring.junctions}
-    legs = [Leg(mouths[ring.junctions[0]][2].road, -1)]
+    passed = [mouths[ring.junctions[0]][2].road]
     count = len(ring.ring)
     for n in range((to - 1) % count + 1):
-        legs.append(Leg(ring.ring[n], -1))
+        passed.append(ring.ring[n])
         along, off, _ = mouths[ring.junctions[(n + 1) % count]]
         is_last = n == (to - 1) % count
-        legs.append(Leg((off if is_last else along).road, -1))
-    return legs
+        passed.append((off if is_last else along).road)
+    return passed
 
 
 def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:

@@ -19,7 +19,8 @@ from roadgpt.network.polygon import Area
 from roadgpt.road import Profile, Road
 
 Contact = Literal["start", "end"]
-Kind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+Kind = Literal[JunctionKind, "merge", "diverge"]
 
 
 class RoadEnd(NamedTuple):
@@ -61,6 +62,17 @@ class NetworkRoad:
         return self.profile.reach - self.profile.paved_reach
 
 
+class LaneLink(NamedTuple):
+    """The ids of three lanes that continue each other through a junction."""
+
+    incoming: int
+    """The lane of the incoming road."""
+    own: int
+    """The lane of the connecting road."""
+    outgoing: int
+    """The lane of the outgoing road."""
+
+
 @dataclass(frozen=True)
 class Connection:
     """One way through a junction, along a connecting road from its start to its end."""
@@ -69,8 +81,17 @@ class Connection:
     """The id of the connecting road."""
     incoming: RoadEnd
     outgoing: RoadEnd
+    lanes: tuple[LaneLink, ...]
+
+
+@dataclass(frozen=True)
+class Continuation:
+    """Two roads that continue each other without a junction, because the number of lanes changes there."""
+
+    before: RoadEnd
+    after: RoadEnd
     lanes: tuple[tuple[int, int], ...]
-    """Pairs of lane ids: lane of the incoming road, lane of the connecting road."""
+    """Pairs of lane ids: lane of the road before, lane of the road after."""
 
 
 @dataclass(frozen=True)
@@ -127,6 +148,7 @@ class Network:
     roads: tuple[NetworkRoad, ...]
     junctions: tuple[Junction, ...] = ()
     roundabouts: tuple[Roundabout, ...] = ()
+    continuations: tuple[Continuation, ...] = ()
 
     def __post_init__(self) -> None:
         if len(self._by_id) < len(self.roads) or len(self._junction_by_id) < len(self.junctions):
@@ -137,6 +159,9 @@ class Network:
                 named |= {connection.road, connection.incoming.road, connection.outgoing.road}
             if unknown := named - set(self._by_id):
                 raise ValueError(f"junction {junction.id} names road {min(unknown)}, which does not exist")
+        for each in self.continuations:
+            if unknown := {each.before.road, each.after.road} - set(self._by_id):
+                raise ValueError(f"a continuation names road {min(unknown)}, which does not exist")
 
     def __repr__(self) -> str:
         metres = sum(each.road.length for each in self.roads if each.junction is None)
@@ -181,6 +206,11 @@ class Network:
     def connection_of(self) -> dict[int, tuple[Junction, Connection]]:
         """For the id of each connecting road, its junction and its connection."""
         return {each.road: (junction, each) for junction in self.junctions for each in junction.connections}
+
+    @cached_property
+    def continued_at(self) -> dict[RoadEnd, Continuation]:
+        """The continuation at each end of a road that another road continues without a junction."""
+        return {end: each for each in self.continuations for end in (each.before, each.after)}
 
     @cached_property
     def roundabout_of(self) -> dict[int, Roundabout]:

@@ -3,6 +3,7 @@
 A road file with a route has the fields ``route``, a list of [road, lane], and ``network``.
 """
 
+import copy
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +11,7 @@ from typing import Any, ClassVar
 from pydantic import ConfigDict, TypeAdapter
 
 from roadgpt.errors import UsageError
-from roadgpt.network.network import Junction, Leg, Network, NetworkRoad, Roundabout
+from roadgpt.network.network import Continuation, Junction, Leg, Network, NetworkRoad, Roundabout
 from roadgpt.reading import strictly
 from roadgpt.road import Road
 
@@ -35,13 +36,14 @@ class _StoredNetwork:
 
     junctions: tuple[Junction, ...]
     roundabouts: tuple[Roundabout, ...]
+    continuations: tuple[Continuation, ...] = ()
 
 
 def network_to_json(network: Network) -> dict[str, Any]:
     """Returns a network as JSON data, from which ``network_from_json`` restores it."""
     roads = [{"id": each.id, "junction": each.junction, **each.road.to_json()} for each in network.roads]
     plain = TypeAdapter(_StoredNetwork).dump_python(
-        _StoredNetwork(network.junctions, network.roundabouts), mode="json"
+        _StoredNetwork(network.junctions, network.roundabouts, network.continuations), mode="json"
     )
     return {"roads": roads, **plain}
 
@@ -58,13 +60,28 @@ def network_from_json(data: Any) -> Network:
         if not isinstance(rows, list) or len(rows) > MOST_ROADS:
             raise ValueError(f"roads are a list of at most {MOST_ROADS:,}")
         roads = tuple(_road(row) for row in rows)
-        stored = strictly(_StoredNetwork, {key: data[key] for key in ("junctions", "roundabouts")})
-        return Network(roads, stored.junctions, stored.roundabouts)
+        rest = {key: data[key] for key in ("junctions", "roundabouts")}
+        rest["continuations"] = data.get("continuations", [])
+        stored = strictly(_StoredNetwork, {**rest, "junctions": _with_lane_links(rest["junctions"])})
+        return Network(roads, stored.junctions, stored.roundabouts, stored.continuations)
     except KeyError as error:
         raise UsageError(f"the network cannot be read: {error} is missing; make the road again") from error
     except (TypeError, ValueError) as error:
         first = str(error).splitlines()[0][:200]
         raise UsageError(f"the network cannot be read ({first}); make the road again") from error
+
+
+def _with_lane_links(junctions: Any) -> Any:
+    """Returns stored junctions; where lanes of connections are pairs, as in older files, the third is added.
+
+    Older networks have one lane in each direction.
+    """
+    found = copy.deepcopy(junctions)
+    for junction in found:
+        for each in junction["connections"]:
+            after = -1 if each["outgoing"][1] == "start" else 1
+            each["lanes"] = [[*lanes, after] if len(lanes) == 2 else lanes for lanes in each["lanes"]]
+    return found
 
 
 def _road(row: Mapping[str, Any]) -> NetworkRoad:

@@ -12,7 +12,7 @@ from itertools import pairwise
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.network.building import Builder, Stub, connecting_road, level, one_way
-from roadgpt.network.network import Arm, Connection, Junction, RoadEnd, Roundabout
+from roadgpt.network.network import Arm, Connection, Junction, LaneLink, RoadEnd, Roundabout
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Road
 
@@ -120,7 +120,7 @@ def _arc(centre: tuple[float, float, float], radius: float, start: float, angle:
         start + math.pi / 2,
         (Piece(angle * radius, 1 / radius, 1 / radius),),
     )
-    return Road(plan, level(plan.length, z), profile=one_way(width, width, plan.length))
+    return Road(plan, level(plan.length, z), profile=one_way([(width, width)], plan.length))
 
 
 def _mouth(
@@ -139,18 +139,22 @@ def _mouth(
     meeting = ring.radius / math.cos(half)
     to_ring, to_arm = ring.radius * math.tan(half), contact_distance(ring.radius) - meeting
     along = builder.add(_arc(ring.centre, ring.radius, at - half, 2 * half, ring.width), junction)
-    made = [Connection(along, before, after, ((-1, -1),))]
+    made = [Connection(along, before, after, (LaneLink(-1, -1, -1),))]
     if stub.out_of:
         start = (x + ring.radius * math.cos(at - half), y + ring.radius * math.sin(at - half), z)
         pieces = curve_between(to_ring, to_arm, -turn)
         widths = (ring.width, stub.width_of(stub.out_of[0]))
-        off = connecting_road(start, at - half + math.pi / 2, pieces, widths)
-        made.append(Connection(builder.add(off, junction), before, stub.end, ((-1, -1),)))
+        offset = (0.0, -stub.inside_out_of(0))
+        off = connecting_road(start, at - half + math.pi / 2, pieces, [widths], offset)
+        lanes = LaneLink(-1, -1, stub.id_out_of(0))
+        made.append(Connection(builder.add(off, junction), before, stub.end, (lanes,)))
     if stub.into:
         far = contact_distance(ring.radius)
         start = (x + far * math.cos(at), y + far * math.sin(at), z)
         pieces = curve_between(to_arm, to_ring, -turn)
         widths = (stub.width_of(stub.into[0]), ring.width)
-        onto = connecting_road(start, at + math.pi, pieces, widths)
-        made.append(Connection(builder.add(onto, junction), stub.end, after, ((stub.id_into(0), -1),)))
+        offset = (-stub.inside_into(0), 0.0)
+        onto = connecting_road(start, at + math.pi, pieces, [widths], offset)
+        lanes = LaneLink(stub.id_into(0), -1, -1)
+        made.append(Connection(builder.add(onto, junction), stub.end, after, (lanes,)))
     return tuple(made)

@@ -7,20 +7,21 @@ Road can be done with a Route: check, drive, judge and draw it.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import accumulate, pairwise
-from typing import Any, Self
+from itertools import accumulate, groupby, pairwise
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
 from roadgpt.network.ground import shoulders_on_ground
-from roadgpt.network.network import Leg, Network, NetworkRoad, RoadEnd
+from roadgpt.network.lane_along import added, change_windows, cubics_at, lane_along, profile_of
+from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad, RoadEnd
 from roadgpt.network.network_json import network_to_json
 from roadgpt.network.passages import Passage, passages_of
 from roadgpt.network.stretch import joined_grades
 from roadgpt.road import Profile, Road
-from roadgpt.road.profile import Lane, Width
+from roadgpt.road.profile import Lane, Marking, Width
 from roadgpt.road.reversal import reversed_cubics, reversed_road
 
 
@@ -44,13 +45,15 @@ class Route(Road):
         """
         if not legs:
             raise UsageError("a route has no road; give one or more [road, lane]")
+        legs = tuple(map(Leg._make, legs))
         for leg in legs:
             _check_leg(network, leg)
         for one, two in pairwise(legs):
             _check_joint(network, one, two)
         if any(network.road(legs[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
-        roads = [_directed(network.road(leg.road), leg) for leg in legs]
+        parts = _parts(network, legs)
+        roads = [part.road for part in parts]
         first = roads[0].plan
         assert isinstance(first, PieceCurve)
         pieces = tuple(p for road in roads for p in _pieces(road))
@@ -58,9 +61,9 @@ class Route(Road):
         return cls(
             plan,
             joined_grades(roads),
-            profile=_profile(roads),
+            profile=_profile(parts),
             network=network,
-            legs=tuple(map(Leg._make, legs)),
+            legs=legs,
         )
 
     def __repr__(self) -> str:
@@ -69,8 +72,29 @@ class Route(Road):
 
     @cached_property
     def starts(self) -> tuple[float, ...]:
-        """The station of the start of each leg, and of the end of the route, in metres."""
-        return tuple(accumulate((self.network.road(leg.road).road.length for leg in self.legs), initial=0.0))
+        """The station of the start of each leg, and of the end of the route, in metres.
+
+        A leg that only changes the lane begins in the middle of the change.
+        """
+        found, start = [], 0.0
+        for number, group in groupby(self.legs, key=lambda leg: leg.road):
+            length = self.network.road(number).road.length
+            windows = change_windows(length, len(list(group)) - 1)
+            found += [start, *(start + (a + b) / 2 for a, b in windows)]
+            start += length
+        return (*found, start)
+
+    @cached_property
+    def roads(self) -> tuple[tuple[float, NetworkRoad], ...]:
+        """The roads outside junctions and roundabouts that it follows, each with the station of its start."""
+        own = zip(self.starts, self.legs, strict=False)
+        firsts = [next(group) for _, group in groupby(own, key=lambda each: each[1].road)]
+        members = [(start, self.network.road(leg.road)) for start, leg in firsts]
+        return tuple(
+            (start, member)
+            for start, member in members
+            if member.junction is None and member.id not in self.network.roundabout_of
+        )
 
     @cached_property
     def passages(self) -> tuple[Passage, ...]:
@@ -86,8 +110,8 @@ class Route(Road):
         left, right = shoulders_on_ground(self)
         profile = replace(
             self.profile,
-            left=(self.profile.left[0], Lane("shoulder", left)),
-            right=(self.profile.right[0], Lane("shoulder", right)),
+            left=(*self.profile.left[:-1], Lane("shoulder", left)),
+            right=(*self.profile.right[:-1], Lane("shoulder", right)),
         )
         return self.with_profile(profile)
 
@@ -112,15 +136,34 @@ def _check_leg(network: Network, leg: Leg) -> None:
 
 def _check_joint(network: Network, one: Leg, two: Leg) -> None:
     """Raises UsageError unless the second leg follows the first one."""
-    if (found := network.connection_of.get(two.road)) is not None:
+    if one.road == two.road:
+        is_joined = network.road(one.road).junction is None and abs(one.lane - two.lane) == 1
+        if not is_joined or one.lane * two.lane < 0:
+            raise UsageError(
+                f"the route cannot change from lane {one.lane} to lane {two.lane} of road {one.road}; change "
+                "to the next lane of the same direction"
+            )
+        return
+    if (
+        continued := network.continued_at.get(RoadEnd(one.road, "end" if one.lane < 0 else "start"))
+    ) is not None:
+        is_joined = _continues(continued, one, two)
+    elif (found := network.connection_of.get(two.road)) is not None:
         end = RoadEnd(one.road, "end" if one.lane < 0 else "start")
-        is_joined = found[1].incoming == end and (one.lane, two.lane) in found[1].lanes
+        is_joined = found[1].incoming == end and (one.lane, two.lane) in [way[:2] for way in found[1].lanes]
     elif (found := network.connection_of.get(one.road)) is not None:
-        is_joined = found[1].outgoing == RoadEnd(two.road, "start" if two.lane < 0 else "end")
+        end = RoadEnd(two.road, "start" if two.lane < 0 else "end")
+        is_joined = found[1].outgoing == end and (one.lane, two.lane) in [way[1:] for way in found[1].lanes]
     else:
         is_joined = False
     if not is_joined:
         raise UsageError(f"no way leads from road {one.road} to road {two.road}, as the route asks")
+
+
+def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
+    if one.road == found.before.road:
+        return two.road == found.after.road and (one.lane, two.lane) in found.lanes
+    return two.road == found.before.road and (two.lane, one.lane) in found.lanes
 
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
@@ -133,14 +176,17 @@ def _directed(member: NetworkRoad, leg: Leg) -> Road:
         tuple(_turned(lane, member.road.length) for lane in profile.left),
         leg.lane - 1,
         profile.centre_marking,
+        offset=added([(-1, _reversed(profile.offset, member.road.length))], member.road.length),
     )
     return reversed_road(member.road).with_profile(turned)
 
 
 def _turned(lane: Lane, length: float) -> Lane:
-    if not isinstance(lane.width, CubicProfile):
-        return lane
-    return Lane(lane.kind, reversed_cubics(lane.width, length), lane.marking)
+    return replace(lane, width=_reversed(lane.width, length))
+
+
+def _reversed(width: Width, length: float) -> Width:
+    return reversed_cubics(width, length) if isinstance(width, CubicProfile) else width
 
 
 def _pieces(road: Road) -> tuple[Piece, ...]:
@@ -148,51 +194,54 @@ def _pieces(road: Road) -> tuple[Piece, ...]:
     return road.plan.pieces
 
 
-def _profile(roads: Sequence[Road]) -> Profile:
-    """Returns the lanes along roads that follow each other: one along, one against, and the shoulders."""
+class _Part(NamedTuple):
+    """One road of a route, and the lanes that the route follows there."""
+
+    road: Road
+    """The road in the direction of the route."""
+    lanes: tuple[int, ...]
+    """Indices of lanes, counted from 0 at the centre line."""
+
+
+def _parts(network: Network, legs: Sequence[Leg]) -> list[_Part]:
+    """Returns the roads of a route; legs that follow each other on one road are one part."""
+    found = []
+    for _, group in groupby(legs, key=lambda leg: leg.road):
+        own = list(group)
+        lanes = tuple(abs(leg.lane) - 1 for leg in own)
+        found.append(_Part(_directed(network.road(own[0].road), own[0]), lanes))
+    return found
+
+
+def _profile(parts: Sequence[_Part]) -> Profile:
+    """Returns the cross-section of a route: its lane, the lanes beside it, and the shoulders."""
+    roads = [part.road for part in parts]
     starts = [0.0, *accumulate(road.length for road in roads)]
-    own = [_lanes(road) for road in roads]
-
-    def lane(index: int) -> Width:
-        return _joined_widths([each[index] for each in own], roads, starts)
-
+    rows = [lane_along(part.road, part.lanes) for part in parts]
+    left_shoulder, left, offset, width, right, right_shoulder = (
+        _joined_widths(column, roads, starts) for column in zip(*rows, strict=True)
+    )
     marking = next(road.profile.centre_marking for road in roads if road.profile is not None)
+    outer = () if right == 0 else (Lane("driving", right, "solid"),)
+    own: Marking = "broken" if outer else "solid"
     return Profile(
-        (Lane("driving", lane(0), "solid"), Lane("shoulder", lane(1))),
-        (Lane("driving", lane(2), "solid"), Lane("shoulder", lane(3))),
+        (Lane("driving", left, "solid"), Lane("shoulder", left_shoulder)),
+        (Lane("driving", width, own), *outer, Lane("shoulder", right_shoulder)),
         0,
         marking,
-    )
-
-
-def _lanes(road: Road) -> tuple[Width, Width, Width, Width]:
-    """Returns the widths of the oncoming lane, its shoulder, the lane of the route, and its shoulder."""
-    profile = road.profile
-    assert profile is not None
-
-    def width(side: Sequence[Lane], kind: str) -> Width:
-        return next((lane.width for lane in side if lane.kind == kind), 0.0)
-
-    return (
-        width(profile.left, "driving"),
-        width(profile.left, "shoulder"),
-        width(profile.right, "driving"),
-        width(profile.right, "shoulder"),
+        offset=offset,
     )
 
 
 def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Sequence[float]) -> Width:
+    """Returns widths of roads that follow each other as one function of the station."""
     if all(width == widths[0] and not isinstance(width, CubicProfile) for width in widths):
         return widths[0]
     stations: list[float] = []
-    rows: list[tuple[float, float, float, float]] = []
+    tables = []
     for width, road, start in zip(widths, roads, starts, strict=False):
-        if not isinstance(width, CubicProfile):
-            stations.append(start)
-            rows.append((width, 0.0, 0.0, 0.0))
-            continue
-        inside = np.array([0.0, *(s for s in width.stations if 0 < s < road.length - 1e-9)])
-        table = width.cubics(inside)
+        own = width.stations if isinstance(width, CubicProfile) else ()
+        inside = np.array([0.0, *(s for s in own if 0 < s < road.length - 1e-9)])
         stations += (start + inside).tolist()
-        rows += [(a, b, c, d) for a, b, c, d in table.tolist()]
-    return CubicProfile(tuple(stations), tuple(rows))
+        tables.append(cubics_at(width, inside))
+    return profile_of(np.array(stations), np.concatenate(tables))

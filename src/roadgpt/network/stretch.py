@@ -84,3 +84,17 @@ def joined_grades(roads: Sequence[Road]) -> GradeProfile:
         knots[-1] = (start, knots[-1][1])
     kept = [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
     return GradeProfile(height, tuple(s for s, _ in kept), tuple(g for _, g in kept))
+
+
+def joined_roads(roads: Sequence[Road]) -> Road:
+    """Returns roads that continue each other as one road, with the cross-section of the one with the fewest
+    lanes.
+    """
+    if len(roads) == 1:
+        return roads[0]
+    first = roads[0].plan
+    pieces = tuple(piece for road in roads for piece in road.plan.pieces)  # type: ignore[attr-defined]
+    assert isinstance(first, PieceCurve)
+    profiles = [road.profile for road in roads if road.profile is not None]
+    plan = PieceCurve(first.x, first.y, first.heading0, pieces)
+    return Road(plan, joined_grades(roads), profile=min(profiles, key=lambda profile: profile.count))

@@ -98,7 +98,7 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
         line = road.at(s)
         axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
         return
-    solid = [t for mark, t in reversed(profile.boundaries(s)) if mark == "solid"]
+    solid = [t for mark, t in reversed(profile.boundaries(s)) if mark in ("solid", "double")]
     for t in solid:
         edge = road.at(s, t)
         axes.plot(edge[:, 0], edge[:, 1], color=PAINT, lw=1.1, zorder=3, solid_capstyle="butt")

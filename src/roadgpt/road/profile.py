@@ -22,10 +22,12 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
 
 LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, RMS-1)
+DOUBLE = 2 * LINE  # m, between the middles of the two lines of a double line (Germany, RMS-1)
 DASH, GAP = 4.0, 8.0  # m, of a broken line: middle line outside of towns (Germany, RMS-1)
 
 Kind = Literal["driving", "shoulder"]
-Marking = Literal["solid", "broken", "none"]
+Marking = Literal["solid", "broken", "none", "double"]
+"""A double line is two solid lines."""
 Width = float | CubicProfile
 """A width in metres: one number, or cubics of the station."""
 
@@ -134,6 +136,11 @@ class Profile:
         return len(_driving(self.right)), len(_driving(self.left))
 
     @property
+    def shoulder_width(self) -> float:
+        """The width in metres of the shoulder on the right, at the start of the road; 0 if there is none."""
+        return float(self.shoulder(0.0))
+
+    @property
     def has_shoulders(self) -> bool:
         """Whether there is a shoulder on either side."""
         return any(lane.kind == "shoulder" for lane in (*self.left, *self.right))
@@ -224,8 +231,14 @@ class Profile:
         A line between two lanes is painted over their boundary. A line at an edge of the carriageway is
         painted on the lane's side of this edge.
         """
-        painted = self._painted_boundaries(s)
-        return [PaintedLine(marking, edges) for marking, edges in painted if marking != "none"]
+        found = []
+        for marking, edges in self._painted_boundaries(s):
+            if marking == "double":
+                found.append(PaintedLine("solid", Edges(edges.left, edges.left - LINE)))
+                found.append(PaintedLine("solid", Edges(edges.right + LINE, edges.right)))
+            elif marking != "none":
+                found.append(PaintedLine(marking, edges))
+        return found
 
     def _painted_boundaries(self, s: ArrayLike) -> list[tuple[Marking, Edges]]:
         """Returns the marking of each boundary and the marking's edges; both lie on the boundary if it has no
@@ -234,7 +247,7 @@ class Profile:
         rows = self.boundaries(s)
         sides = [1, *[0] * (len(rows) - 2), -1]
         return [
-            (marking, Edges(t, t) if marking == "none" else _painted(t, side))
+            (marking, Edges(t, t) if marking == "none" else _painted(t, side, marking == "double"))
             for (marking, t), side in zip(rows, sides, strict=True)
         ]
 
@@ -276,13 +289,14 @@ def _sum(lanes: Sequence[Lane], s: ArrayLike) -> Array:
     return out
 
 
-def _painted(t: Array, side: int) -> Edges:
+def _painted(t: Array, side: int, is_double: bool) -> Edges:
     """Returns the edges of a line painted over the offset ``t`` or, at an edge of the carriageway, inside it.
 
     ``side`` is 1 at the left edge, -1 at the right edge, and 0 between two lanes.
     """
     if not side:
-        return Edges(t + LINE / 2, t - LINE / 2)
+        half = (LINE + DOUBLE) / 2 if is_double else LINE / 2
+        return Edges(t + half, t - half)
     return Edges(t, t - LINE) if side > 0 else Edges(t + LINE, t)
 
 

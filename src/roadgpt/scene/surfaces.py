@@ -39,7 +39,7 @@ class LaneBoundaries(NamedTuple):
         """Returns the boundaries of a road's lanes."""
         s = np.linspace(0.0, length, max(1, math.ceil(length)) + 1)
         rows = profile.boundaries(s)
-        marks = np.array([("none", "solid", "broken").index(mark) for mark, _ in rows])
+        marks = np.array([PAINT[mark] for mark, _ in rows])
         offsets = np.ascontiguousarray(np.stack([t for _, t in rows], axis=1))
         return cls(offsets, marks, profile.count[1] + profile.driven, float(s[1]), length)
 
@@ -47,6 +47,8 @@ class LaneBoundaries(NamedTuple):
 # Wider than the judged line (road.profile.LINE), and not at the very edge of the lane: the network of
 # examples/vision was trained on such images, and with judged lines drives 0.24 m farther to the right.
 LINE, INSET = 0.15, 0.10  # m: width of a line, and asphalt outside of an edge line
+PAINT = {"none": 0, "solid": 1, "broken": 2, "double": 1}
+"""How a boundary is drawn, by its marking; of a double line, one line."""
 PERIOD = DASH + GAP  # m from one dash to the next
 WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m from the middle of a lane to its wheel tracks; where they fade out
 GRAVEL = 0.45  # m between asphalt and grass

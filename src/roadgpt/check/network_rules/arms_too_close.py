@@ -9,11 +9,11 @@ a straight line.
 import math
 from itertools import combinations
 
+from roadgpt.brief.junctions import RAMPS
 from roadgpt.check.finding import Finding
 from roadgpt.check.footprint import EndPose, footprint
 from roadgpt.check.network_places import junction_finding, name_of
 from roadgpt.network import Arm, Network, RoadEnd, Route
-from roadgpt.network.building import width_at
 from roadgpt.network.crossing import OPPOSITE
 from roadgpt.road import World
 
@@ -27,7 +27,10 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     for junction in network.junctions:
         arms = junction.arms
+        joined = {frozenset((each.incoming, each.outgoing)) for each in junction.connections}
         for one, other in zip(arms, [*arms[1:], *arms[:1]], strict=True):
+            if junction.kind in RAMPS and frozenset((one.end, other.end)) not in joined:
+                continue  # no traffic goes from the ramp to the main road beside it
             radius = _room(network, one, other)
             if radius < KERB - ROUNDING:
                 degrees = [round(math.degrees(arm.direction)) % 360 for arm in (one, other)]
@@ -66,13 +69,10 @@ def _outwards(network: Network, end: RoadEnd) -> tuple[EndPose, tuple[float, flo
     """
     pose, member = footprint(network).ends[end], network.road(end.road)
     s = 0.0 if end.contact == "start" else member.road.length
-    left, right = (
-        sum(width_at(lane.width, s) for lane in lanes if lane.kind == "driving")
-        for lanes in (member.profile.left, member.profile.right)
-    )
+    left, right = (float(t) for t in member.profile.edges(s))
     if end.contact == "start":
-        return pose, (left, -right), pose.heading
-    return pose, (-right, left), pose.heading + math.pi
+        return pose, (left, right), pose.heading
+    return pose, (right, left), pose.heading + math.pi
 
 
 def _between_junctions(network: Network, route: Route | None) -> list[Finding]:

@@ -8,7 +8,7 @@ linkage: linked lanes connect without gaps.
 from roadgpt.check.finding import Finding
 from roadgpt.check.lanes_at_ends import gap, lanes_into, lanes_out_of
 from roadgpt.check.network_places import junction_finding
-from roadgpt.network import Connection, Junction, Network, RoadEnd, Route
+from roadgpt.network import Connection, Junction, LaneLink, Network, RoadEnd, Route
 from roadgpt.road import World
 
 MOST = 1e-3  # m
@@ -19,13 +19,14 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     for junction in network.junctions:
         for each in junction.connections:
-            for lane, own in each.lanes:
-                if (what := _wrong(network, junction, each, lane, own)) is not None:
+            for lanes in each.lanes:
+                if (what := _wrong(network, junction, each, lanes)) is not None:
                     found.append(junction_finding("lanes_do_not_match", route, junction, what))
     return tuple(found)
 
 
-def _wrong(network: Network, junction: Junction, each: Connection, lane: int, own: int) -> str | None:
+def _wrong(network: Network, junction: Junction, each: Connection, lanes: LaneLink) -> str | None:
+    lane, own, target = lanes
     ends = {arm.end for arm in junction.arms}
     for end in (each.incoming, each.outgoing):
         if end not in ends:
@@ -39,10 +40,9 @@ def _wrong(network: Network, junction: Junction, each: Connection, lane: int, ow
     apart = gap(network, (each.incoming, lane), (start, own))
     if apart > MOST:
         return _said(each.road, each.incoming.road, apart)
-    targets = lanes_out_of(network, each.outgoing)
-    if not targets:
-        return f"connecting road {each.road} leads to road {each.outgoing.road}, which has no lane out of it"
-    apart = min(gap(network, (finish, own), (each.outgoing, target)) for target in targets)
+    if target not in lanes_out_of(network, each.outgoing):
+        return f"road {each.outgoing.road} has no lane {target} that leads out of it; name a lane that does"
+    apart = gap(network, (finish, own), (each.outgoing, target))
     return _said(each.road, each.outgoing.road, apart) if apart > MOST else None
 
 

@@ -15,7 +15,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     """Reports each lane at a junction without a connection, and each road that meets no junction."""
     found = []
     for junction in network.junctions:
-        left = {(each.incoming, lane) for each in junction.connections for lane, _ in each.lanes}
+        left = {(each.incoming, lane) for each in junction.connections for lane, *_ in each.lanes}
         entered = {lane for each in junction.connections for lane in reached(network, each)}
         for arm in junction.arms:
             for lane in lanes_into(network, arm.end):
@@ -28,7 +28,8 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
                     found.append(junction_finding("unreachable", route, junction, what))
     if len(network.plain_roads) > 1:
         for member in network.plain_roads:
-            if not {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")} & set(network.junction_at):
+            ends = {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")}
+            if not ends & {*network.junction_at, *network.continued_at}:
                 what = (
                     "the road meets no junction, so that no other road leads to it; join it or leave it out"
                 )

@@ -23,7 +23,7 @@ from roadgpt.road.profile import Marking
 STEP = 0.1  # s
 PATIENCE = 2.0  # times the duration of a calm drive to the end
 NOWHERE = -999  # GeoNames' number for no place
-MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking"}
+MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking", "double": "solid"}
 SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, as in Germany
 
 

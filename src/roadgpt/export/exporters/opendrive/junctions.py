@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.extent import bounds_of, reaches
-from roadgpt.export.exporters.opendrive.lanes import RoadParts
+from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
 from roadgpt.export.exporters.opendrive.roads import REVISION, RoadLink, RoadPlace, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
@@ -53,7 +53,8 @@ def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> Ro
     """Returns where a road is in its network: its links, and the starts of its lines, arcs and spirals."""
     found = network.connection_of.get(member.id)
     if found is None:
-        return RoadPlace(tuple(_links(network, member)), starts=starts)
+        lanes = _continued_lanes(network, member)
+        return RoadPlace(tuple(_links(network, member)), lane_links=lanes, starts=starts)
     connection = found[1]
     links = (_to_road("predecessor", connection.incoming), _to_road("successor", connection.outgoing))
     return RoadPlace(links, found[0].id, _lane_links(connection), starts)
@@ -64,16 +65,27 @@ def _links(network: Network, member: NetworkRoad) -> Iterator[RoadLink]:
     for name, end in (("predecessor", RoadEnd(member.id, "start")), ("successor", RoadEnd(member.id, "end"))):
         if (junction := network.junction_at.get(end)) is not None:
             yield name, {"elementType": "junction", "elementId": str(junction)}
+        elif (found := network.continued_at.get(end)) is not None:
+            yield _to_road(name, found.after if found.before == end else found.before)
 
 
 def _to_road(name: str, end: RoadEnd) -> RoadLink:
     return name, {"elementType": "road", "elementId": str(end.road), "contactPoint": end.contact}
 
 
+def _continued_lanes(network: Network, member: NetworkRoad) -> LaneLinks:
+    """Returns the lanes that continue those of a road outside junctions."""
+    before: dict[int, int] = {}
+    after: dict[int, int] = {}
+    for end, links in ((RoadEnd(member.id, "start"), before), (RoadEnd(member.id, "end"), after)):
+        if (found := network.continued_at.get(end)) is not None:
+            links |= {b: a for a, b in found.lanes} if found.after == end else dict(found.lanes)
+    return {lane: (before.get(lane), after.get(lane)) for lane in {*before, *after}}
+
+
 def _lane_links(connection: Connection) -> dict[int, tuple[int, int]]:
     """Returns the lanes before and after each lane of a connecting road."""
-    sign = -1 if connection.outgoing.contact == "start" else 1
-    return {own: (before, sign * abs(own)) for before, own in connection.lanes}
+    return {own: (before, after) for before, own, after in connection.lanes}
 
 
 def _connections(junction: Junction) -> Iterator[XmlElement]:
@@ -87,7 +99,7 @@ def _connections(junction: Junction) -> Iterator[XmlElement]:
                 "contactPoint": "start",
             },
         )
-        for before, own in each.lanes:
+        for before, own, _ in each.lanes:
             made.add("laneLink", {"from": before, "to": own})
         yield made
 

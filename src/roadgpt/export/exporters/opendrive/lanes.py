@@ -13,13 +13,13 @@ from roadgpt.export.exporters.opendrive.heights import elevations, level_height,
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
-from roadgpt.road.profile import DASH, GAP, LINE, Lane, Marking, Profile, Width
+from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, Lane, Marking, Profile, Width
 
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
-LaneLinks = Mapping[int, tuple[int, int]]
-"""For the id of a lane of a connecting road, the ids of the lanes before and after it."""
+LaneLinks = Mapping[int, tuple[int | None, int | None]]
+"""For the id of a lane, the ids of the lanes of other roads before and after it; None for none."""
 
 
 @dataclass(frozen=True)
@@ -47,46 +47,48 @@ class RoadParts:
             self._level[level] = made
         return self._level[level]
 
-    def lanes(self, road: Road, links: LaneLinks | None = None) -> XmlElement:
+    def lanes(self, road: Road, links: LaneLinks | None = None, is_inside: bool = False) -> XmlElement:
         """Returns the OpenDRIVE element ``lanes`` with all lanes, shoulders and road markings.
 
         Args:
             road: The road.
-            links: The links of the lanes of a connecting road in a junction, where it is stated that there
-                are no markings; None for any other road.
+            links: The links of its lanes to lanes of other roads.
+            is_inside: Whether the road is a connecting road in a junction, where it is stated that there are
+                no markings.
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
         own = (profile.left, profile.right, profile.centre_marking, profile.offset)
-        key = (*own, length, links and tuple(links.items()))
+        key = (*own, length, tuple((links or {}).items()), is_inside)
         if key not in self._made:
-            self._made[key] = self._lanes(profile, road.length, links)
+            self._made[key] = self._lanes(profile, road.length, links or {}, is_inside)
         return self._made[key]
 
-    def _lanes(self, profile: Profile, length: float, links: LaneLinks | None) -> XmlElement:
+    def _lanes(self, profile: Profile, length: float, links: LaneLinks, is_inside: bool) -> XmlElement:
         section = XmlElement("laneSection", {"s": 0})
-        left = list(self._side(profile.left, 1, length, links))
+        left = list(self._side(profile.left, 1, length, links, is_inside))
         if left:
             section.add("left").extended(*reversed(left))
-        section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, links)))
-        section.add("right").extended(*self._side(profile.right, -1, length, links))
+        section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))
+        section.add("right").extended(*self._side(profile.right, -1, length, links, is_inside))
         offset = rows("laneOffset", "s", _cubics(profile.offset), length) if profile.offset != 0 else []
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
-        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks | None
+        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
         """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
         for number, lane in enumerate(kept, 1):
             widths = rows("width", "sOffset", _cubics(lane.width), length)
             made = _lane(sign * number, lane.kind)
-            if links is not None and sign * number in links:
-                before, after = links[sign * number]
+            before, after = links.get(sign * number, (None, None))
+            if before is not None or after is not None:
                 link = made.add("link")
-                link.add("predecessor", {"id": before})
-                link.add("successor", {"id": after})
-            made.extended(*widths, *_mark(lane.marking, links))
+                for name, other in (("predecessor", before), ("successor", after)):
+                    if other is not None:
+                        link.add(name, {"id": other})
+            made.extended(*widths, *_mark(lane.marking, is_inside))
             if lane.kind == "driving":
                 friction = self.world.site.friction
                 made.add(
@@ -125,7 +127,7 @@ def _lane(number: int, kind: str) -> XmlElement:
     return XmlElement("lane", {"id": number, "type": kind, "level": "false"})
 
 
-def _mark(kind: Marking, links: LaneLinks | None) -> list[XmlElement]:
+def _mark(kind: Marking, is_inside: bool) -> list[XmlElement]:
     """Returns the road marking at the outer edge of a lane.
 
     Where there is none, the list is empty; inside junctions, the marking "none" is written, because some
@@ -133,12 +135,13 @@ def _mark(kind: Marking, links: LaneLinks | None) -> list[XmlElement]:
     """
     if kind == "none":
         blank = XmlElement("roadMark", {"sOffset": 0, "type": "none", "color": "standard"})
-        return [] if links is None else [blank]
+        return [blank] if is_inside else []
+    name = "solid solid" if kind == "double" else kind
     mark = XmlElement(
         "roadMark",
         {
             "sOffset": 0,
-            "type": kind,
+            "type": name,
             "weight": "standard",
             "color": "white",
             "material": "standard",
@@ -147,8 +150,9 @@ def _mark(kind: Marking, links: LaneLinks | None) -> list[XmlElement]:
         },
     )
     length, space = (DASH, GAP) if kind == "broken" else (DASH + GAP, 0.0)
-    line = {"length": length, "space": space, "tOffset": 0, "sOffset": 0, "width": LINE}
-    mark.add("type", {"name": kind, "width": LINE}).add("line", line)
+    made = mark.add("type", {"name": name, "width": LINE})
+    for t in (DOUBLE / 2, -DOUBLE / 2) if kind == "double" else (0,):
+        made.add("line", {"length": length, "space": space, "tOffset": t, "sOffset": 0, "width": LINE})
     return [mark]
 
 

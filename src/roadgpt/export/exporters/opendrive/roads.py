@@ -54,7 +54,7 @@ class RoadPlace:
     junction: int = -1
     """The id of the junction to which a connecting road belongs; -1 for any other road."""
     lane_links: LaneLinks | None = None
-    """The links of the lanes of a connecting road."""
+    """The links of its lanes to lanes of other roads."""
     starts: Sequence[Start] | None = None
     """The starts of the pieces of its reference line, if they have been computed already."""
 
@@ -84,4 +84,5 @@ def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | N
         place = RoadPlace()
     body.extended(parts.road_type)
     body.add("planView").extended(*geometries(road.plan, place.starts))
-    return body.extended(parts.heights(road), *lateral_profile(road), parts.lanes(road, place.lane_links))
+    lanes = parts.lanes(road, place.lane_links, is_inside=place.junction >= 0)
+    return body.extended(parts.heights(road), *lateral_profile(road), lanes)

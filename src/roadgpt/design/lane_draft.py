@@ -1,0 +1,127 @@
+"""Chooses the lanes of the roads of a route, within what is required of them."""
+
+from collections.abc import Sequence
+
+from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.junctions import RAMPS, JunctionClause
+from roadgpt.brief.model import Brief
+from roadgpt.network.lane_design import (
+    ACCELERATION,
+    MOST_LANES,
+    TAPER,
+    LanesChangeDesign,
+    LanesDesign,
+    RampDesign,
+)
+
+ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
+LEAST_BESIDE = 40.0  # m, of a lane for acceleration or deceleration whose length is not said
+SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
+SLACK = 1.0  # m more than the least length that is required
+
+
+def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
+    """Returns a merge or an exit that meets its requirements.
+
+    Args:
+        asked: the requirements.
+        room: greatest length in metres of its additional lane, if no length is required.
+    """
+    assert asked.kind in RAMPS
+    take = "main" if asked.take == "main" else "ramp"
+    length = min(ACCELERATION, max(room, LEAST_BESIDE))
+    if asked.length is not None:
+        length = _length(asked.length)
+    return RampDesign.model_validate(
+        {"after": 1, "kind": asked.kind, "take": take, "length": round(length, 1)}
+    )
+
+
+def drawn_change(asked: JunctionClause) -> LanesChangeDesign:
+    """Returns a place where lanes change that meets its requirements."""
+    side = asked.take or asked.side or "right"
+    length = TAPER if asked.length is None else _length(asked.length)
+    return LanesChangeDesign.model_validate(
+        {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
+    )
+
+
+def _length(asked: Amount) -> float:
+    low, high = span(asked).lo, span(asked).hi
+    if asked.exact or low <= 0:
+        return high if low <= 0 else low
+    return min(low + SLACK, high)
+
+
+def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
+    """Returns the lanes of each road of a route, before, between and behind its junctions.
+
+    Where nothing is required, a road has one lane in each direction, and what a ramp joins or leaves is one
+    carriageway of a motorway.
+
+    Args:
+        brief: the requirements.
+        width: width in metres of each lane.
+    """
+    forward = _forward(brief)
+    has_ramps = any(junction.kind in RAMPS for junction in brief.junctions)
+    found = []
+    for count, road in zip(forward, brief.stretches, strict=True):
+        one_way = has_ramps or road.motorway
+        backward = 0 if one_way else 1
+        if road.against is not None:
+            backward = int(_nearest(road.against, backward, 0))
+        found.append(LanesDesign(forward=count, backward=backward, width=width, centre=road.centre))
+    return found
+
+
+def _forward(brief: Brief) -> list[int]:
+    """Returns the number of lanes in the direction of the route on each road."""
+    roads, places = brief.stretches, brief.junctions
+    found: list[int] = []
+    for n, road in enumerate(roads):
+        before = places[n - 1] if n else None
+        usual = _behind(before, found[-1], roads, n, places) if before else _first(roads, places)
+        found.append(int(_nearest(road.lanes, usual, 1)) if road.lanes is not None else usual)
+    return found
+
+
+def _first(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> int:
+    """Returns the number of lanes of the first road, if it is not said: what the next places need."""
+    more = 0
+    for place, road in zip(places, roads[1:], strict=False):
+        if place.kind == "merge" and place.take != "main":
+            return max(1, 1 + more)
+        if place.kind in RAMPS:
+            return max(ON_MOTORWAY, 1 + more)
+        if place.kind == "lane_change":
+            return max(2, 1 + more)
+        if place.kind not in ("lane_drop", "lane_gain"):
+            break
+        more += 1 if place.kind == "lane_drop" else -1
+        if road.lanes is not None:
+            return max(1, int(_nearest(road.lanes, 1, 1)) + more)
+    return max(1, 1 + more)
+
+
+def _behind(
+    place: JunctionClause, before: int, roads: Sequence[Brief], n: int, places: Sequence[JunctionClause]
+) -> int:
+    if place.kind == "lane_drop":
+        return max(before - 1, 1)
+    if place.kind == "lane_gain":
+        return min(before + 1, MOST_LANES)
+    if place.kind == "lane_change" or (place.kind in RAMPS and place.take == "main"):
+        return before
+    if place.kind == "merge":
+        return ON_MOTORWAY
+    if place.kind == "diverge":
+        return 1
+    return _first(roads[n:], places[n:]) if roads[n].lanes is None else before
+
+
+def _nearest(asked: Amount, usual: int, least: int) -> float:
+    """Returns the number that is allowed and nearest to the usual one."""
+    allowed = span(asked)
+    low, high = max(allowed.lo, least), min(allowed.hi, MOST_LANES)
+    return min(max(usual, low), high)

@@ -1,0 +1,130 @@
+"""Computes where the lane of a route lies on one of its roads, and what lies beside it.
+
+    left shoulder | left: all other lanes | the lane | right: outer lanes | right shoulder
+                                          ^ offset
+
+A lane change is a smooth curve from one lane to the next, within part of the road.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from roadgpt.geometry import CubicProfile
+from roadgpt.geometry.curve import Array
+from roadgpt.road import Profile, Road
+from roadgpt.road.profile import Lane, Width
+
+LONGEST = 65.0  # m, of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
+SHARE = 0.8  # of the room for a lane change, at most
+ROUNDING = 1e-9
+
+
+class LaneAlong(NamedTuple):
+    """The lane of a route on one road, with what is beside it: functions of the station, in metres."""
+
+    left_shoulder: Width
+    left: Width
+    """The width of all lanes to the left of the lane, oncoming ones among them."""
+    offset: Width
+    """The offset of the left edge of the lane from the reference line."""
+    width: Width
+    right: Width
+    """The width of all lanes to the right of the lane."""
+    right_shoulder: Width
+
+
+Term = tuple[float, Width]
+"""A factor and a width."""
+
+
+def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
+    """Returns the lane that a route follows on a road.
+
+    Args:
+        road: The road, in the direction of the route.
+        lanes: The indices of the lanes that the route follows one after another, counted from 0 at the
+            centre line; each differs from the one before by 1.
+    """
+    profile = road.profile
+    assert profile is not None
+    count = profile.count
+    right = [lane.width for lane in profile.right[: count[0]]]
+    oncoming = [lane.width for lane in profile.left[: count[1]]]
+    length = road.length
+    offsets = [added([(1, profile.offset), *((-1, w) for w in right[:k])], length) for k in lanes]
+    offset = _through(offsets, length)
+    width = _through([right[k] for k in lanes], length)
+    left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
+    outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
+    shoulders = (_shoulder(side[n:], length) for side, n in _sides(profile, count))
+    left_shoulder, right_shoulder = shoulders
+    return LaneAlong(left_shoulder, left, offset, width, outer, right_shoulder)
+
+
+def _sides(profile: Profile, count: tuple[int, int]) -> tuple[tuple[Sequence[Lane], int], ...]:
+    return (profile.left, count[1]), (profile.right, count[0])
+
+
+def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
+    return added([(1, lane.width) for lane in lanes], length)
+
+
+def change_windows(length: float, count: int) -> list[tuple[float, float]]:
+    """Returns where the lane changes on a road of this length begin and end, as stations in metres."""
+    part = length / count if count else 0.0
+    half = min(LONGEST, SHARE * part) / 2
+    return [(part * (n + 0.5) - half, part * (n + 0.5) + half) for n in range(count)]
+
+
+def added(terms: Sequence[Term], length: float) -> Width:
+    """Returns the sum of widths along a road of this length, each with a factor."""
+    if not any(isinstance(width, CubicProfile) for _, width in terms):
+        return sum(factor * width for factor, width in terms if not isinstance(width, CubicProfile))
+    inside = {0.0}
+    for _, width in terms:
+        if isinstance(width, CubicProfile):
+            inside |= {s for s in width.stations if 0 < s < length - ROUNDING}
+    stations = np.array(sorted(inside))
+    total = np.zeros((len(stations), 4))
+    for factor, width in terms:
+        total += factor * cubics_at(width, stations)
+    return profile_of(stations, total)
+
+
+def cubics_at(width: Width, stations: Array) -> Array:
+    """Returns the coefficients ``(n, 4)`` of a width as cubics that begin at ``stations``, ``(n,)``."""
+    if isinstance(width, CubicProfile):
+        return width.cubics(stations)
+    return np.tile([width, 0.0, 0.0, 0.0], (len(stations), 1))
+
+
+def profile_of(stations: Array, table: Array) -> CubicProfile:
+    """Returns cubics with these stations ``(n,)`` and coefficients ``(n, 4)``."""
+    rows = [(a, b, c, d) for a, b, c, d in table.tolist()]
+    return CubicProfile(tuple(stations.tolist()), tuple(rows))
+
+
+def _through(values: Sequence[Width], length: float) -> Width:
+    """Returns one width after another, with smooth changes between them."""
+    found = values[0]
+    for (start, end), after in zip(change_windows(length, len(values) - 1), values[1:], strict=True):
+        found = _blended(found, after, start, end, length)
+    return found
+
+
+def _blended(one: Width, other: Width, start: float, end: float, length: float) -> Width:
+    if one == other:
+        return one
+    before = added([(1, one), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
+    after = added([(1, other), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
+    assert isinstance(before, CubicProfile)
+    assert isinstance(after, CubicProfile)
+    smooth = CubicProfile.smooth([(start, float(before.height(start))), (end, float(after.height(end)))])
+    early = [s for s in before.stations if s < start]
+    late = [s for s in after.stations if s > end]
+    table = np.concatenate(
+        (before.cubics(np.array(early)), [smooth.coefficients[0]], after.cubics(np.array([end, *late])))
+    )
+    return profile_of(np.array([*early, start, end, *late]), table)

@@ -1,0 +1,65 @@
+"""Defines the parts of a NetworkDesign that say how many lanes there are, and where this changes.
+
+    "lanes": {"forward": 2, "backward": 0, "width": 3.5, "centre": "solid"}
+    "junction1": {"after": 1, "kind": "merge", "take": "ramp", "length": 150,
+                  "lanes": {"forward": 2, "backward": 0}}
+    "junction2": {"after": 2, "kind": "lane_drop", "length": 60}
+
+They stand among the junctions, in driving order.
+"""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from roadgpt.road.design import FrozenFields
+from roadgpt.road.profile import Marking
+
+MOST_LANES = 4  # in one direction
+ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
+RAMP_TAPER = 60.0  # m, at the end of a lane for acceleration: RAA 2008, entries and exits
+TAPER = 60.0  # m, of a lane that ends or begins
+
+After = Annotated[int, Field(ge=1, le=500)]
+LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
+RAMP_KINDS = ("merge", "diverge")
+LANE_KINDS = ("lane_drop", "lane_gain", "lane_change")
+
+
+class LanesDesign(FrozenFields):
+    """The lanes of a road."""
+
+    forward: Annotated[int, Field(ge=1, le=MOST_LANES)] = 1
+    """Number of lanes in the direction of the route."""
+    backward: Annotated[int, Field(ge=0, le=MOST_LANES)] = 1
+    """Number of oncoming lanes; 0 for a one-way road."""
+    width: Annotated[float, Field(ge=2, le=10, allow_inf_nan=False)] = 4.0
+    """Width of every lane in metres."""
+    centre: Marking | None = None
+    """The line between the directions; None for the usual one."""
+
+
+class RampDesign(FrozenFields):
+    """A place where a ramp joins a road, or leaves it, on the right."""
+
+    after: After
+    """Number of segments of the route before it."""
+    kind: Literal["merge", "diverge"]
+    take: Literal["ramp", "main"]
+    """Where the route comes from (merge) or goes to (diverge)."""
+    length: LaneLength = ACCELERATION
+    """Length in metres of the lane for acceleration or deceleration, without its taper."""
+    lanes: LanesDesign | None = None
+    """The lanes of the road behind it; None for the usual ones."""
+
+
+class LanesChangeDesign(FrozenFields):
+    """A place where a lane ends or begins, or where the route changes to the next lane."""
+
+    after: After
+    """Number of segments of the route before it."""
+    kind: Literal["lane_drop", "lane_gain", "lane_change"]
+    side: Literal["left", "right"] = "right"
+    """The lane that ends or begins: the leftmost or the rightmost; or the side to which the route changes."""
+    length: LaneLength = TAPER
+    """Length in metres in which the width of the lane changes."""

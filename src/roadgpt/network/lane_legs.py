@@ -1,0 +1,73 @@
+"""Finds the lanes in which a route follows roads of a network, with the lane changes that this needs."""
+
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+
+from roadgpt.errors import UsageError
+from roadgpt.network.network import Leg, Network
+
+Ways = dict[int, int]
+"""For the id of a lane, the id of the lane of the next road that continues it."""
+
+
+def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
+    """Returns the legs of a route that follows roads in this order.
+
+    A route keeps to the rightmost lane from which it can go on, and changes lanes as late as possible: on the
+    last road before the lane is needed.
+
+    Args:
+        network: The network.
+        roads: Ids of roads, each joined to the next one, connecting roads among them.
+        shifts: For the id of a road on which the route changes lanes anyhow, the number of lanes to the left.
+
+    Raises:
+        UsageError: Two roads are not joined, or a lane that the route needs cannot be reached.
+    """
+    ways = [_ways(network, one, two) for one, two in pairwise(roads)]
+    lane = _first(ways[0] if ways else {-1: -1}, shifts.get(roads[0], 0))
+    found: list[Leg] = []
+    for n, road in enumerate(roads):
+        own = [lane]
+        shift = shifts.get(road, 0)
+        for _ in range(abs(shift)):
+            own.append(_beside(network, road, own[-1], 1 if shift > 0 else -1))
+        if n < len(ways):
+            target = min(ways[n], key=lambda each: (abs(each - own[-1]), -abs(each)))
+            if network.road(road).junction is not None and target != own[-1]:
+                raise UsageError(f"no way leads from lane {own[-1]} of road {road} to road {roads[n + 1]}")
+            while own[-1] != target:
+                own.append(own[-1] + (1 if target > own[-1] else -1))
+            lane = ways[n][target]
+        found += [Leg(road, each) for each in own]
+    return found
+
+
+def _first(ways: Ways, shift: int) -> int:
+    """Returns the lane in which a route begins: the rightmost from which it can go on after its change."""
+    target = max(ways, key=abs)
+    side = 1 if target > 0 else -1
+    return target + side * shift
+
+
+def _beside(network: Network, road: int, lane: int, left: int) -> int:
+    """Returns the lane to the left (1) or to the right (-1) of a lane."""
+    forward, backward = network.road(road).profile.count
+    count = forward if lane < 0 else backward
+    beside = abs(lane) - left
+    if not 1 <= beside <= count:
+        word = "left" if left > 0 else "right"
+        raise UsageError(f"the route cannot change to the {word} on road {road}: there is no lane")
+    return beside if lane > 0 else -beside
+
+
+def _ways(network: Network, one: int, two: int) -> Ways:
+    """Returns which lanes of one road continue in the next one."""
+    if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
+        return {way.incoming: way.own for way in found[1].lanes}
+    if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:
+        return {way.own: way.outgoing for way in found[1].lanes}
+    for each in network.continuations:
+        if (each.before.road, each.after.road) == (one, two):
+            return dict(each.lanes)
+    raise UsageError(f"no way leads from road {one} to road {two}")

@@ -1,0 +1,216 @@
+"""Builds merges and exits: a ramp that joins or leaves a road on its right, with a lane of its own.
+
+    main road  -----------+--------------------------------------
+    ramp  ----------------'  node | lane for acceleration | taper
+
+The reference lines of the main road and of the ramp meet at the node. Behind a merge, and before an exit, the
+main road has one lane more. It ends, or begins, in a taper.
+"""
+
+import cmath
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from roadgpt.geometry import CubicProfile
+from roadgpt.network.building import Builder, Stub, connecting_road
+from roadgpt.network.lane_design import RampDesign
+from roadgpt.network.network import Arm, Connection, Continuation, Junction, LaneLink, RoadEnd
+from roadgpt.network.pose import NetworkPose
+from roadgpt.network.stretch import road_of
+from roadgpt.network.turning import curve_between
+from roadgpt.road import Profile, Segment
+from roadgpt.road.profile import Lane
+
+ANGLE = math.radians(8.0)  # between the ramp and the main road
+CONTACT = 25.0  # m, from the node to each contact
+TAPER = 60.0  # m, of the lane for acceleration or deceleration: RAA 2008, entries and exits
+BESIDE = 60.0  # m, of the road that the route does not take
+
+LanePairs = tuple[tuple[int, int], ...]
+
+
+def length_beside(ramp: RampDesign) -> float:
+    """Returns the length in metres of the road with the additional lane."""
+    return ramp.length + TAPER
+
+
+def length_at_ramp(ramp: RampDesign) -> float:
+    """Returns the length in metres of a route at a ramp: in the junction and beside the additional lane."""
+    turn = ANGLE if ramp.take == "ramp" else 0.0
+    return sum(piece.length for piece in curve_between(CONTACT, CONTACT, turn)) + length_beside(ramp)
+
+
+def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
+    """Returns sketches of the route at a ramp, and of the road that it does not take.
+
+    Points are x + iy in metres. The route arrives at 0 along +x; the last two points give its direction
+    behind the ramp.
+    """
+    length, is_merge, by_ramp = length_beside(ramp), ramp.kind == "merge", ramp.take == "ramp"
+    node = CONTACT if is_merge else length + CONTACT
+    ahead = cmath.exp(-1j * ANGLE) if by_ramp else complex(1.0)
+    other = complex(-1.0 if is_merge else 1.0)
+    if is_merge:
+        other *= cmath.exp(-1j * ANGLE) if by_ramp else cmath.exp(1j * ANGLE)
+    elif not by_ramp:
+        other *= cmath.exp(-1j * ANGLE)
+    behind = CONTACT + (length if is_merge else 0.0)
+    on_route = [*_steps(0.0, 1.0, node), *_steps(node, ahead, behind), node + behind * ahead]
+    return on_route, [node + other * d for d in (CONTACT, CONTACT + BESIDE / 2, CONTACT + BESIDE)]
+
+
+def _steps(start: complex, way: complex, length: float) -> list[complex]:
+    count = max(1, int(length / 4.0))
+    return [start + way * length * n / count for n in range(count)]
+
+
+@dataclass
+class RampBuilder:
+    """Builds one merge or exit into a network, with the road that the route does not take."""
+
+    builder: Builder
+    ramp: RampDesign
+    arrival: int
+    """The id of the road on which the route arrives."""
+    end: NetworkPose
+    """The end of this road."""
+    before: Profile
+    """The cross-section of this road."""
+    after: Profile
+    """The cross-section of the road on which the route goes on."""
+
+    def where_it_goes_on(self) -> NetworkPose:
+        """Returns where the road begins on which the route goes on."""
+        by_ramp, length = self.ramp.take == "ramp", length_beside(self.ramp)
+        if self.ramp.kind == "merge":
+            return self._node.ahead(CONTACT + length)
+        turned = NetworkPose(self._node.point, self.end.heading - ANGLE) if by_ramp else self._node
+        return turned.ahead(CONTACT)
+
+    @property
+    def _node(self) -> NetworkPose:
+        """The node, with the heading of the main road."""
+        by_ramp = self.ramp.take == "ramp"
+        if self.ramp.kind == "merge":
+            return self.end.ahead(CONTACT, -ANGLE if by_ramp else 0.0)
+        return self.end.ahead(length_beside(self.ramp) + CONTACT)
+
+    def build(self, going_on: int) -> list[int]:
+        """Adds everything but the road on which the route goes on, whose id is given.
+
+        Returns the ids of the roads that the route passes before it.
+        """
+        return self._merge(going_on) if self.ramp.kind == "merge" else self._exit(going_on)
+
+    def _merge(self, going_on: int) -> list[int]:
+        by_ramp, node = self.ramp.take == "ramp", self._node
+        width = _width(self.after)
+        length, full = length_beside(self.ramp), self.ramp.length
+        lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
+        beside = self._straight(node.ahead(CONTACT), length, _with_lane(self.after, lane))
+        self._continue(beside, going_on)
+        if by_ramp:
+            main = self._straight(node.ahead(-CONTACT - BESIDE), BESIDE, self.after)
+            ramp = self.arrival
+        else:
+            from_ramp = NetworkPose(node.point, node.heading + ANGLE)
+            main, ramp = (
+                self.arrival,
+                self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, self._ramp()),
+            )
+        junction = self.builder.number()
+        stubs = [self._stub(main, "end"), self._stub(ramp, "end"), self._stub(beside, "start")]
+        count = len(stubs[0].into)
+        ways = [
+            self._way(junction, stubs[0], stubs[2], [(n, n) for n in range(count)]),
+            self._way(junction, stubs[1], stubs[2], [(0, count)]),
+            *self._back(junction, stubs[2], stubs[0]),
+        ]
+        self._close(junction, [stubs[2], stubs[0], stubs[1]], ways)
+        return [ways[1 if by_ramp else 0].road, beside]
+
+    def _exit(self, going_on: int) -> list[int]:
+        by_ramp, node = self.ramp.take == "ramp", self._node
+        width, length = _width(self.before), length_beside(self.ramp)
+        lane = CubicProfile.smooth([(0.0, 0.0), (TAPER, width)])
+        beside = self._straight(self.end, length, _with_lane(self.before, lane))
+        self._continue(self.arrival, beside)
+        if by_ramp:
+            main, ramp = self._straight(node.ahead(CONTACT), BESIDE, self.before), going_on
+        else:
+            onto_ramp = NetworkPose(node.point, node.heading - ANGLE)
+            main, ramp = going_on, self._straight(onto_ramp.ahead(CONTACT), BESIDE, self._ramp())
+        junction = self.builder.number()
+        stubs = [self._stub(beside, "end"), self._stub(ramp, "start"), self._stub(main, "start")]
+        count = len(stubs[2].out_of)
+        ways = [
+            self._way(junction, stubs[0], stubs[2], [(n, n) for n in range(count)]),
+            self._way(junction, stubs[0], stubs[1], [(count, 0)]),
+            *self._back(junction, stubs[2], stubs[0]),
+        ]
+        self._close(junction, stubs, ways)
+        return [beside, ways[1 if by_ramp else 0].road]
+
+    def _ramp(self) -> Profile:
+        """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
+        main = self.before
+        made = Profile.of(1, 0, _width(main), main.shoulder_width)
+        return replace(made, offset=float(main.edges(0.0).right))
+
+    def _straight(self, start: NetworkPose, length: float, profile: Profile) -> int:
+        segment = Segment(distance=length, direction="straight")
+        return self.builder.add(road_of((segment,), *start, profile, (True, True)))
+
+    def _continue(self, before: int, after: int) -> None:
+        """Lets the lanes that two roads have in common continue each other."""
+        profiles = [self._profile(each) for each in (before, after)]
+        forward, backward = (min(each.count[side] for each in profiles) for side in (0, 1))
+        lanes = (*((-n, -n) for n in range(1, forward + 1)), *((n, n) for n in range(1, backward + 1)))
+        self.builder.continuations.append(
+            Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)
+        )
+
+    def _profile(self, road: int) -> Profile:
+        return self.builder.roads[road].profile
+
+    def _stub(self, road: int, contact: str) -> Stub:
+        member = self.builder.roads[road].road
+        s = member.length if contact == "end" else 0.0
+        heading = float(member.heading(s)) + (math.pi if contact == "end" else 0.0)
+        end = RoadEnd(road, "end") if contact == "end" else RoadEnd(road, "start")
+        return Stub(end, heading, self._profile(road), s)
+
+    def _back(self, junction: int, start: Stub, end: Stub) -> list[Connection]:
+        """Returns the way of oncoming traffic, in a list that is empty on a one-way road."""
+        lanes = [(n, n) for n in range(min(len(start.into), len(end.out_of)))]
+        return [self._way(junction, start, end, lanes)] if lanes else []
+
+    def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
+        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions."""
+        heading = start.direction + math.pi
+        turn = math.remainder(end.direction - heading, 2 * math.pi)
+        contact = NetworkPose(self._node.point, start.direction).ahead(CONTACT).point
+        widths = [(start.width_of(start.into[i]), end.width_of(end.out_of[j])) for i, j in lanes]
+        offset = (-start.inside_into(lanes[0][0]), -end.inside_out_of(lanes[0][1]))
+        made = connecting_road(contact, heading, curve_between(CONTACT, CONTACT, turn), widths, offset)
+        links = [LaneLink(start.id_into(i), -1 - n, end.id_out_of(j)) for n, (i, j) in enumerate(lanes)]
+        return Connection(self.builder.add(made, junction), start.end, end.end, tuple(links))
+
+    def _close(self, number: int, stubs: Sequence[Stub], ways: Sequence[Connection]) -> None:
+        arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)
+        made = Junction(number, self.ramp.kind, arms, tuple(ways), self._node.point, 0.0)
+        self.builder.junctions.append(made)
+
+
+def _width(profile: Profile) -> float:
+    """Returns the width in metres of the rightmost lane."""
+    width = profile.right[profile.count[0] - 1].width
+    return float(width.height(0.0)) if isinstance(width, CubicProfile) else width
+
+
+def _with_lane(profile: Profile, width: CubicProfile) -> Profile:
+    """Returns the cross-section with one more lane, on the outside of the lanes on the right."""
+    count = profile.count[0]
+    inner = [*profile.right[: count - 1], replace(profile.right[count - 1], marking="broken")]
+    return replace(profile, right=(*inner, Lane("driving", width, "solid"), *profile.right[count:]))

@@ -1,0 +1,150 @@
+"""Computes the cross-section of each road between the junctions of a NetworkDesign.
+
+Where the route joins a road from a ramp, or leaves it by a ramp, the line between the directions lies beside
+the reference line, so that the reference line leads along the ramp.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from roadgpt.errors import UsageError
+from roadgpt.geometry import CubicProfile
+from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
+from roadgpt.network.lane_design import MOST_LANES, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.road import Profile, World
+from roadgpt.road.profile import Width
+from roadgpt.road.world import OWN
+
+MAIN = LanesDesign(forward=2, backward=0)
+"""The lanes of a road that a ramp joins, where none are given: one carriageway of a motorway."""
+MOST_OF_ROAD = 0.8  # of a road, that the taper of a lane may take
+
+
+def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
+    """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin.
+
+    Raises:
+        UsageError: The World asks for lanes or banked bends that networks do not have, or a road would have
+            no lane or too many.
+    """
+    section = world.section
+    changed = [name for name, usual in OWN.items() if getattr(section, name) != usual]
+    if changed:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in changed)
+        raise UsageError(f"a network takes its lanes from its design, and has level roads; leave out {flags}")
+    first = design.lanes or LanesDesign(width=section.lane_width)
+    lengths = [sum(segment.distance for segment in segments) for segments in design.stretches]
+    return profiles_between(first, design.junctions, lengths, section.shoulder)
+
+
+def profiles_between(
+    first: LanesDesign, places: Sequence[PlaceDesign], lengths: Sequence[float], shoulder: float
+) -> list[Profile]:
+    """Returns the cross-sections of the roads before, between and behind the places that a route passes.
+
+    Args:
+        first: The lanes of the first road.
+        places: The places in driving order.
+        lengths: The length of each road in metres.
+        shoulder: The width of every shoulder in metres.
+
+    Raises:
+        UsageError: A road would have no lane or too many, or a ramp has oncoming traffic.
+    """
+    lanes = [first]
+    for number, place in enumerate(places, 1):
+        lanes.append(_behind(number, place, lanes[-1]))
+    found = [_profile(each, shoulder) for each in lanes]
+    offsets = _offsets(places, lanes)
+    around = (None, *places, None)
+    for n, length in enumerate(lengths):
+        before, after = around[n], around[n + 1]
+        found[n] = replace(found[n], offset=offsets[n])
+        if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop":
+            found[n] = _tapered(found[n], after, length, is_end=True)
+        if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain":
+            found[n] = _tapered(found[n], before, length, is_end=False)
+        is_ramp = _is_ramp(after, "merge") or _is_ramp(before, "diverge")
+        if is_ramp and (lanes[n].forward, lanes[n].backward) != (1, 0):
+            raise UsageError(
+                f"junction {n + _is_ramp(after, 'merge')}: the route comes or goes by the ramp, which has "
+                'one lane and no oncoming traffic; give that road "lanes": {"forward": 1, "backward": 0}'
+            )
+    return found
+
+
+def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> list[float]:
+    """Returns the offset of the line between the directions from the reference line of each road.
+
+    It changes only where the reference line leads from a ramp to a road beside it, or the other way.
+    """
+    found: list[float] = []
+    for n in range(len(lanes)):
+        before = places[n - 1] if n else None
+        if n == 0 or isinstance(before, JunctionDesign):
+            found.append(_first_offset(places[n:], lanes[n:]))
+        elif _is_ramp(before, "merge"):
+            found.append(found[-1] + lanes[n].forward * lanes[n].width)
+        elif _is_ramp(before, "diverge"):
+            found.append(found[-1] - lanes[n - 1].forward * lanes[n - 1].width)
+        else:
+            found.append(found[-1])
+    return found
+
+
+def _first_offset(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> float:
+    """Returns the offset with which the reference line leads along the ramp of the next exit."""
+    for place, own in zip(places, lanes, strict=False):
+        if _is_ramp(place, "diverge"):
+            return own.forward * own.width
+        if isinstance(place, JunctionDesign) or _is_ramp(place, "merge"):
+            break
+    return 0.0
+
+
+def _is_ramp(place: PlaceDesign | None, kind: str) -> bool:
+    return isinstance(place, RampDesign) and place.kind == kind and place.take == "ramp"
+
+
+def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign:
+    """Returns the lanes of the road behind a place that the route passes."""
+    if isinstance(place, LanesChangeDesign):
+        step = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}[place.kind]
+        if not 1 <= before.forward + step <= MOST_LANES:
+            raise UsageError(
+                f"junction {number}: a {place.kind} leaves {before.forward + step} lanes, and a road has 1 "
+                f"to {MOST_LANES}; give the road before it other lanes"
+            )
+        return before.model_copy(update={"forward": before.forward + step})
+    if isinstance(place, RampDesign) and place.take == "main":
+        return before
+    if place.lanes is not None:
+        return place.lanes
+    if isinstance(place, RampDesign):
+        update = {"width": before.width}
+        if place.kind == "merge":
+            return MAIN.model_copy(update=update)
+        return LanesDesign(forward=1, backward=0, width=before.width)
+    return before
+
+
+def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
+    made = Profile.of(lanes.forward, lanes.backward, lanes.width, shoulder)
+    return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
+
+
+def _tapered(profile: Profile, place: LanesChangeDesign, length: float, is_end: bool) -> Profile:
+    """Returns the cross-section with a lane whose width falls to 0 at the end, or rises from 0."""
+    count = profile.count[0]
+    index = 0 if place.side == "left" else count - 1
+    full = profile.right[index].width
+    assert not isinstance(full, CubicProfile)
+    run = min(place.length, MOST_OF_ROAD * length)
+    knots = [(0.0, full), (length - run, full), (length, 0.0)] if is_end else [(0.0, 0.0), (run, full)]
+    return _with_width(profile, index, CubicProfile.smooth(knots))
+
+
+def _with_width(profile: Profile, index: int, width: Width) -> Profile:
+    lanes = list(profile.right)
+    lanes[index] = replace(lanes[index], width=width)
+    return replace(profile, right=tuple(lanes))
