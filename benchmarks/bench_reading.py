@@ -3,33 +3,39 @@
     python benchmarks/bench_reading.py [ROADS]
 
 Prints the scores on the hand-written splits and on the exam (inputs that must be refused, and honest ones
-that sound dangerous), the share of valid roads for the three prompts of RoadGPT's evaluation with
-Clopper-Pearson intervals and a test of independence, and time and memory of the trained reader in a process
-of its own.
+that sound dangerous), how many descriptions of routes with junctions are read exactly, the share of valid
+roads for the three prompts of RoadGPT's evaluation with Clopper-Pearson intervals and a test of independence,
+and time and memory of the trained reader in a process of its own.
 """
 
 import json
 import subprocess
 import sys
+import time
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
 from scipy.stats import beta, chi2_contingency
 
 from roadgpt import check
+from roadgpt.brief import SURE, AnotherRoadError, normal, read, reader_of
 from roadgpt.brief import check as check_brief
-from roadgpt.brief import read, reader_of
 from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.design import draft
-from roadgpt.errors import DesignError
+from roadgpt.errors import BriefError, DesignError
 from roadgpt.learn.calibrate import normal_change
+from roadgpt.learn.data import is_outdated
 from roadgpt.learn.evaluate import HEAD, readings, score
+from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
 from roadgpt.road import Design, World, build
 
 HAND = Path(__file__).parents[1] / "data" / "descriptions"
 CHANGES = HAND.parent / "changes" / "validation"
+NETWORKS = HAND.parent / "networks"
 SPLITS = ("validation", "contrasts_validation", "free_validation", "test", "exam")
 READERS = ("model",)
 PROMPTS = (
@@ -37,6 +43,10 @@ PROMPTS = (
     "an uphill road with 3 turns",
     "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
 )
+EXACT, DOUBTED, SILENT = "exact", "different, with a doubt", "silently different"
+REFUSED, ASKED = "refused though it can be built", "refused, another plan offered"
+RIGHTLY, BUILT = "rightly refused", "built though it must be refused"
+VERDICTS = (EXACT, DOUBTED, SILENT, REFUSED, ASKED, RIGHTLY, BUILT)
 RECENT = 20  # designs that a new one is told not to repeat; all of a thousand would cost most of the time
 COST = """
 import json, resource, sys, time
@@ -65,14 +75,18 @@ def main(roads: int = 1000) -> None:
     """All tables, one after another."""
     _scores()
     _changes()
+    for split in ("validation", "test"):
+        _networks(split)
     _validity(roads)
     _cost()
 
 
 def _scores() -> None:
+    """The hand-written splits, without the pairs whose labels are older than the language of junctions."""
     print(HEAD)
     for split in SPLITS:
-        pairs, _ = read_pairs((HAND / split).glob("*.jsonl"))
+        every, _ = read_pairs((HAND / split).glob("*.jsonl"))
+        pairs = [pair for pair in every if not is_outdated(pair)]
         for name in READERS:
             reader = reader_of(name)
 
@@ -81,7 +95,8 @@ def _scores() -> None:
                 check_brief(brief, 250.0)  # as every command does
                 return brief
 
-            print(score(readings(pairs, asked if split == "exam" else reader.read)).row(f"{name}, {split}"))
+            found = score(readings(pairs, asked if split == "exam" else reader.read))
+            print(found.row(f"{name}, {split}"), f"{len(every) - len(pairs)} pairs left out")
 
 
 def _changes() -> None:
@@ -96,6 +111,45 @@ def _changes() -> None:
         else:
             right += normal_change(got) == normal_change(pair.plan)
     print(f"change requests of the validation split read as labelled: {right} of {len(pairs)}")
+
+
+def _networks(split: str) -> None:
+    """Descriptions of routes with junctions by language: how many plans are exactly those of the labels, and
+    what the others are.
+    """
+    pairs, _ = read_pairs((NETWORKS / split).glob("*.jsonl"))
+    counts: dict[str, Counter[str]] = {}
+    took = []
+    for pair in pairs:
+        begun = time.process_time()
+        verdict = _verdict(pair)
+        took.append(1000 * (time.process_time() - begun))
+        for group in (pair.lang, "all"):
+            counts.setdefault(group, Counter())[verdict] += 1
+    print(f"routes, {split} | texts | " + " | ".join(VERDICTS))
+    for group in sorted(counts, key=lambda name: (name == "all", name)):
+        its = counts[group]
+        print(f"{group} | {its.total()} | " + " | ".join(str(its[verdict]) for verdict in VERDICTS))
+    print(f"{np.median(took):.1f} ms of processor time (median), {np.quantile(took, 0.95):.1f} ms (95 %)")
+
+
+def _verdict(pair: Pair) -> str:
+    honest = not pair.plan.startswith("!")
+    try:
+        brief = read(pair.text, map_size=None)
+    except AnotherRoadError:
+        return ASKED if honest else RIGHTLY
+    except BriefError:
+        return REFUSED if honest else RIGHTLY
+    if not honest:
+        return BUILT
+    wanted, got = (
+        each.model_copy(update={"beside": tuple(sorted(each.beside))})
+        for each in (normal(read_plan(pair.plan)), normal(brief))
+    )
+    if got == wanted:
+        return EXACT
+    return DOUBTED if brief.confidence < SURE or brief.unused else SILENT
 
 
 def _validity(roads: int) -> None:

@@ -115,9 +115,11 @@ def joined(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] 
     """Returns a text and plan that join the roads of two pairs into one road; None if the pairs cannot be
     joined.
 
-    Pairs with refusals or with requirements for the whole road cannot be joined.
+    Pairs with refusals, with requirements for the whole road or with junctions cannot be joined.
     """
-    if any("|" in pair.plan or pair.plan.startswith("!") for pair in (one, other)):
+    if any(
+        "|" in pair.plan or pair.plan.startswith("!") or is_of_junctions(pair.plan) for pair in (one, other)
+    ):
         return None
     if len(one.text) + len(other.text) > LONGEST:
         return None

@@ -23,8 +23,8 @@ from roadgpt.learn.shared_values import with_shared_values
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES = {
-    "networks": 0.30,
-    "routes": 0.08,
+    "networks": 0.36,
+    "routes": 0.10,
     "hand": 0.161,
     "free": 0.105,
     "contrasts": 0.062,

@@ -191,9 +191,10 @@ def export(
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
+    from roadgpt.learn.data import is_outdated
     from roadgpt.learn.filler_words import filler_words
 
-    held_back = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
+    held_back = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder) if not is_outdated(pair)]
     held_back += _network_pairs_of(networks / "validation")
     held_back += _pairs_of(changes / "validation", is_change=True)
     fillers = filler_words(_trained_on(hand, changes, networks))
