@@ -50,6 +50,8 @@ class MeasuredJunction:
     """Whether the route comes from the ramp (merge) or goes to it (diverge); None for other junctions."""
     beside: float | None = None
     """Length of the full lane for acceleration or deceleration of a merge or exit."""
+    ring_lanes: int = 0
+    """The number of lanes of a ring; 0 for other junctions."""
     all_controls: tuple[Control, ...] = ()
     """The sign or the light of each arm with lanes into the junction."""
 
@@ -156,6 +158,7 @@ def _measured(network: Network, passage: Passage) -> MeasuredJunction:
         None if ring is None else ring.radius,
         ramp and ramp[0],
         ramp and ramp[1],
+        0 if ring is None else network.road(ring.ring[0]).profile.count[0],
         tuple(arm.control for arm in passage.entered.arms if _leads_in(network, arm.end)),
     )
 

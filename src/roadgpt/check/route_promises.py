@@ -192,6 +192,8 @@ def _is_controlled(found: MeasuredJunction, asked: JunctionClause) -> bool:
 def _sizes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     if found.outer is None or found.island is None:
         return
+    if asked.lanes is not None and found.ring_lanes not in span(asked.lanes):
+        yield f"asked for a ring with {asked.lanes} lanes, has {found.ring_lanes}"
     if asked.size is not None:
         size = SIZES[asked.size]
         if found.outer not in Range(size.lo - ROUNDING, size.hi + ROUNDING):

@@ -13,7 +13,7 @@ from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
 from roadgpt.network.network import JunctionKind
-from roadgpt.network.ring import BETWEEN, MOUTH, ring_width, smallest_radius
+from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
 ANY: tuple[JunctionKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
@@ -71,6 +71,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             control=clause.control or "none",
             kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
             radius=radius,
+            ring_lanes=_ring_lanes(clause),
             arms=arms,
         )
     return None
@@ -180,7 +181,7 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
     allowed = span(clause.radius)
     if clause.size is not None:
         outer = SIZES[clause.size].drawn_in(0.5, 0.1)
-        allowed = overlap(allowed, _island(outer)) or allowed
+        allowed = overlap(allowed, _island(outer, _ring_lanes(clause))) or allowed
     elif clause.radius is None:
         allowed = Range(*ISLANDS)
     gaps = [b - a for a, b in pairwise([-180.0, *angles, 180.0])]
@@ -190,7 +191,12 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
     return min(max(drawn, min(usual, high)), high) if clause.radius is None else drawn
 
 
-def _island(outer: Range) -> Range:
-    """Returns the radii of islands for outer diameters in metres."""
-    low, high = (each / 2 - ring_width(each / 2 - 5.0) for each in (outer.lo, outer.hi))
+def _ring_lanes(clause: JunctionClause) -> int:
+    """Returns the number of lanes of a ring: one, unless two are required."""
+    return 1 if clause.kind != "roundabout" or span(clause.lanes).lo <= 1 else MOST_LANES
+
+
+def _island(outer: Range, lanes: int) -> Range:
+    """Returns the radii of islands for outer diameters in metres and a ring with this number of lanes."""
+    low, high = (each / 2 - ring_width(each / 2 - 5.0, lanes) for each in (outer.lo, outer.hi))
     return Range(low, high)

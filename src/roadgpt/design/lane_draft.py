@@ -1,9 +1,11 @@
 """Chooses the lanes of the roads of a route, within what is required of them."""
 
 from collections.abc import Sequence
+from math import ceil, inf
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import RAMPS, JunctionClause
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief
 from roadgpt.network.lane_design import (
     ACCELERATION,
@@ -13,10 +15,16 @@ from roadgpt.network.lane_design import (
     LanesDesign,
     RampDesign,
 )
+from roadgpt.network.ramps import length_at_ramp
+from roadgpt.road import World
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
 LEAST_BESIDE = 40.0  # m, of a lane for acceleration or deceleration whose length is not said
 SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
+USUAL_ROAD = 90.0  # m, of a road whose length is not said
+DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
+EDGES = 40.0  # m, kept free at the edges of the map
+STEP = 50.0  # m, to which the side of the map is rounded up
 SLACK = 1.0  # m more than the least length that is required
 
 
@@ -44,6 +52,28 @@ def drawn_change(asked: JunctionClause) -> LanesChangeDesign:
     return LanesChangeDesign.model_validate(
         {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
     )
+
+
+def map_of_route(brief: Brief, world: World) -> float | None:
+    """Returns the side in metres of a map on which the longest straight part of a route has room.
+
+    Beside the lanes of ramps, and where lanes change, a route is nearly straight. Returns None if the map of
+    the World is large enough.
+    """
+    longest, run = 0.0, 0.0
+    for n, road in enumerate(brief.stretches):
+        place = brief.junctions[n - 1] if n else None
+        if place is None or place.kind not in (*RAMPS, *LANE_KINDS):
+            run = 0.0
+        elif place.kind in RAMPS:
+            run += length_at_ramp(drawn_ramp(place, ACCELERATION))
+        low = span(road.length).lo
+        run += low if 0 < low < inf else USUAL_ROAD
+        longest = max(longest, run)
+    needed = longest / DIAGONAL + EDGES
+    if needed <= world.site.map_size or not any(p.kind in (*RAMPS, *LANE_KINDS) for p in brief.junctions):
+        return None
+    return float(min(ceil(needed / STEP) * STEP, LARGEST_MAP))
 
 
 def _length(asked: Amount) -> float:

@@ -13,7 +13,7 @@ from math import inf
 import numpy as np
 
 from roadgpt import check
-from roadgpt.brief.amount import between, exactly, span
+from roadgpt.brief.amount import at_least, between, exactly, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
@@ -139,10 +139,10 @@ class NetworkSearch:
         """Returns what the route passes; None if a junction cannot be drawn."""
         found: list[PlaceDesign] = []
         for number, clause in enumerate(self.brief.junctions):
-            if clause.kind in LANE_KINDS:
-                found.append(drawn_change(clause))
-                continue
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
+            if clause.kind in LANE_KINDS:
+                found.append(drawn_change(clause).model_copy(update={"lanes": lanes}))
+                continue
             if clause.kind in RAMPS:
                 room = self._room_beside(number)
                 found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
@@ -238,6 +238,9 @@ class NetworkSearch:
             wanted = brief.model_copy(
                 update={"length": None if needs_room else free.length, "turns": free.turns}
             )
+        elif not brief.clauses and brief.turns is None:
+            is_straight = brief.motorway or self.rng.random() > CURVED * (1 - haste)
+            wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         search = DraftSearch(wanted, self.world, Shapes().of(()), self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)

@@ -33,6 +33,7 @@ from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
+from roadgpt.design.lane_draft import map_of_route
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
@@ -75,11 +76,10 @@ def fits(brief: Brief, world: World) -> bool:
 def sufficient_map(brief: Brief, world: World) -> float | None:
     """Returns the side in metres of a map large enough for a road, if the map of the World is too small.
 
-    Returns None if the World's map is large enough, if no larger map would help, or if the route has
-    junctions.
+    Returns None if the World's map is large enough, or if no larger map would help.
     """
     if brief.junctions:
-        return None
+        return map_of_route(brief, world)
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
         searches = [

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 
-from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
@@ -36,12 +35,5 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
 def _of_junction(junction: JunctionClause) -> Iterator[str]:
     if junction.kind in RAMPS and junction.side == "left":
         yield "a ramp on the left"
-    if _differs(junction.lanes):
-        yield "a roundabout with two lanes"
     if junction.crosswalk:
         yield "a crosswalk"
-
-
-def _differs(lanes: Amount | None) -> bool:
-    """Returns whether something other than one lane is required."""
-    return lanes is not None and not span(lanes).lo <= 1 <= span(lanes).hi

@@ -81,6 +81,8 @@ class JunctionDesign(FrozenFields):
     """Radius in metres of the kerb between two neighbouring arms; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=200, allow_inf_nan=False)] = ISLAND
     """Radius in metres of the central island of a roundabout."""
+    ring_lanes: Annotated[int, Field(ge=1, le=2)] = 1
+    """Number of lanes around the central island of a roundabout."""
     lanes: LanesDesign | None = None
     """The lanes of the road on which the route goes on; None for those of the road before."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
@@ -164,7 +166,9 @@ class NetworkDesign(FrozenFields):
             out[f"road_segment{number}"] = _plain(segment)
         for number, junction in enumerate(self.junctions, 1):
             row = _plain(junction, exclude={"arms", "lanes"})
-            if not isinstance(junction, LanesChangeDesign) and junction.lanes is not None:
+            if row.get("ring_lanes") == 1:
+                del row["ring_lanes"]
+            if junction.lanes is not None:
                 row["lanes"] = _plain(junction.lanes)
             arms = [_plain(arm) for arm in junction.arms] if isinstance(junction, JunctionDesign) else []
             out[f"junction{number}"] = {**row, "arms": arms} if arms else row

@@ -133,8 +133,8 @@ class _RouteGrowth:
         controls = controls_of(junction)
         to = 0 if taken is None else taken + 1
         if junction.kind == "roundabout":
-            _check_one_lane(stubs)
-            ring = build_roundabout(self.builder, node, junction.radius, stubs, controls, junction.kerb)
+            size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes
+            ring = build_roundabout(self.builder, node, *size)
             self.passed += _around(self.builder, ring, to)
         else:
             built = build_crossing(
@@ -148,7 +148,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     """Returns the cross-section of each arm but that of arrival.
 
     A road that the route does not take has one lane in each direction; but straight ahead, it has as many as
-    the road of arrival.
+    the road of arrival, and at a roundabout as many as the ring.
 
     Args:
         junction: The junction.
@@ -156,7 +156,9 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         after: The cross-section of the road on which it goes on.
     """
     width, shoulder = float(after.width(FAR)), after.shoulder_width
-    side, ahead = (Profile.of(*count, width, shoulder) for count in ((1, 1), before.count))
+    ring = (junction.ring_lanes, junction.ring_lanes)
+    counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
+    side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
     return [
         after if n == junction.taken else ahead if side_of(arm.angle) == "straight" else side
         for n, arm in enumerate(junction.all_arms)
@@ -173,11 +175,6 @@ def _way(connections: Sequence[Connection], start: Stub, end: Stub) -> int:
         if (each.incoming, each.outgoing) == (start.end, end.end):
             return each.road
     raise UsageError("the route cannot go on there: no lane leads out of the junction; give that road a lane")
-
-
-def _check_one_lane(stubs: Sequence[Stub]) -> None:
-    if any(len(stub.into) > 1 or len(stub.out_of) > 1 for stub in stubs):
-        raise UsageError("a roundabout has one lane, so the roads to it have one lane in each direction")
 
 
 def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -> tuple[tuple[int, int], ...]:
@@ -213,7 +210,7 @@ def contact_distances(
             f"an island with a radius of {junction.radius:g} m is too small for its arms; "
             f"give a radius of {math.ceil(10 * least) / 10:g} m or more"
         )
-    return [contact_distance(junction.radius)] * len(directions)
+    return [contact_distance(junction.radius, junction.ring_lanes)] * len(directions)
 
 
 def mouth_of_arm(profile: Profile, direction: float, is_arrival: bool) -> Mouth:
@@ -256,7 +253,7 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
     distances = contact_distances(junction, directions, profiles)
     if junction.kind == "roundabout":
         angle = 2 * math.pi if taken is None else directions[taken + 1] + math.pi
-        return around_length(junction.radius, directions, angle)
+        return around_length(junction.radius, directions, angle, junction.ring_lanes)
     assert taken is not None
     turn = directions[taken + 1]
     pieces = curve_between(distances[0], distances[taken + 1], turn)

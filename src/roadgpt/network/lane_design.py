@@ -63,3 +63,5 @@ class LanesChangeDesign(FrozenFields):
     """The lane that ends or begins: the leftmost or the rightmost; or the side to which the route changes."""
     length: LaneLength = TAPER
     """Length in metres in which the width of the lane changes."""
+    lanes: LanesDesign | None = None
+    """The lanes of the road behind it; None for those before it, with the lane that ends or begins."""

@@ -1,8 +1,9 @@
-"""Builds one-lane roundabouts, for traffic on the right.
+"""Builds roundabouts with one or two lanes, for traffic on the right.
 
-The reference line of the ring is the edge of the central island, driven counter-clockwise with one lane on
-its right. Each arm leads towards the centre and has a junction of its own: a mouth on the ring, through which
-one connecting road leads along the ring, one from the ring to the arm, and one from the arm to the ring.
+The reference line of the ring is the edge of the central island, driven counter-clockwise with the lanes on
+its right. A road with one lane joins the outer lane of the ring. Each arm leads towards the centre and has a
+junction of its own: a mouth on the ring, through which one connecting road leads along the ring, one from the
+ring to the arm, and one from the arm to the ring.
 """
 
 import math
@@ -10,13 +11,16 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 from roadgpt.brief.junctions import Control
+from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.network.building import Builder, Stub, connecting_road, level, one_way
 from roadgpt.network.network import Arm, Connection, Junction, LaneLink, RoadEnd, Roundabout
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Road
 
-WIDTH = 5.0  # m, of the circulatory roadway
+WIDTH = 5.0  # m, of the circulatory roadway with one lane
+WIDTH_OF_TWO = 9.0  # m, of a circulatory roadway with two lanes
+MOST_LANES = 2
 NARROW_WIDTH = 4.5  # m, of a mini roundabout
 MINI = 8.0  # m, largest radius of the island of a mini roundabout: an outer diameter of 25 m
 MOUTH = 9.5  # m along the ring, from the middle of a mouth to either end
@@ -25,14 +29,16 @@ BETWEEN = 2.0  # m along the ring, between two mouths
 APPROACH = 9.0  # m, from the outer edge of the ring to the contact of an arm
 
 
-def ring_width(radius: float) -> float:
+def ring_width(radius: float, lanes: int = 1) -> float:
     """Returns the width in metres of the circulatory roadway around an island of this radius in metres."""
+    if lanes > 1:
+        return WIDTH_OF_TWO
     return NARROW_WIDTH if radius <= MINI else WIDTH
 
 
-def contact_distance(radius: float) -> float:
+def contact_distance(radius: float, lanes: int = 1) -> float:
     """Returns the distance in metres from the centre of a roundabout to the contacts of its arms."""
-    return radius + ring_width(radius) + APPROACH
+    return radius + ring_width(radius, lanes) + APPROACH
 
 
 def mouth_of(radius: float, directions: Sequence[float]) -> float:
@@ -57,16 +63,17 @@ def _least_gap(directions: Sequence[float]) -> float:
     return min((b - a) % (2 * math.pi) for a, b in pairwise([*directions, directions[0]]))
 
 
-def around_length(radius: float, directions: Sequence[float], angle: float) -> float:
+def around_length(radius: float, directions: Sequence[float], angle: float, lanes: int = 1) -> float:
     """Returns the length in metres of a way through a roundabout, from contact to contact.
 
     Args:
         radius: The radius of the central island in metres.
         directions: The directions of the arms from the centre in radians, counter-clockwise.
         angle: The angle in radians, counter-clockwise, from the arm of arrival to the arm that is taken.
+        lanes: The number of lanes of the ring.
     """
     half = mouth_of(radius, directions) / radius
-    tangents = contact_distance(radius) - radius / math.cos(half), radius * math.tan(half)
+    tangents = contact_distance(radius, lanes) - radius / math.cos(half), radius * math.tan(half)
     ramp = sum(piece.length for piece in curve_between(*tangents, half - math.pi / 2))
     return 2 * ramp + radius * (angle - 2 * half)
 
@@ -78,6 +85,7 @@ def build_roundabout(
     stubs: Sequence[Stub],
     controls: Sequence[Control],
     kerb: float,
+    lanes: int = 1,
 ) -> Roundabout:
     """Adds a roundabout to a network and returns it.
 
@@ -88,19 +96,29 @@ def build_roundabout(
         stubs: The arms in counter-clockwise order; each ends ``contact_distance`` from the centre.
         controls: The sign or light of each arm.
         kerb: Kept in the junctions.
+        lanes: The number of lanes of the ring.
+
+    Raises:
+        UsageError: A road has more lanes in one direction than the ring.
     """
+    if any(max(len(stub.into), len(stub.out_of)) > lanes for stub in stubs):
+        said = "one lane" if lanes == 1 else f"{lanes} lanes"
+        raise UsageError(
+            f"a roundabout with {said} joins roads with {said} in each direction, and a road has more; "
+            "change one of them"
+        )
     directions = [stub.direction for stub in stubs]
-    width, half = ring_width(radius), mouth_of(radius, directions) / radius
+    width, half = ring_width(radius, lanes), mouth_of(radius, directions) / radius
     count = len(stubs)
     numbers = [builder.number() for _ in stubs]
     ring = []
     for i in range(count):  # from the mouth of arm i to the next mouth
         gap = (directions[(i + 1) % count] - directions[i]) % (2 * math.pi)
-        ring.append(builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width)))
+        ring.append(builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width, lanes)))
     found = Roundabout(tuple(numbers), tuple(ring), centre, radius, width)
     for i, stub in enumerate(stubs):
         before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
-        connections = _mouth(builder, found, numbers[i], stub, (before, after), half)
+        connections = _mouth(builder, found, numbers[i], stub, (before, after), half, lanes)
         arms = (
             Arm(stub.end, stub.direction, controls[i]),
             Arm(after, stub.direction + half + math.pi / 2),
@@ -111,7 +129,9 @@ def build_roundabout(
     return found
 
 
-def _arc(centre: tuple[float, float, float], radius: float, start: float, angle: float, width: float) -> Road:
+def _arc(
+    centre: tuple[float, float, float], radius: float, start: float, angle: float, width: float, lanes: int
+) -> Road:
     """Returns a piece of the ring from direction ``start`` through ``angle``, both in radians."""
     x, y, z = centre
     plan = PieceCurve(
@@ -120,7 +140,8 @@ def _arc(centre: tuple[float, float, float], radius: float, start: float, angle:
         start + math.pi / 2,
         (Piece(angle * radius, 1 / radius, 1 / radius),),
     )
-    return Road(plan, level(plan.length, z), profile=one_way([(width, width)], plan.length))
+    each = (width / lanes, width / lanes)
+    return Road(plan, level(plan.length, z), profile=one_way([each] * lanes, plan.length))
 
 
 def _mouth(
@@ -130,6 +151,7 @@ def _mouth(
     stub: Stub,
     ends: tuple[RoadEnd, RoadEnd],
     half: float,
+    lanes: int,
 ) -> tuple[Connection, ...]:
     """Adds the connecting roads of one mouth: along the ring, off the ring, and onto the ring."""
     before, after = ends
@@ -137,24 +159,32 @@ def _mouth(
     at, turn = stub.direction, math.pi / 2 - half
     # the reference line of the arm and the tangent of the ring at an end of the mouth meet here
     meeting = ring.radius / math.cos(half)
-    to_ring, to_arm = ring.radius * math.tan(half), contact_distance(ring.radius) - meeting
-    along = builder.add(_arc(ring.centre, ring.radius, at - half, 2 * half, ring.width), junction)
-    made = [Connection(along, before, after, (LaneLink(-1, -1, -1),))]
+    far, each = contact_distance(ring.radius, lanes), ring.width / lanes
+    to_ring, to_arm = ring.radius * math.tan(half), far - meeting
+    along = builder.add(_arc(ring.centre, ring.radius, at - half, 2 * half, ring.width, lanes), junction)
+    links = tuple(LaneLink(n, n, n) for n in range(-1, -1 - lanes, -1))
+    made = [Connection(along, before, after, links)]
     if stub.out_of:
         start = (x + ring.radius * math.cos(at - half), y + ring.radius * math.sin(at - half), z)
         pieces = curve_between(to_ring, to_arm, -turn)
-        widths = (ring.width, stub.width_of(stub.out_of[0]))
-        offset = (0.0, -stub.inside_out_of(0))
-        off = connecting_road(start, at - half + math.pi / 2, pieces, [widths], offset)
-        lanes = LaneLink(-1, -1, stub.id_out_of(0))
-        made.append(Connection(builder.add(off, junction), before, stub.end, (lanes,)))
+        count = len(stub.out_of)
+        widths = [(each, stub.width_of(lane)) for lane in stub.out_of]
+        offset = (-(lanes - count) * each, -stub.inside_out_of(0))
+        off = connecting_road(start, at - half + math.pi / 2, pieces, widths, offset)
+        links = tuple(LaneLink(n - lanes, -1 - k, stub.id_out_of(k)) for k, n in _outermost(count))
+        made.append(Connection(builder.add(off, junction), before, stub.end, links))
     if stub.into:
-        far = contact_distance(ring.radius)
         start = (x + far * math.cos(at), y + far * math.sin(at), z)
         pieces = curve_between(to_arm, to_ring, -turn)
-        widths = (stub.width_of(stub.into[0]), ring.width)
-        offset = (-stub.inside_into(0), 0.0)
-        onto = connecting_road(start, at + math.pi, pieces, [widths], offset)
-        lanes = LaneLink(stub.id_into(0), -1, -1)
-        made.append(Connection(builder.add(onto, junction), stub.end, after, (lanes,)))
+        count = len(stub.into)
+        widths = [(stub.width_of(lane), each) for lane in stub.into]
+        offset = (-stub.inside_into(0), -(lanes - count) * each)
+        onto = connecting_road(start, at + math.pi, pieces, widths, offset)
+        links = tuple(LaneLink(stub.id_into(k), -1 - k, n - lanes) for k, n in _outermost(count))
+        made.append(Connection(builder.add(onto, junction), stub.end, after, links))
     return tuple(made)
+
+
+def _outermost(count: int) -> list[tuple[int, int]]:
+    """Returns the index of each of as many lanes of a road, and the number of ring lanes outside its own."""
+    return [(k, count - 1 - k) for k in range(count)]

@@ -115,7 +115,14 @@ def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign
                 f"junction {number}: a {place.kind} leaves {before.forward + step} lanes, and a road has 1 "
                 f"to {MOST_LANES}; give the road before it other lanes"
             )
-        return before.model_copy(update={"forward": before.forward + step})
+        if place.lanes is None:
+            return before.model_copy(update={"forward": before.forward + step})
+        if place.lanes.forward != before.forward + step or place.lanes.width != before.width:
+            raise UsageError(
+                f"junction {number}: behind a {place.kind} there are {before.forward + step} lanes of "
+                f"{before.width:g} m; give these, or leave its lanes out"
+            )
+        return place.lanes
     if isinstance(place, RampDesign) and place.take == "main":
         return before
     if place.lanes is not None:
