@@ -37,6 +37,8 @@ COMMANDS = {
     "serpentine/faults": "roadgpt faults serpentine -j 2",
     "junctions": "roadgpt run --plan 'straight 60 // crossroads left lights // roundabout exit=3 // | up' "
     "-n 3 --seed 4 --speed-limit 50 --out junctions",
+    "ramp": "roadgpt run --plan '| lanes=2 len=300 motorway // diverge ramp' "
+    "--seed 1 --speed-limit 80 --out ramp",
     "junctions.html": "roadgpt view junctions/runs/0001 --out junctions.html",
     "thesis/report.html": "roadgpt study thesis --roads 100 --out thesis",
 }
@@ -60,6 +62,11 @@ def switchbacks(work: Path) -> Image.Image:
 def junctions(work: Path) -> Image.Image:
     """Returns a route through junctions from above."""
     return Image.open(made(work, "junctions") / "runs" / "0001" / "birds_eye.png")
+
+
+def ramp(work: Path) -> Image.Image:
+    """Returns the exit of a motorway from above."""
+    return Image.open(made(work, "ramp") / "runs" / "0001" / "birds_eye.png")
 
 
 def junctions_view(work: Path) -> Image.Image:
@@ -151,6 +158,7 @@ PICTURES = {
     "feature-map": map_of_features,
     "junctions": junctions,
     "junctions-view": junctions_view,
+    "ramp": ramp,
     "study": study,
     "lane-finder": lane_finder,
 }

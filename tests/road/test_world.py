@@ -80,7 +80,8 @@ def test_a_change_leaves_everything_else() -> None:
     want = json.loads(EARLIER) | {"friction": 0.1, "verge": 0.5}
     assert json.loads(icy.model_dump_json()) == want
     assert PARTS.changed() == PARTS
-    assert list(PARTS.values()) == [name.replace("verge", "shoulder") for name in json.loads(EARLIER)]
+    earlier = [name for name in PARTS.values() if name != "centre_line"]  # which is newer
+    assert earlier == [name.replace("verge", "shoulder") for name in json.loads(EARLIER)]
 
 
 def test_a_copy_in_the_earlier_form_changes_the_parts() -> None:

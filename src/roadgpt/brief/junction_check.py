@@ -13,7 +13,7 @@ from roadgpt.brief.junctions import (
     Way,
 )
 from roadgpt.brief.map_clause import MapClause
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.words import MOST_LANES, Range, overlap
 from roadgpt.errors import BriefError
 
 if TYPE_CHECKING:
@@ -30,7 +30,6 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "lane_change": ("left", "right"),
 }
 """The ways on that a kind of junction has; every way on is possible at the others."""
-MOST_LANES = 4  # in one direction
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 CIRCULATORY = 10.0  # m, by which the outer diameter of a roundabout exceeds that of its island, about

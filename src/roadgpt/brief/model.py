@@ -11,6 +11,7 @@ from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exa
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.words import MOST_LANES, Range, nearest
 
 __all__ = [
     "OTHER_SIDE",
@@ -177,6 +178,23 @@ class Brief(Frozen):
         """Whether nothing is required of the road."""
         said = {"words": "", "beside": (), "unused": (), "confidence": 1.0, "other": ""}
         return self.model_copy(update=said) == Brief()
+
+    @property
+    def lanes_text(self) -> str | None:
+        """The required lanes as text, such as "2+1"; None if none are required.
+
+        A side of which nothing is required has one lane; but no lane leads against the drive on a motorway,
+        which is one carriageway.
+        """
+        if self.lanes is None and self.against is None:
+            return None
+        most = Range(1, MOST_LANES), Range(0, MOST_LANES)
+        usual = 1, 0 if self.motorway else 1
+        sides = [
+            usual[n] if amount is None else round(nearest(usual[n], span(amount), most[n]))
+            for n, amount in enumerate((self.lanes, self.against))
+        ]
+        return f"{sides[0]}+{sides[1]}"
 
     @property
     def has_free_shape(self) -> bool:

@@ -44,6 +44,15 @@ class Range:
         return Range(self.lo + edge, self.hi - edge)
 
 
+MOST_LANES = 4  # in one direction
+
+
+def nearest(number: float, *ranges: Range) -> float:
+    """Returns the number in all of these ranges that is nearest to a number; they overlap."""
+    low, high = max(each.lo for each in ranges), min(each.hi for each in ranges)
+    return min(max(number, low), high)
+
+
 def overlap(one: Range | None, other: Range | None) -> Range | None:
     """Returns the intersection of two ranges; None means no limit, and an empty intersection has ``lo`` >
     ``hi``.

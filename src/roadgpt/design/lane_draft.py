@@ -7,9 +7,9 @@ from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief
+from roadgpt.brief.words import MOST_LANES, Range, nearest
 from roadgpt.network.lane_design import (
     ACCELERATION,
-    MOST_LANES,
     TAPER,
     LanesChangeDesign,
     LanesDesign,
@@ -152,6 +152,4 @@ def _behind(
 
 def _nearest(asked: Amount, usual: int, least: int) -> float:
     """Returns the number that is allowed and nearest to the usual one."""
-    allowed = span(asked)
-    low, high = max(allowed.lo, least), min(allowed.hi, MOST_LANES)
-    return min(max(usual, low), high)
+    return nearest(usual, span(asked), Range(least, MOST_LANES))

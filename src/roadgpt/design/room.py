@@ -2,6 +2,8 @@
 that is large enough for such roads.
 """
 
+from collections.abc import Iterator
+
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.design.road_search import sufficient_map
@@ -11,10 +13,11 @@ from roadgpt.road import World
 def world_for(brief: Brief | None, world: World) -> World:
     """Returns the World for the roads of a Brief.
 
-    A surface that the Brief names, such as a wet road, sets the friction, unless the World was given one. If
-    the World was given no map size and roads of this Brief do not fit on the usual map, the map is enlarged.
+    A surface that the Brief names, such as a wet road, sets the friction, unless the World was given one; so
+    do lanes and the centre line. If the World was given no map size and roads of this Brief do not fit on the
+    usual map, the map is enlarged.
     """
-    found = world.on_surface_of(brief)
+    found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
     size = sufficient_map(brief, found)
@@ -23,8 +26,27 @@ def world_for(brief: Brief | None, world: World) -> World:
 
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
     """Returns sentences that say what a Brief has changed about a World: its friction, and its map."""
-    said = (surface_remark(brief.beside, found.site.friction), map_remark(usual, found))
+    surface = surface_remark(brief.beside, found.site.friction)
+    said = (surface, *lane_remarks(brief, found), map_remark(usual, found))
     return tuple(remark for remark in said if remark)
+
+
+def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
+    """Yields sentences that say what the words ask of lanes and is set by options; none on routes.
+
+    Args:
+        brief: the requirements.
+        found: the World for the roads.
+    """
+    lanes, centre = brief.lanes_text, brief.centre
+    if lanes is not None:
+        own = found.section.lanes
+        said = f"the words ask for lanes {lanes}"
+        yield (
+            f"{said}; --lanes gives others" if own == lanes else f"{said}, but --lanes {own} is set and used"
+        )
+    if centre is not None and found.section.centre_line != centre:
+        yield f"the words ask for a {centre} centre line, but another one is set and used"
 
 
 def map_remark(usual: World, found: World) -> str:

@@ -12,10 +12,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from roadgpt.brief.words import MOST_LANES
 from roadgpt.road.design import FrozenFields
 from roadgpt.road.profile import Marking
 
-MOST_LANES = 4  # in one direction
 ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
 RAMP_TAPER = 60.0  # m, at the end of a lane for acceleration: RAA 2008, entries and exits
 TAPER = 60.0  # m, of a lane that ends or begins

@@ -7,10 +7,11 @@ the reference line, so that the reference line leads along the ramp.
 from collections.abc import Sequence
 from dataclasses import replace
 
+from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
-from roadgpt.network.lane_design import MOST_LANES, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.road import Profile, World
 from roadgpt.road.profile import Width
 from roadgpt.road.world import OWN

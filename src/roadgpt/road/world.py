@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, model_seriali
 
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
-from roadgpt.road.profile import Profile
+from roadgpt.road.profile import Marking, Profile
 from roadgpt.road.road import Road
 from roadgpt.road.superelevation import superelevation
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 STEEPEST = 0.12  # ratio, largest superelevation of bends
-OWN = {"lanes": "1+1", "lane_width_end": None, "bank": "none"}
+OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
 """The fields that change the usual cross-section of two equal lanes, with their defaults. Files leave out a
 field that has its default.
 """
@@ -91,6 +91,10 @@ class CrossSection(BaseModel):
     """Width of every lane in metres at the end of the road, reached smoothly from ``lane_width`` at the
     start; None for a constant width.
     """
+    centre_line: Marking | None = None
+    """The line between the directions; None for a broken line on a road with one lane in each direction, and
+    for a solid one on any other road.
+    """
     bank: Annotated[str | float, AfterValidator(bank_in)] = "none"
     """Superelevation of bends: "none", "auto" for the values of the design guide CD 109, or one ratio for all
     bends.
@@ -104,7 +108,8 @@ class CrossSection(BaseModel):
     def profile(self, length: float) -> Profile:
         """Returns the Profile of a road that is ``length`` metres long, without superelevation."""
         forward, backward = map(int, self.lanes.split("+"))
-        return Profile.of(forward, backward, self._width(length), self.shoulder)
+        made = Profile.of(forward, backward, self._width(length), self.shoulder)
+        return made if self.centre_line is None else replace(made, centre_marking=self.centre_line)
 
     def _width(self, length: float) -> float | CubicProfile:
         """Returns the width of the lanes, which changes from start to end without a kink."""
@@ -152,6 +157,7 @@ FIELDS = {
     "lanes": "section",
     "lane_width": "section",
     "lane_width_end": "section",
+    "centre_line": "section",
     "bank": "section",
     "shoulder": "section",
     "friction": "site",
@@ -273,6 +279,18 @@ class World(BaseModel):
         if friction is None or "friction" in self.site.model_fields_set:
             return self
         return self.changed(friction=friction)
+
+    def with_lanes_of(self, brief: "Brief | None") -> "World":
+        """Returns the World with the lanes and the centre line that a Brief requires of a single road.
+
+        Lanes and lines that were given to this World are kept, even if they equal the defaults.
+        """
+        if brief is None:
+            return self
+        given = self.section.model_fields_set
+        wanted = {"lanes": brief.lanes_text, "centre_line": brief.centre}
+        changes = {name: value for name, value in wanted.items() if value is not None and name not in given}
+        return self.changed(**changes) if changes else self
 
     def profile_of(self, road: Road) -> Profile:
         """Returns the Profile of a road: ``road.profile`` or, if that is None, one made from ``section``.

@@ -188,13 +188,12 @@ def all_remarks(brief: "Brief", world: "World | None", given: "World | None") ->
     not fit on the World's map. Without a World, neither is checked.
     """
     from roadgpt.brief import remarks
-    from roadgpt.design.room import map_remark
+    from roadgpt.design.room import lane_remarks, map_remark
 
     if world is None:
         return remarks(brief, inf)
     found = remarks(brief, world.site.map_size, world.site.friction)
-    grown = map_remark(given or world, world)
-    return (*found, grown) if grown else found
+    return tuple(filter(None, (*found, *lane_remarks(brief, world), map_remark(given or world, world))))
 
 
 def other_reading(brief: "Brief") -> str:
