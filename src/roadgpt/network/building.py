@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.network.network import Continuation, Junction, Network, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.road import Profile, Road
-from roadgpt.road.profile import Lane, Width
+from roadgpt.road.profile import Lane, Marking, Width
 
 
 @dataclass
@@ -112,15 +112,21 @@ Change = tuple[float, float]
 """A width or an offset in metres at the start and at the end of a road."""
 
 
-def one_way(widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0)) -> Profile:
-    """Returns the cross-section of a connecting road with lanes on the right only, without markings.
+def one_way(
+    widths: Sequence[Change], length: float, offset: Change = (0.0, 0.0), between: Marking = "none"
+) -> Profile:
+    """Returns the cross-section of a road with lanes on the right only.
 
     Args:
         widths: The width of each lane, from left to right; it changes smoothly.
         length: Length of the road in metres.
         offset: The offset of the left edge of the leftmost lane.
+        between: The line between two lanes. The outer edges have none.
     """
-    lanes = tuple(Lane("driving", _changing(each, length)) for each in widths)
+    marks: list[Marking] = [*[between] * (len(widths) - 1), "none"]
+    lanes = tuple(
+        Lane("driving", _changing(each, length), mark) for each, mark in zip(widths, marks, strict=True)
+    )
     return Profile((), lanes, 0, "none", offset=_changing(offset, length))
 
 

@@ -16,7 +16,7 @@ from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, Roundabout
 from roadgpt.network.passages import STOP_LINE
 from roadgpt.network.paved import paved_by, ribbon, stations_of
-from roadgpt.network.surface import roads_inside, roads_outside
+from roadgpt.network.surface import roads_inside
 from roadgpt.road.profile import DASH, GAP, LINE
 
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, of a give-way line (Germany, RMS-1)
@@ -52,7 +52,7 @@ class JunctionSign(NamedTuple):
 
 def strokes(network: Network) -> tuple[PaintedStroke, ...]:
     """Returns everything that is painted on the roads of a network."""
-    found = [stroke for member in roads_outside(network) for stroke in _of_road(member)]
+    found = [stroke for member in network.plain_roads for stroke in _of_road(member)]
     for _, junctions in network.nodes:
         found += _kerb_lines(network, junctions)
         for junction in junctions:
@@ -71,11 +71,12 @@ def signs(network: Network) -> tuple[JunctionSign, ...]:
 
 
 def _of_road(member: NetworkRoad) -> Iterator[PaintedStroke]:
-    """Yields the lines along a road outside junctions."""
+    """Yields the lines along a road outside junctions, or between the lanes of a ring."""
     road, profile = member.road, member.profile
     s = stations_of(road)
     for number, line in enumerate(profile.markings(s)):
-        kind: StrokeKind = "edge" if number in (0, len(profile.markings(s)) - 1) else "lane"
+        is_outer = line.marking == "solid" and number in (0, len(profile.markings(s)) - 1)
+        kind: StrokeKind = "edge" if is_outer else "lane"
         if line.marking == "solid":
             yield PaintedStroke(kind, LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
             continue

@@ -17,6 +17,7 @@ from roadgpt.network.building import Builder, Stub, connecting_road, level, one_
 from roadgpt.network.network import Arm, Connection, Junction, LaneLink, RoadEnd, Roundabout
 from roadgpt.network.turning import curve_between
 from roadgpt.road import Road
+from roadgpt.road.profile import Marking
 
 WIDTH = 5.0  # m, of the circulatory roadway with one lane
 WIDTH_OF_TWO = 9.0  # m, of a circulatory roadway with two lanes
@@ -114,7 +115,9 @@ def build_roundabout(
     ring = []
     for i in range(count):  # from the mouth of arm i to the next mouth
         gap = (directions[(i + 1) % count] - directions[i]) % (2 * math.pi)
-        ring.append(builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width, lanes)))
+        ring.append(
+            builder.add(_arc(centre, radius, directions[i] + half, gap - 2 * half, width, lanes, "broken"))
+        )
     found = Roundabout(tuple(numbers), tuple(ring), centre, radius, width)
     for i, stub in enumerate(stubs):
         before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
@@ -130,7 +133,13 @@ def build_roundabout(
 
 
 def _arc(
-    centre: tuple[float, float, float], radius: float, start: float, angle: float, width: float, lanes: int
+    centre: tuple[float, float, float],
+    radius: float,
+    start: float,
+    angle: float,
+    width: float,
+    lanes: int,
+    between: Marking = "none",
 ) -> Road:
     """Returns a piece of the ring from direction ``start`` through ``angle``, both in radians."""
     x, y, z = centre
@@ -141,7 +150,7 @@ def _arc(
         (Piece(angle * radius, 1 / radius, 1 / radius),),
     )
     each = (width / lanes, width / lanes)
-    return Road(plan, level(plan.length, z), profile=one_way([each] * lanes, plan.length))
+    return Road(plan, level(plan.length, z), profile=one_way([each] * lanes, plan.length, between=between))
 
 
 def _mouth(
