@@ -136,11 +136,11 @@ class Footprint:
             here = slice(first[n], first[n + 1])
             if _varies(member):
                 centre = member.profile.centre(s[here])
-                left[here] = centre + _widths(member.profile.left, s[here])
+                left[here] = centre + member.profile.median + _widths(member.profile.left, s[here])
                 right[here] = centre - _widths(member.profile.right, s[here])
             else:
                 middle = member.profile.offset_range[0]
-                left[here] = middle + _width(member.profile.left)
+                left[here] = middle + member.profile.median + _width(member.profile.left)
                 right[here] = middle - _width(member.profile.right)
         sin, cos = np.sin(heading), np.cos(heading)
         return (
@@ -282,7 +282,8 @@ def _widths(lanes: tuple[Lane, ...], s: Array) -> Array:
 
 def _reach(member: NetworkRoad) -> float:
     low, high = member.profile.offset_range
-    return max(_width(member.profile.left) + high, _width(member.profile.right) - low)
+    left = _width(member.profile.left) + member.profile.median
+    return max(left + high, _width(member.profile.right) - low)
 
 
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:

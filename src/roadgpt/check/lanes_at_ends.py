@@ -44,8 +44,8 @@ def _lanes(network: Network) -> dict[RoadEnd, tuple[tuple[int, ...], tuple[int, 
     """Returns, for each end of each road, the ids of the lanes towards it and of those away from it."""
     found = {}
     for member in network.roads:
-        forward, backward = member.profile.count
-        right, left = tuple(range(-1, -forward - 1, -1)), tuple(range(1, backward + 1))
+        forward = member.profile.count[0]
+        right, left = tuple(range(-1, -forward - 1, -1)), tuple(member.profile.left_ids)
         found[RoadEnd(member.id, "end")] = (right, left)
         found[RoadEnd(member.id, "start")] = (left, right)
     return found
@@ -59,10 +59,11 @@ def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
         pose, member = footprint(network).ends[end], network.road(end.road)
         s = 0.0 if end.contact == "start" else member.road.length
         for lanes in (into, out_of):
-            t = width_at(member.profile.offset, s)
+            begin, profile = width_at(member.profile.offset, s), member.profile
+            t = begin + profile.median if lanes and lanes[0] > 0 else begin
             for lane in lanes:
-                side = member.profile.right if lane < 0 else member.profile.left
-                width = width_at(side[abs(lane) - 1].width, s)
+                own = profile.right[-lane - 1] if lane < 0 else profile.left[lane - profile.left_ids[0]]
+                width = width_at(own.width, s)
                 inner, t = t, t - width if lane < 0 else t + width
                 found[(end, lane)] = (pose.beside(inner), pose.beside(t))
     return found

@@ -85,6 +85,8 @@ def _broken_lanes(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
         wrong.append(f"asked for {asked.lanes} lanes, has {forward}")
     if asked.against is not None and backward not in span(asked.against):
         wrong.append(f"asked for {asked.against} oncoming lanes, has {backward}")
+    if asked.divided and not profile.median:
+        wrong.append("asked for a median, has none")
     if asked.centre is not None and backward and profile.centre_marking != asked.centre:
         wrong.append(f"asked for a {asked.centre} centre line, has a {profile.centre_marking} one")
     for text in wrong:

@@ -15,10 +15,13 @@ from roadgpt.network.lane_design import (
     LanesDesign,
     RampDesign,
 )
+from roadgpt.network.ramps import TAPER as RAMP_TAPER
 from roadgpt.network.ramps import length_at_ramp
 from roadgpt.road import World
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
+WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
+LEAST_LANE = 10.0  # m
 LEAST_BESIDE = 40.0  # m, of a lane for acceleration or deceleration whose length is not said
 SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
 USUAL_ROAD = 90.0  # m, of a road whose length is not said
@@ -39,7 +42,7 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     take = "main" if asked.take == "main" else "ramp"
     length = min(ACCELERATION, max(room, LEAST_BESIDE))
     if asked.length is not None:
-        length = _length(asked.length)
+        length = max(_length(asked.length) - WIDE_IN_TAPER * RAMP_TAPER, LEAST_LANE)
     return RampDesign.model_validate(
         {"after": 1, "kind": asked.kind, "take": take, "length": round(length, 1)}
     )
@@ -97,11 +100,15 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     has_ramps = any(junction.kind in RAMPS for junction in brief.junctions)
     found = []
     for count, road in zip(forward, brief.stretches, strict=True):
-        one_way = has_ramps or road.motorway
-        backward = 0 if one_way else 1
+        one_way = (has_ramps or road.motorway) and not road.divided
+        backward = 0 if one_way else count if road.divided else 1
         if road.against is not None:
             backward = int(_nearest(road.against, backward, 0))
-        found.append(LanesDesign(forward=count, backward=backward, width=width, centre=road.centre))
+        found.append(
+            LanesDesign(
+                forward=count, backward=backward, width=width, centre=road.centre, divided=road.divided
+            )
+        )
     return found
 
 

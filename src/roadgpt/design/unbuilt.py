@@ -27,9 +27,8 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
         yield "traffic on the left"
     for junction in brief.junctions:
         yield from _of_junction(junction)
-    for road in (brief, *brief.stretches):
-        if road.divided:
-            yield "a median"
+    if brief.divided:
+        yield "a median of a single road"
 
 
 def _of_junction(junction: JunctionClause) -> Iterator[str]:

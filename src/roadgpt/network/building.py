@@ -60,11 +60,11 @@ class Stub:
 
     def id_into(self, index: int) -> int:
         """Returns the id of a lane that leads into the junction; lanes count from 0 at the centre line."""
-        return -(index + 1) if self.end.contact == "end" else index + 1
+        return -(index + 1) if self.end.contact == "end" else self.profile.left_ids[index]
 
     def id_out_of(self, index: int) -> int:
         """Returns the id of a lane that leads out of the junction; lanes count from 0 at the centre line."""
-        return index + 1 if self.end.contact == "end" else -(index + 1)
+        return self.profile.left_ids[index] if self.end.contact == "end" else -(index + 1)
 
     def width_of(self, lane: Lane) -> float:
         """Returns the width in metres of a lane at the junction."""
@@ -74,15 +74,15 @@ class Stub:
         """Returns the distance in metres from the reference line to the left edge of a lane into the
         junction, positive to the right as one drives.
         """
-        sign = -1 if self.end.contact == "end" else 1
-        return sign * self._offset + sum(map(self.width_of, self.into[:index]))
+        edge = -self._offset if self.end.contact == "end" else self._offset + self.profile.median
+        return edge + sum(map(self.width_of, self.into[:index]))
 
     def inside_out_of(self, index: int) -> float:
         """Returns the distance in metres from the reference line to the left edge of a lane out of the
         junction, positive to the right as one drives.
         """
-        sign = 1 if self.end.contact == "end" else -1
-        return sign * self._offset + sum(map(self.width_of, self.out_of[:index]))
+        edge = -self._offset if self.end.contact == "start" else self._offset + self.profile.median
+        return edge + sum(map(self.width_of, self.out_of[:index]))
 
     @property
     def _offset(self) -> float:

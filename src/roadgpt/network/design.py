@@ -161,7 +161,7 @@ class NetworkDesign(FrozenFields):
             "theta": as_written(self.theta),
         }
         if self.lanes is not None:
-            out["lanes"] = _plain(self.lanes)
+            out["lanes"] = _plain_lanes(self.lanes)
         for number, segment in enumerate(self.segments, 1):
             out[f"road_segment{number}"] = _plain(segment)
         for number, junction in enumerate(self.junctions, 1):
@@ -169,10 +169,14 @@ class NetworkDesign(FrozenFields):
             if row.get("ring_lanes") == 1:
                 del row["ring_lanes"]
             if junction.lanes is not None:
-                row["lanes"] = _plain(junction.lanes)
+                row["lanes"] = _plain_lanes(junction.lanes)
             arms = [_plain(arm) for arm in junction.arms] if isinstance(junction, JunctionDesign) else []
             out[f"junction{number}"] = {**row, "arms": arms} if arms else row
         return out
+
+
+def _plain_lanes(lanes: LanesDesign) -> dict[str, Any]:
+    return _plain(lanes, exclude=set() if lanes.divided else {"divided"})
 
 
 def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
@@ -232,7 +236,7 @@ def _check_object(what: str, raw: Any, fields: str) -> None:
     """Raises UsageError if parsed JSON is not an object, or has true or false in place of a number."""
     if not isinstance(raw, Mapping):
         raise UsageError(f"{what} cannot be read: give an object with {fields}")
-    no_truths(what, raw)
+    no_truths(what, {name: value for name, value in raw.items() if name != "divided"})
 
 
 def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:

@@ -183,7 +183,7 @@ def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -
     drop, gain = place.kind == "lane_drop" and is_left, place.kind == "lane_gain" and is_left
     count = min(before.count[0], after.count[0])
     right = [(-1 - n - drop, -1 - n - gain) for n in range(count)]
-    return (*right, *((n, n) for n in range(1, min(before.count[1], after.count[1]) + 1)))
+    return (*right, *zip(before.left_ids, after.left_ids, strict=False))
 
 
 def contact_distances(

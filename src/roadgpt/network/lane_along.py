@@ -51,11 +51,12 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     assert profile is not None
     count = profile.count
     right = [lane.width for lane in profile.right[: count[0]]]
-    oncoming = [lane.width for lane in profile.left[: count[1]]]
+    oncoming: list[Width] = [lane.width for lane in profile.left[: count[1]]]
     length = road.length
     offsets = [added([(1, profile.offset), *((-1, w) for w in right[:k])], length) for k in lanes]
     offset = _through(offsets, length)
     width = _through([right[k] for k in lanes], length)
+    oncoming.append(profile.median)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
     shoulders = (_shoulder(side[n:], length) for side, n in _sides(profile, count))

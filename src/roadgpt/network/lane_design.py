@@ -10,14 +10,14 @@ They stand among the junctions, in driving order.
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.road.design import FrozenFields
 from roadgpt.road.profile import Marking
 
 ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
-RAMP_TAPER = 60.0  # m, at the end of a lane for acceleration: RAA 2008, entries and exits
+MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, of a lane that ends or begins
 
 After = Annotated[int, Field(ge=1, le=500)]
@@ -37,6 +37,8 @@ class LanesDesign(FrozenFields):
     """Width of every lane in metres."""
     centre: Marking | None = None
     """The line between the directions; None for the usual one."""
+    divided: StrictBool = False
+    """Whether a median separates the directions."""
 
 
 class RampDesign(FrozenFields):

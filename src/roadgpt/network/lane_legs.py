@@ -52,10 +52,10 @@ def _first(ways: Ways, shift: int) -> int:
 
 def _beside(network: Network, road: int, lane: int, left: int) -> int:
     """Returns the lane to the left (1) or to the right (-1) of a lane."""
-    forward, backward = network.road(road).profile.count
-    count = forward if lane < 0 else backward
+    profile = network.road(road).profile
+    ids = range(1, profile.count[0] + 1) if lane < 0 else profile.left_ids
     beside = abs(lane) - left
-    if not 1 <= beside <= count:
+    if beside not in ids:
         word = "left" if left > 0 else "right"
         raise UsageError(f"the route cannot change to the {word} on road {road}: there is no lane")
     return beside if lane > 0 else -beside

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 SAG = 0.002  # m, between the edge of a bend and the chords of its polygon
 GRID = 1e-4  # m, to which corners are rounded, so that roads that touch are joined
 LONGEST = 8.0  # m, of a chord
-SLIVER = 0.05  # m^2; a smaller hole comes from rounding
+SLIVER = 1.0  # m^2; a smaller hole between ways is paved, as it is too small for an island
 
 
 def paved_by(roads: Sequence[Road]) -> Area:

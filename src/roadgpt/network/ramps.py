@@ -165,8 +165,9 @@ class RampBuilder:
     def _continue(self, before: int, after: int) -> None:
         """Lets the lanes that two roads have in common continue each other."""
         profiles = [self._profile(each) for each in (before, after)]
-        forward, backward = (min(each.count[side] for each in profiles) for side in (0, 1))
-        lanes = (*((-n, -n) for n in range(1, forward + 1)), *((n, n) for n in range(1, backward + 1)))
+        forward = min(each.count[0] for each in profiles)
+        left = zip(*(each.left_ids for each in profiles), strict=False)
+        lanes = (*((-n, -n) for n in range(1, forward + 1)), *((a, b) for a, b in left))
         self.builder.continuations.append(
             Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)
         )

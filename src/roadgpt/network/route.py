@@ -129,8 +129,7 @@ def _check_leg(network: Network, leg: Leg) -> None:
         profile = network.road(leg.road).profile
     except KeyError as error:
         raise UsageError(f"the route names road {leg.road}, which is not in the network") from error
-    forward, backward = profile.count
-    if leg.lane == 0 or not -forward <= leg.lane <= backward:
+    if not -profile.count[0] <= leg.lane < 0 and leg.lane not in profile.left_ids:
         raise UsageError(f"the route names lane {leg.lane} of road {leg.road}, which has no such lane")
 
 
@@ -174,15 +173,21 @@ def _directed(member: NetworkRoad, leg: Leg) -> Road:
     turned = Profile(
         tuple(_turned(lane, member.road.length) for lane in profile.right),
         tuple(_turned(lane, member.road.length) for lane in profile.left),
-        leg.lane - 1,
+        profile.left_ids.index(leg.lane),
         profile.centre_marking,
-        offset=added([(-1, _reversed(profile.offset, member.road.length))], member.road.length),
+        offset=_turned_offset(profile, member.road.length),
+        median=profile.median,
     )
     return reversed_road(member.road).with_profile(turned)
 
 
 def _turned(lane: Lane, length: float) -> Lane:
     return replace(lane, width=_reversed(lane.width, length))
+
+
+def _turned_offset(profile: Profile, length: float) -> Width:
+    """Returns the offset of the line on which the lanes of the other direction begin, seen from them."""
+    return added([(-1, _reversed(profile.offset, length)), (-1, profile.median)], length)
 
 
 def _reversed(width: Width, length: float) -> Width:
@@ -208,7 +213,8 @@ def _parts(network: Network, legs: Sequence[Leg]) -> list[_Part]:
     found = []
     for _, group in groupby(legs, key=lambda leg: leg.road):
         own = list(group)
-        lanes = tuple(abs(leg.lane) - 1 for leg in own)
+        profile = network.road(own[0].road).profile
+        lanes = tuple(-leg.lane - 1 if leg.lane < 0 else profile.left_ids.index(leg.lane) for leg in own)
         found.append(_Part(_directed(network.road(own[0].road), own[0]), lanes))
     return found
 

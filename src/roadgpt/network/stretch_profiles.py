@@ -11,7 +11,7 @@ from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
-from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.lane_design import MEDIAN, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.road import Profile, World
 from roadgpt.road.profile import Width
 from roadgpt.road.world import OWN
@@ -138,6 +138,8 @@ def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign
 
 def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     made = Profile.of(lanes.forward, lanes.backward, lanes.width, shoulder)
+    if lanes.divided:
+        made = replace(made, median=MEDIAN, centre_marking="solid")
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
 
 

@@ -25,7 +25,8 @@ LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, 
 DOUBLE = 2 * LINE  # m, between the middles of the two lines of a double line (Germany, RMS-1)
 DASH, GAP = 4.0, 8.0  # m, of a broken line: middle line outside of towns (Germany, RMS-1)
 
-Kind = Literal["driving", "shoulder"]
+Kind = Literal["driving", "shoulder", "median"]
+"""A median is no lane of a Profile, which has a width for it; files may have a lane of this kind."""
 Marking = Literal["solid", "broken", "none", "double"]
 """A double line is two solid lines."""
 Width = float | CubicProfile
@@ -76,6 +77,7 @@ class Profile:
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
         offset: Offset in metres of the line between the lanes on the left and those on the right, where it
             is not the centre line of the road itself: the element ``laneOffset`` of OpenDRIVE.
+        median: Width in metres of a median: the lanes on the left begin that far to the left of this line.
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
@@ -88,6 +90,7 @@ class Profile:
     centre_marking: Marking = "broken"
     superelevation_angle: CubicProfile | None = None
     offset: Width = 0.0
+    median: float = 0.0
 
     def __post_init__(self) -> None:
         lanes = [*self.left, *self.right]
@@ -136,6 +139,15 @@ class Profile:
         return len(_driving(self.right)), len(_driving(self.left))
 
     @property
+    def left_ids(self) -> range:
+        """The ids in OpenDRIVE of the driving lanes on the left, from the centre line outwards.
+
+        A median has the id 1.
+        """
+        first = 2 if self.median else 1
+        return range(first, first + self.count[1])
+
+    @property
     def shoulder_width(self) -> float:
         """The width in metres of the shoulder on the right, at the start of the road; 0 if there is none."""
         return float(self.shoulder(0.0))
@@ -168,7 +180,7 @@ class Profile:
 
     def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
         low, high = self.offset_range
-        return max(_reach(left) + high, _reach(right) - low)
+        return max(_reach(left) + self.median + high, _reach(right) - low)
 
     def centre(self, s: ArrayLike) -> Array:
         """Returns the offset of the line between the lanes on the left and those on the right."""
@@ -193,13 +205,20 @@ class Profile:
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway."""
+        left, right = self.sides(s)
+        return Edges(left + _sum(_driving(self.left), s), right - _sum(_driving(self.right), s))
+
+    def sides(self, s: ArrayLike) -> Edges:
+        """Returns the offsets at which the lanes on the left and those on the right begin: the edges of the
+        median, or twice the line between the directions.
+        """
         centre = self.centre(s)
-        return Edges(centre + _sum(_driving(self.left), s), centre - _sum(_driving(self.right), s))
+        return Edges(centre + self.median, centre)
 
     def rims(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the shoulders."""
-        centre = self.centre(s)
-        return Edges(centre + _sum(self.left, s), centre - _sum(self.right, s))
+        left, right = self.sides(s)
+        return Edges(left + _sum(self.left, s), right - _sum(self.right, s))
 
     def lane_edges(self, s: ArrayLike) -> tuple[list[Array], list[Array]]:
         """Returns the offsets of the outer edges of all lanes and shoulders, left and right of the centre.
@@ -207,21 +226,23 @@ class Profile:
         The result is a list for the left side and a list for the right side. Each list has one array per
         lane, from the centre line outwards.
         """
-        centre = self.centre(s)
-        left = [centre + _sum(self.left[: n + 1], s) for n in range(len(self.left))]
-        return left, [centre - _sum(self.right[: n + 1], s) for n in range(len(self.right))]
+        begin = self.sides(s)
+        left = [begin.left + _sum(self.left[: n + 1], s) for n in range(len(self.left))]
+        return left, [begin.right - _sum(self.right[: n + 1], s) for n in range(len(self.right))]
 
     def boundaries(self, s: ArrayLike) -> list[tuple[Marking, Array]]:
         """Returns the boundaries of all driving lanes from left to right, each with its marking and offsets.
 
-        The first and the last one are the edges of the carriageway.
+        The first and the last one are the edges of the carriageway; a median has a boundary on either side.
         """
         left, right = self.lane_edges(s)
         lanes = [*zip(self.left, left, strict=True)][: self.count[1]][::-1]
         lanes_right = [*zip(self.right, right, strict=True)][: self.count[0]]
+        begin = self.sides(s)
         return [
             *((lane.marking, t) for lane, t in lanes),
-            (self.centre_marking, self.centre(s)),
+            *([(self.centre_marking, begin.left)] if self.median else []),
+            (self.centre_marking, begin.right),
             *((lane.marking, t) for lane, t in lanes_right),
         ]
 
@@ -256,7 +277,7 @@ class Profile:
 
         If a boundary of the lane has no marking, the offset of the boundary is returned.
         """
-        at = self.count[1] + self.driven  # index of the left boundary of the driven lane
+        at = self.count[1] + (self.median > 0) + self.driven  # index of the left boundary of the driven lane
         (_, left), (_, right) = self._painted_boundaries(s)[at : at + 2]
         return Edges(left.left, right.right)
 

@@ -26,6 +26,8 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
         "driven": profile.driven,
         "centre_marking": profile.centre_marking,
     }
+    if profile.median:
+        out["median"] = profile.median
     if profile.offset != 0:
         out["offset"] = _written(profile.offset)
     angle = profile.superelevation_angle
@@ -39,7 +41,7 @@ def profile_from_json(data: Any) -> Profile:
         UsageError: A field is missing, unknown, of the wrong type or out of range.
     """
     try:
-        known = {"left", "right", "driven", "centre_marking", "superelevation", "offset"}
+        known = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median"}
         _only(data, known)
         angle = data.get("superelevation")
         driven = data["driven"]
@@ -52,6 +54,7 @@ def profile_from_json(data: Any) -> Profile:
             _one_of(data["centre_marking"], Marking),
             None if angle is None else _cubics(angle, STEEPEST),
             _width(data.get("offset", 0.0), -WIDEST),
+            _median(data.get("median", 0.0)),
         )
     except KeyError as error:
         raise UsageError(f"the profile of the road cannot be read: {error} is missing; add it") from error
@@ -88,6 +91,13 @@ def _width(data: Any, least: float = 0.0) -> Width:
     if isinstance(data, bool) or not isinstance(data, (int, float)) or not least <= data <= WIDEST:
         raise ValueError(f"a width is a number from {least:g} to {WIDEST:g}, or rows [s, a, b, c, d]")
     return float(data)
+
+
+def _median(data: Any) -> float:
+    width = _width(data)
+    if isinstance(width, CubicProfile):
+        raise ValueError(f"a median is a number from 0 to {WIDEST:g}")
+    return width
 
 
 def _cubics(rows: Any, most: float) -> CubicProfile:

@@ -40,8 +40,8 @@ def _across(network: Network, end: RoadEnd) -> XmlElement:
     Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
     to those that lead into it. Shoulders end at the junction.
     """
-    forward, backward = network.road(end.road).profile.count
-    right, left = -forward if forward else 0, backward
+    profile = network.road(end.road).profile
+    right, left = -profile.count[0], profile.left_ids[-1] if profile.count[1] else 0
     first, last = (right, left) if end.contact == "start" else (left, right)
     return XmlElement(
         "segment",

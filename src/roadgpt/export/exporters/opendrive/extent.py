@@ -54,7 +54,7 @@ def reaches(profile: Profile) -> tuple[float, float]:
     """
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
     low, high = profile.offset_range
-    return left + high, right - low
+    return left + profile.median + high, right - low
 
 
 def _widest(width: Width) -> float:

@@ -58,7 +58,7 @@ class RoadParts:
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
-        own = (profile.left, profile.right, profile.centre_marking, profile.offset)
+        own = (profile.left, profile.right, profile.centre_marking, profile.offset, profile.median)
         key = (*own, length, tuple((links or {}).items()), is_inside)
         if key not in self._made:
             self._made[key] = self._lanes(profile, road.length, links or {}, is_inside)
@@ -66,7 +66,10 @@ class RoadParts:
 
     def _lanes(self, profile: Profile, length: float, links: LaneLinks, is_inside: bool) -> XmlElement:
         section = XmlElement("laneSection", {"s": 0})
-        left = list(self._side(profile.left, 1, length, links, is_inside))
+        left_lanes = profile.left
+        if profile.median:
+            left_lanes = (Lane("median", profile.median, profile.centre_marking), *profile.left)
+        left = list(self._side(left_lanes, 1, length, links, is_inside))
         if left:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))

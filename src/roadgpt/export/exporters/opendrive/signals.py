@@ -106,8 +106,8 @@ class Signals:
                 "value": "-1",
             },
         )
-        forward, backward = member.profile.count
-        lanes = (-forward, -1) if at_end else (1, backward)
+        profile = member.profile
+        lanes = (-profile.count[0], -1) if at_end else (profile.left_ids[0], profile.left_ids[-1])
         made.add("validity", {"fromLane": lanes[0], "toLane": lanes[1]})
         return made
 
@@ -124,7 +124,8 @@ class Signals:
         profile = member.profile
         lanes = profile.right[:forward] if at_end else profile.left[:backward]
         width_in = sum(width_at(lane.width, s) for lane in lanes)
-        outer = -width_in if at_end else width_in
+        inner = float(profile.sides(s)[1 if at_end else 0])
+        outer = inner - width_in if at_end else inner + width_in
         yield XmlElement(
             "object",
             {
@@ -133,12 +134,12 @@ class Signals:
                 "type": "roadMark",
                 "subtype": "signalLines",
                 "s": s,
-                "t": outer / 2,
+                "t": (inner + outer) / 2,
                 "zOffset": 0.0,
                 "hdg": 0.0,
                 "orientation": "+" if at_end else "-",
                 "length": STOP_LINE,
-                "width": abs(outer),
+                "width": width_in,
                 "height": 0.01,
                 "dynamic": "no",
             },
