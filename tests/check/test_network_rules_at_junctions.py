@@ -17,8 +17,8 @@ from network.changing import (
 )
 from network.ruled import findings, the_finding
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece
-from roadgpt.network import Connection, LaneLink, Network, RoadEnd
-from roadgpt.road import Profile, Road
+from roadgpt.network import Connection, LaneLink, Network, RoadEnd, build_route, read_network_design
+from roadgpt.road import Profile, Road, World
 from roadgpt.road.profile import Lane
 
 
@@ -251,3 +251,26 @@ class TestUnreachable:
         found = the_finding("unreachable", replace(network, roads=(*network.roads, alone)))
         assert found.sentence.startswith("on road 99, near (100, 400): the road meets no junction")
         assert findings("unreachable", Network((network.road(1),))) == ()
+
+
+class TestRampTooShort:
+    """Of lanes whose width is given, not measured: the taper of 60 m counts for 0.196 of its length."""
+
+    @pytest.mark.parametrize("kind", ["merge", "diverge"])
+    @pytest.mark.parametrize(
+        ("length", "is_short"), [(10.0, True), (15.0, True), (18.0, False), (150.0, False)]
+    )
+    def test_the_lane_beside_a_ramp(self, kind: str, length: float, is_short: bool) -> None:
+        lanes = {"forward": 2, "backward": 0}
+        design = {
+            "starting_point": [20, 60, 0],
+            "theta": 0,
+            "lanes": lanes,
+            "road_segment1": {"distance": 80, "direction": "straight", "incline": 0, "turn_degrees": 0},
+            "junction1": {"after": 1, "kind": kind, "take": "main", "length": length},
+            "road_segment2": {"distance": 80, "direction": "straight", "incline": 0, "turn_degrees": 0},
+        }
+        network = build_route(read_network_design(design)[0], World()).network
+        said = [each.sentence for each in findings("ramp_too_short", network)]
+        assert len(said) == is_short
+        assert all(f"is {length + 0.196 * 60:.0f} m long, shorter than 28 m" in each for each in said)

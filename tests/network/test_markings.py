@@ -143,7 +143,8 @@ def test_a_roundabout_has_grass_in_its_middle_and_kerbs_at_its_arms(radius: floa
     (green,) = area.green
     assert green.centroid.distance(shapely.Point(route.network.roundabouts[0].centre[:2])) < 0.1
     assert green.area == pytest.approx(math.pi * (radius - 3) ** 2, rel=0.02)
-    assert len(area.kerbed) == 4
+    # at a mini roundabout they would be smaller than 1 m^2, and are paved instead
+    assert len(area.kerbed) == (4 if radius > 10 else 0)
 
 
 def test_without_shoulders_there_are_none_at_junctions() -> None:

@@ -53,6 +53,7 @@ NETWORK_RULES = (
     "too_abrupt",
     "too_tight",
     "ring_too_small",
+    "ramp_too_short",
     "arms_too_close",
     "conflicting_overlap",
     "kerb_too_tight",

@@ -13,7 +13,7 @@ import numpy as np
 
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
 from roadgpt.geometry import CubicProfile
-from roadgpt.network import Network, NetworkRoad, Passage, RoadEnd, Route
+from roadgpt.network import Junction, Network, NetworkRoad, Passage, RoadEnd, Route
 
 FAR = 1e6  # m, behind the end of a connecting road
 FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
@@ -130,14 +130,21 @@ def _ramp_of(network: Network, passage: Passage) -> tuple[bool, float] | None:
         for each in junction.connections
         if (each.outgoing if is_merge else each.incoming) == common
     }
-    beside = network.road(common.road)
-    count = beside.profile.count[0]
-    width = beside.profile.right[count - 1].width
-    full = 0.0
-    if isinstance(width, CubicProfile):
-        s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
-        full = float(np.mean(width.height(s) > FULL * width.extremes()[1])) * beside.road.length
-    return turns[own] == max(turns.values()), full
+    return turns[own] == max(turns.values()), length_beside_ramp(network, junction)
+
+
+def length_beside_ramp(network: Network, junction: Junction) -> float:
+    """Returns the length in metres of the lane for acceleration or deceleration, without its taper.
+
+    It counts while the lane is wider than 0.9 of its full width. The result is 0 if there is no such lane.
+    """
+    ends = [each.outgoing if junction.kind == "merge" else each.incoming for each in junction.connections]
+    beside = network.road(max(ends, key=ends.count).road)
+    width = beside.profile.right[beside.profile.count[0] - 1].width
+    if not isinstance(width, CubicProfile):
+        return 0.0
+    s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
+    return float(np.mean(width.height(s) > FULL * width.extremes()[1])) * beside.road.length
 
 
 def _measured(network: Network, passage: Passage) -> MeasuredJunction:

@@ -21,7 +21,7 @@ from roadgpt.road import World
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
 WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
-LEAST_LANE = 10.0  # m
+LEAST_LANE = 17.0  # m, which counts as 28 with its taper: what the rule ``ramp_too_short`` requires
 LEAST_BESIDE = 40.0  # m, of a lane for acceleration or deceleration whose length is not said
 SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
 USUAL_ROAD = 90.0  # m, of a road whose length is not said

@@ -1,0 +1,28 @@
+"""Requires a lane for acceleration or deceleration of at least 28 m beside every ramp, without its taper.
+
+This is what a car needs for a change of lanes of 2 s at 50 km/h, about the shortest that drivers take.
+Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4.6 s on average.
+"""
+
+from roadgpt.brief.junctions import RAMPS
+from roadgpt.check.finding import Finding
+from roadgpt.check.junction_measures import length_beside_ramp
+from roadgpt.check.network_places import junction_finding
+from roadgpt.network import Network, Route
+from roadgpt.road import World
+
+LEAST = 28.0  # m
+
+
+def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
+    """Reports each merge or exit whose lane for acceleration or deceleration is too short."""
+    found = []
+    for junction in network.junctions:
+        if junction.kind not in RAMPS:
+            continue
+        length = length_beside_ramp(network, junction)
+        if length < LEAST:
+            word = "acceleration" if junction.kind == "merge" else "deceleration"
+            what = f"the lane for {word} is {length:.0f} m long, shorter than {LEAST:g} m; make it longer"
+            found.append(junction_finding("ramp_too_short", route, junction, what))
+    return tuple(found)
