@@ -13,12 +13,14 @@ import pytest
 
 from exported import program, python_with
 from network.random_designs import random_design
+from network.random_maps import map_route
 from outside_judge import SHARED
 from roadgpt.export import save
 from roadgpt.network import Network, Route, build_route, read_network_design
 from roadgpt.road import World
 
 SEEDS = range(6)
+MAPS = range(100, 104)
 CHECK = """
 import logging, sys
 from qc_opendrive import main
@@ -82,8 +84,8 @@ def drawn(seed: int) -> tuple[dict[str, Any], Route]:
 def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:
     """Files of the networks of all seeds, by path."""
     found = {}
-    for seed in SEEDS:
-        _, route = drawn(seed)
+    for seed in (*SEEDS, *MAPS):
+        route = map_route(seed) if seed in MAPS else drawn(seed)[1]
         written = save(route, folder, [format_], World(), f"network{seed}")
         (file,) = (path for path in written if path.suffix == ".xodr")
         found[str(file)] = route.network

@@ -78,7 +78,7 @@ def settings_of(cell: Cell) -> SearchSettings:
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
-    if cell.brief is not None and cell.brief.junctions:
+    if cell.brief is not None and (cell.brief.junctions or cell.brief.map is not None):
         raise UsageError(
             f"the generator '{cell.generator}' searches roads without junctions; leave out --goal and "
             "--generator, or the junctions"

@@ -20,6 +20,7 @@ from typing import Protocol, cast
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
 from roadgpt.check.finding import Finding
+from roadgpt.check.map_promises import broken_map
 from roadgpt.check.route_promises import broken_promises
 from roadgpt.check.sbft import sbft_verdict
 from roadgpt.errors import UsageError
@@ -104,7 +105,10 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     rules_of(rules)
     if isinstance(road, Route) and rules == "strict":
         found_there = inspect_network(road.network, road, world)
-        return found_there if brief is None else (*found_there, *broken_promises(road, brief))
+        if brief is None:
+            return found_there
+        promised = broken_promises(road, brief) if brief.map is None else broken_map(road, brief.map)
+        return (*found_there, *promised)
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)

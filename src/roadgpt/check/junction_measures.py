@@ -149,13 +149,13 @@ def length_beside_ramp(network: Network, junction: Junction) -> float:
 
 def _measured(network: Network, passage: Passage) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
-    directions = [_direction(network, end) for end in passage.arms]
+    directions = [direction_of(network, end) for end in passage.arms]
     ramp = _ramp_of(network, passage)
     gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
     return MeasuredJunction(
         passage.start,
-        _kinds(gaps) if ring is None and ramp is None else (passage.entered.kind,),
+        kinds_of(gaps) if ring is None and ramp is None else (passage.entered.kind,),
         tuple(gaps),
         180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
         passage.exit,
@@ -175,7 +175,7 @@ def _leads_in(network: Network, end: RoadEnd) -> bool:
     return bool(forward if end.contact == "end" else backward)
 
 
-def _direction(network: Network, end: RoadEnd) -> float:
+def direction_of(network: Network, end: RoadEnd) -> float:
     """Returns the direction of an arm out of its junction in degrees."""
     road = network.road(end.road).road
     far = min(OUT, road.length)
@@ -188,7 +188,8 @@ def _wrapped(angle: float) -> float:
     return (angle + 180) % 360 - 180
 
 
-def _kinds(gaps: list[float]) -> tuple[JunctionKind, ...]:
+def kinds_of(gaps: list[float]) -> tuple[JunctionKind, ...]:
+    """Returns the kinds that a junction may be called, by the angles in degrees between its arms."""
     found: list[JunctionKind] = []
     least, *_, most = sorted(gaps)
     if len(gaps) == 3:

@@ -12,7 +12,7 @@ advice.
 
 A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts``, False
 if the designer must not be called again when its draft violates a rule; ``makes_junctions``, True if it can
-make routes with junctions; ``geometry``, the kind of geometry
+make routes with junctions and maps; ``geometry``, the kind of geometry
 that its designs require, such as "spline" for RoadGPT's original splines. This geometry overrides the user's
 choice.
 """
@@ -26,7 +26,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.chat import ChatSettings, instantiate, settings_for
 from roadgpt.design.unbuilt import check_built
 from roadgpt.errors import DesignError
-from roadgpt.network import NetworkDesign
+from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
 
 
@@ -35,11 +35,11 @@ class Designer(Protocol):
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> Design | NetworkDesign:
+    ) -> AnyDesign:
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
-        If the Brief has junctions, the result is a NetworkDesign. A designer that cannot make one raises
-        DesignError.
+        If the Brief has junctions, the result is a NetworkDesign, and if it asks for a map, a MapDesign. A
+        designer that cannot make one raises DesignError.
 
         Args:
             brief: the requirements for the road.
@@ -62,8 +62,8 @@ def draft(
     seed: int = 0,
     designer: str = "planner",
     chat: ChatSettings | None = None,
-) -> Design | NetworkDesign:
-    """Returns a Design for a Brief, or a NetworkDesign if the Brief has junctions.
+) -> AnyDesign:
+    """Returns a Design for a Brief; a NetworkDesign if it has junctions, a MapDesign if it asks for a map.
 
     Args:
         brief: the requirements for the road.
@@ -90,10 +90,10 @@ def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed:
     The arguments are those of ``draft``.
 
     Raises:
-        DesignError: no road meets all requirements on this map, or the Brief has junctions.
+        DesignError: no road meets all requirements on this map, or the Brief has junctions or asks for a map.
     """
     found = draft(brief, world, (), earlier, seed)
-    if isinstance(found, NetworkDesign):
+    if not isinstance(found, Design):
         raise DesignError("this takes single roads only; leave the junctions out of the description")
     return found
 
@@ -102,11 +102,11 @@ def check_designer(designer: Designer, brief: Brief) -> None:
     """Checks that a designer can make what a Brief asks for.
 
     Raises:
-        DesignError: the Brief has junctions, and the designer makes roads without junctions only, or the
-            Brief asks for something that cannot be built yet.
+        DesignError: the Brief has junctions or asks for a map, and the designer makes roads without junctions
+            only, or the Brief asks for something that cannot be built yet.
     """
     check_built(brief)
-    if brief.junctions and not getattr(designer, "makes_junctions", False):
+    if (brief.junctions or brief.map is not None) and not getattr(designer, "makes_junctions", False):
         raise DesignError("this designer makes roads without junctions; leave --designer out to have some")
 
 

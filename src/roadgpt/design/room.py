@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
+from roadgpt.design.map_search import room_for_map
 from roadgpt.design.road_search import sufficient_map
 from roadgpt.road import World
 
@@ -20,7 +21,7 @@ def world_for(brief: Brief | None, world: World) -> World:
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
-    size = sufficient_map(brief, found)
+    size = sufficient_map(brief, found) if brief.map is None else room_for_map(brief, found)
     return found if size is None else found.changed(map_size=size)
 
 

@@ -21,8 +21,6 @@ def check_built(brief: Brief) -> None:
 
 
 def _unbuilt(brief: Brief) -> Iterator[str]:
-    if brief.map is not None:
-        yield "a map without a route"
     if brief.left_hand:
         yield "traffic on the left"
     for junction in brief.junctions:

@@ -1,12 +1,15 @@
 """Joins roads to networks, with junctions, roundabouts and routes. Main function: ``build_route``.
 
 A NetworkDesign describes a route with the junctions that it passes. ``build_route`` makes a Route from it. A
-Route is a Road: the reference lines of its roads, one after another. ``route.network`` is the Network, with
-all roads, connecting roads, junctions and roundabouts.
+MapDesign describes a whole map and a route through it, of which ``build_map`` makes a Route. A Route is a
+Road: the reference lines of its roads, one after another. ``route.network`` is the Network, with all roads,
+connecting roads, junctions and roundabouts.
 """
 
 from roadgpt.network.design import JunctionDesign, NetworkDesign, has_junctions, read_network_design
 from roadgpt.network.growing import build_route, passing_length
+from roadgpt.network.map_design import MapDesign, MapNode, read_map_design
+from roadgpt.network.map_growing import build_map
 from roadgpt.network.network import (
     Arm,
     Connection,
@@ -25,6 +28,7 @@ from roadgpt.network.source import (
     AnyDesign,
     Blueprint,
     made_from,
+    network_made_from,
     read_any_design,
     read_blueprint,
     read_road,
@@ -41,6 +45,8 @@ __all__ = [
     "JunctionDesign",
     "LaneLink",
     "Leg",
+    "MapDesign",
+    "MapNode",
     "Network",
     "NetworkDesign",
     "NetworkRoad",
@@ -48,12 +54,15 @@ __all__ = [
     "RoadEnd",
     "Roundabout",
     "Route",
+    "build_map",
     "build_route",
     "has_junctions",
     "made_from",
+    "network_made_from",
     "passing_length",
     "read_any_design",
     "read_blueprint",
+    "read_map_design",
     "read_network_design",
     "read_road",
     "road_from_json",

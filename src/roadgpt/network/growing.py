@@ -135,7 +135,7 @@ class _RouteGrowth:
         if junction.kind == "roundabout":
             size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes
             ring = build_roundabout(self.builder, node, *size)
-            self.passed += _around(self.builder, ring, to)
+            self.passed += roads_around(self.builder, ring, to)
         else:
             built = build_crossing(
                 self.builder, junction.kind, node, stubs, distances, controls, junction.kerb
@@ -260,7 +260,7 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
     return sum(piece.length for piece in pieces)
 
 
-def _around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
+def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
     """Returns the ids of the roads around a roundabout, from its first arm to the arm with index ``to``."""
     mouths = {each.id: each.connections for each in builder.junctions if each.id in ring.junctions}
     passed = [mouths[ring.junctions[0]][2].road]

@@ -7,13 +7,15 @@ from typing import Any
 from roadgpt.errors import UsageError
 from roadgpt.network.design import NetworkDesign, has_junctions, read_network_design
 from roadgpt.network.growing import build_route
+from roadgpt.network.map_design import MapDesign, has_nodes, read_map_design
+from roadgpt.network.map_growing import build_map
 from roadgpt.network.network_json import legs_from_json, network_from_json
 from roadgpt.network.route import Route
 from roadgpt.road import Design, Geometry, Road, World, build, read_design
 from roadgpt.road.source import read_blueprint as read_road_blueprint
 
-AnyDesign = Design | NetworkDesign
-"""A design without or with junctions."""
+AnyDesign = Design | NetworkDesign | MapDesign
+"""A design of a road, of a route through junctions, or of a map with a route."""
 Blueprint = AnyDesign | Road
 """Anything from which a road is made."""
 
@@ -30,9 +32,9 @@ def read_blueprint(path: str | Path) -> tuple[Blueprint, tuple[str, ...]]:
 
 
 def _of_network(data: Any) -> tuple[Blueprint, tuple[str, ...]] | None:
-    """Returns the design with junctions or the route in parsed JSON; None if it holds neither."""
-    if has_junctions(data):
-        return read_network_design(data)
+    """Returns the design with junctions, the map or the route in parsed JSON; None if it holds none."""
+    if has_junctions(data) or has_nodes(data):
+        return read_any_design(data)
     if isinstance(data, Mapping) and "network" in data:
         return road_from_json(data), ()
     return None
@@ -53,11 +55,14 @@ def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None
 
 
 def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format, with or without junctions; returns the design and remarks.
+    """Reads a dictionary in RoadGPT's JSON format, of a road, a route or a map; returns the design and
+    remarks.
 
     Raises:
         UsageError: A field is missing, misnamed, of the wrong type or out of range.
     """
+    if isinstance(data, Mapping) and has_nodes(data):
+        return read_map_design(data)
     return read_network_design(data) if has_junctions(data) else read_design(data)
 
 
@@ -65,18 +70,28 @@ def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -
     """Returns the road of a blueprint, laid in a World.
 
     Args:
-        blueprint: A design, a design with junctions, or a road.
+        blueprint: A design with or without junctions, a map, or a road.
         world: The World, which gives the lanes where the blueprint has none.
         geometry: How a design without junctions becomes a road.
 
     Raises:
-        UsageError: The road is too long, or the World asks for lanes that networks do not have.
+        UsageError: The road is too long, the parts of a map have no room, or the World asks for lanes that
+            networks do not have.
     """
-    if isinstance(blueprint, NetworkDesign):
+    if isinstance(blueprint, (NetworkDesign, MapDesign)):
         if geometry != "arcs":
             raise UsageError("a route with junctions is built from arcs; leave out --geometry spline")
-        return build_route(blueprint, world).on_ground()
+        return network_made_from(blueprint, world).on_ground()
     return world.lay(build(blueprint, geometry) if isinstance(blueprint, Design) else blueprint)
+
+
+def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
+    """Returns the route of a design with junctions or of a map, without the ground beside it.
+
+    Raises:
+        UsageError: As for ``made_from``.
+    """
+    return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
 
 
 def road_from_json(data: Mapping[str, Any]) -> Road:

@@ -1,5 +1,6 @@
 """Builds the road between two junctions from segments. It is level where it meets a junction."""
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -63,6 +64,30 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
     landing = min(LANDING, MOST_OF_LANDING * room)
     length = min(CREST_RADIUS * abs(grade), MOST_OF_SEGMENT * room - landing)
     return [(0.0, 0.0), (landing, 0.0), (landing + length, grade), *rest]
+
+
+def climb_between(z: float, end: float, length: float) -> GradeProfile:
+    """Returns heights that lead from one height to another, level at both ends, with one grade between.
+
+    Args:
+        z: The height in metres at the start.
+        end: The height in metres at the end.
+        length: The length of the road in metres.
+    """
+    climb = end - z
+    if abs(climb) < LEVEL:
+        return GradeProfile(z, (0.0, length), (0.0, 0.0))
+    landing = min(LANDING, MOST_OF_LANDING * length)
+    free = length - 2 * landing
+    # two vertical curves of length R g at the grade g: climb = g (free - R g)
+    inside = free**2 - 4 * CREST_RADIUS * abs(climb)
+    grade = (free - math.sqrt(max(inside, 0.0))) / (2 * CREST_RADIUS)
+    curve = CREST_RADIUS * grade
+    if inside < 0 or 2 * curve > MOST_OF_SEGMENT * free:
+        curve = MOST_OF_SEGMENT * free / 2
+    grade = climb / (free - curve)
+    stations = (0.0, landing, landing + curve, length - landing - curve, length - landing, length)
+    return GradeProfile(z, stations, (0.0, 0.0, grade, grade, 0.0, 0.0))
 
 
 def joined_grades(roads: Sequence[Road]) -> GradeProfile:

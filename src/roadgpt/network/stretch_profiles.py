@@ -29,13 +29,18 @@ def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
             no lane or too many.
     """
     section = world.section
-    changed = [name for name, usual in OWN.items() if getattr(section, name) != usual]
-    if changed:
-        flags = ", ".join(f"--{name.replace('_', '-')}" for name in changed)
-        raise UsageError(f"a network takes its lanes from its design, and has level roads; leave out {flags}")
+    refuse_other_lanes(world)
     first = design.lanes or LanesDesign(width=section.lane_width)
     lengths = [sum(segment.distance for segment in segments) for segments in design.stretches]
     return profiles_between(first, design.junctions, lengths, section.shoulder)
+
+
+def refuse_other_lanes(world: World) -> None:
+    """Raises UsageError if the World asks for lanes or banked bends that networks do not have."""
+    changed = [name for name, usual in OWN.items() if getattr(world.section, name) != usual]
+    if changed:
+        flags = ", ".join(f"--{name.replace('_', '-')}" for name in changed)
+        raise UsageError(f"a network takes its lanes from its design, and has level roads; leave out {flags}")
 
 
 def profiles_between(

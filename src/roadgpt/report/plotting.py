@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from roadgpt.errors import UsageError
-from roadgpt.network import NetworkDesign, Route, made_from
+from roadgpt.network import MapDesign, NetworkDesign, Route, made_from
 from roadgpt.report.birds_eye import driven_path, mark
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import draw_ends, draw_road, plan_points, stations_of
@@ -61,7 +61,7 @@ def _road_of(what: Any, world: World | None) -> tuple[Road, World]:
         if what.road is None:
             raise UsageError(f"run {what.index} has no road to plot: {what.description}")
         return what.road, world or what.world
-    if isinstance(what, (Design, NetworkDesign, Road)):
+    if isinstance(what, (Design, NetworkDesign, MapDesign, Road)):
         world = world or World()
         return made_from(what, world), world
     raise UsageError(f"a {type(what).__name__} cannot be plotted; give a Road, a Design or a Run")

@@ -26,7 +26,7 @@ from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.loading import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
-from roadgpt.network import Blueprint, NetworkDesign, made_from
+from roadgpt.network import AnyDesign, Blueprint, made_from
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments
 from roadgpt.run.card import seed_in
 from roadgpt.run.folder import Draw, read_run, write_run
@@ -189,7 +189,7 @@ def check_parts(setup: Setup, world: World = USUAL) -> None:
 class _Made(NamedTuple):
     """A draft, its road, and the findings: the rules that the road breaks."""
 
-    design: Design | NetworkDesign
+    design: AnyDesign
     road: Road
     findings: tuple[Finding, ...]
     rounds: int

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from roadgpt.errors import UsageError, explained
-from roadgpt.network import NetworkDesign, read_blueprint
+from roadgpt.network import MapDesign, NetworkDesign, read_blueprint
 from roadgpt.road import Design, World
 from roadgpt.run.atomic import json_text, to_bytes
 from roadgpt.run.folder import EDIT_CARD, Draw, write_run
@@ -48,7 +48,7 @@ def original_in(path: str, world: World, setup: Setup) -> Original:
     if not Path(path).exists():
         raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
     blueprint, remarks = read_blueprint(path)
-    if isinstance(blueprint, NetworkDesign):
+    if isinstance(blueprint, (NetworkDesign, MapDesign)):
         raise UsageError(f"{path} has junctions; only a road without junctions can be changed so far")
     if not isinstance(blueprint, Design):
         raise UsageError(f"{path} holds points and no design; only a design with segments can be changed")
@@ -63,7 +63,7 @@ def original_of(run: Run, path: str) -> Original:
     """
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")
-    if isinstance(run.design, NetworkDesign):
+    if isinstance(run.design, (NetworkDesign, MapDesign)):
         raise UsageError(f"{path} has junctions; only a road without junctions can be changed so far")
     return Original(run.design, run.world, run.request.setup, run.seed, path)
 

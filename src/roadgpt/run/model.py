@@ -9,7 +9,7 @@ from roadgpt.chat import ChatSettings, Spent
 from roadgpt.check import Finding
 from roadgpt.design.report import DesignReport
 from roadgpt.drive import permission
-from roadgpt.network import NetworkDesign
+from roadgpt.network import AnyDesign
 from roadgpt.road import Design, Geometry, Road, World
 
 if TYPE_CHECKING:
@@ -104,7 +104,7 @@ class Run:
     description: str = "valid, not driven"
     """The outcome in a sentence."""
     brief: Brief | None = None
-    design: Design | NetworkDesign | None = None
+    design: AnyDesign | None = None
     road: Road | None = None
     findings: tuple[Finding, ...] = ()
     drive: "Drive | None" = None
@@ -140,7 +140,7 @@ class Run:
 
     @property
     def plain_design(self) -> Design | None:
-        """The design; None if there is none, or if it has junctions."""
+        """The design; None if there is none, or if it has junctions or is a map."""
         return self.design if isinstance(self.design, Design) else None
 
     @property

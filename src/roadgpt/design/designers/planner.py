@@ -1,6 +1,7 @@
-"""The default designer: finds roads and routes through junctions by random drafts.
+"""The default designer: finds roads, routes through junctions, and maps by random drafts.
 
-See ``design.road_search`` for roads, and ``design.network_search`` for routes.
+See ``design.road_search`` for roads, ``design.network_search`` for routes, and ``design.map_search`` for
+maps.
 """
 
 from collections.abc import Sequence
@@ -8,10 +9,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from roadgpt.brief.model import Brief
+from roadgpt.design.map_search import MapSearch
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
-from roadgpt.network import NetworkDesign
+from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
 
 
@@ -25,8 +27,8 @@ class Planner:
 
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
-    ) -> Design | NetworkDesign:
-        """Returns a Design that meets the Brief and is valid; with junctions if the Brief has some.
+    ) -> AnyDesign:
+        """Returns a Design that meets the Brief and is valid; with junctions or of a map if the Brief asks.
 
         Args:
             brief: the requirements for the road.
@@ -39,6 +41,8 @@ class Planner:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.
         """
         rng = np.random.default_rng([seed, len(notes)])
+        if brief.map is not None:
+            return MapSearch(brief, world, rng).run()
         if brief.junctions:
             return NetworkSearch(brief, world, rng).run()
         design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()

@@ -76,13 +76,13 @@ def boundary(folder: Path, pairs: Sequence[Side]) -> list[Block]:
 
 
 def _row(folder: Path, name: str, pair: BoundaryPair, kept: Result, lost: Result) -> list[TableCell]:
-    assert kept.design is not None
-    assert lost.design is not None
+    assert kept.plain_design is not None
+    assert lost.plain_design is not None
     return row(
         cell(f"{name}/{pair.kept}", href=again(folder, name, pair.kept)),
         decimal(kept.margin),
         cell(f"{name}/{pair.lost}", href=again(folder, name, pair.lost)),
         decimal(lost.at_s, 0),
         decimal(pair.distance),
-        weightiest(elements_of(kept.design.segments), elements_of(lost.design.segments)),
+        weightiest(elements_of(kept.plain_design.segments), elements_of(lost.plain_design.segments)),
     )

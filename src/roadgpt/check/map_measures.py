@@ -1,0 +1,102 @@
+"""Measures a whole network as a map: its junctions and their kinds, blocks, ends, signs and distances."""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+from roadgpt.brief.junctions import Control, JunctionKind
+from roadgpt.check.junction_measures import direction_of, kinds_of
+from roadgpt.check.network_places import roads_outside_junctions
+from roadgpt.network import Junction, Network, RoadEnd
+
+STRAIGHT = math.radians(5.0)  # of a road that is straight from one junction to another
+
+
+@dataclass(frozen=True)
+class MeasuredNode:
+    """A junction or a roundabout of a map."""
+
+    place: tuple[float, float]
+    """Its middle (x, y) in metres."""
+    kinds: tuple[JunctionKind, ...]
+    """The kinds that it may be called; empty for none."""
+    gaps: tuple[float, ...]
+    """Angles in degrees between neighbouring arms, counter-clockwise."""
+    controls: frozenset[Control]
+    """The signs and lights of its arms."""
+
+
+@dataclass(frozen=True)
+class MeasuredMap:
+    """What is seen of a whole network."""
+
+    nodes: tuple[MeasuredNode, ...]
+    """The junctions; each roundabout is one."""
+    blocks: int
+    """The number of areas that roads enclose."""
+    ends: int
+    """The number of ends of roads that meet no junction."""
+    parts: int
+    """The number of parts that no roads join; 1 for a connected map."""
+    distances: tuple[float, ...]
+    """For each straight road between two junctions, the distance in metres between their middles."""
+
+    def number(self, kind: JunctionKind) -> int:
+        """Returns how many junctions may be called so."""
+        return sum(kind in node.kinds for node in self.nodes)
+
+
+def measured_map(network: Network) -> MeasuredMap:
+    """Returns the measures of a network."""
+    found = [_node(network, junctions) for _, junctions in network.nodes]
+    number_of = {junction.id: n for n, (_, group) in enumerate(network.nodes) for junction in group}
+    roads = roads_outside_junctions(network)
+    joined, distances, ends = list[tuple[int, int]](), list[float](), 0
+    for member in roads:
+        met = []
+        for contact in (RoadEnd(member.id, "start"), RoadEnd(member.id, "end")):
+            junction = network.junction_at.get(contact)
+            if junction is None:
+                ends += 1
+                met.append(len(found) + ends - 1)
+            else:
+                met.append(number_of[junction])
+        joined.append((met[0], met[1]))
+        if max(met) < len(found) and _is_straight(network, member.id):
+            distances.append(math.dist(found[met[0]].place, found[met[1]].place))
+    count = len(found) + ends
+    parts = _parts(count, joined)
+    return MeasuredMap(tuple(found), len(roads) - count + parts, ends, parts, tuple(distances))
+
+
+def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:
+    is_ring = junctions[0].id in network.roundabout_of
+    # the first arm of each junction of a roundabout is the one that is no part of the ring
+    arms = [each.arms[0] for each in junctions] if is_ring else list(junctions[0].arms)
+    directions = [direction_of(network, arm.end) for arm in arms]
+    gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+    kinds: tuple[JunctionKind, ...] = ("roundabout",) if is_ring else kinds_of(gaps)
+    x, y, _ = junctions[0].node
+    return MeasuredNode((x, y), kinds, tuple(gaps), frozenset(arm.control for arm in arms))
+
+
+def _is_straight(network: Network, number: int) -> bool:
+    road = network.road(number).road
+    return abs(float(road.heading(road.length) - road.heading(0.0))) < STRAIGHT and math.isclose(
+        road.length, math.dist(road.at(0.0)[:2].tolist(), road.at(road.length)[:2].tolist()), rel_tol=0.01
+    )
+
+
+def _parts(count: int, joined: list[tuple[int, int]]) -> int:
+    """Returns the number of parts of a graph with ``count`` vertices."""
+    parent = list(range(count))
+
+    def root(n: int) -> int:
+        while parent[n] != n:
+            parent[n] = parent[parent[n]]
+            n = parent[n]
+        return n
+
+    for one, other in joined:
+        parent[root(one)] = root(other)
+    return len({root(n) for n in range(count)})

@@ -1,0 +1,97 @@
+"""Requires a map of roads to be what was asked for: its blocks or its junctions, their signs and distances.
+
+Everything is measured on the finished network, as ``check.map_measures`` does.
+"""
+
+import math
+from collections.abc import Iterator
+
+from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.junctions import NAMES, Control
+from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.words import ROAD, Range
+from roadgpt.check.finding import Finding
+from roadgpt.check.map_measures import MeasuredMap, MeasuredNode, measured_map
+from roadgpt.network import Route
+from roadgpt.plural import plural
+
+RULE = "promises"
+SHARE = 0.1  # by which a distance between junctions may differ from the one that is asked for
+SAID: dict[Control, str] = {
+    "priority": "roads with priority",
+    "yield": "give-way signs",
+    "stop": "stop signs",
+    "lights": "traffic lights",
+    "none": "no signs",
+}
+CORNERS = 4  # of a grid, where roads may lead around a corner without a junction
+
+
+def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
+    """Returns one Finding for each requirement that the map of a route does not meet."""
+    found = measured_map(route.network)
+    out = [Finding(RULE, text) for text in _complaints(found, asked)]
+    for node in found.nodes:
+        if asked.control is not None and not _is_controlled(node, asked.control):
+            x, y = node.place
+            has = " and ".join(SAID[each] for each in sorted(node.controls))
+            text = f"asked for {SAID[asked.control]} at all junctions, near ({x:.0f}, {y:.0f}): {has}"
+            out.append(Finding(RULE, text, None, x, y))
+    return tuple(out)
+
+
+def _complaints(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with a map, as text."""
+    if found.parts > 1:
+        yield f"asked for one map, has {found.parts} parts that no road joins"
+    yield from _kinds(found, asked) if asked.junctions else _grid(found, asked)
+    if asked.length is not None:
+        allowed = _allowed(asked.length)
+        wrong = [each for each in found.distances if each not in allowed]
+        if wrong:
+            worst = max(wrong, key=lambda each: max(allowed.lo - each, each - allowed.hi))
+            yield f"asked for {asked.length} m between junctions, two are {worst:.0f} m apart"
+
+
+def _grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with the number of blocks and junctions of a grid."""
+    columns, rows = span(asked.columns), span(asked.rows)
+    blocks = Range(max(columns.lo, 1) * max(rows.lo, 1), columns.hi * rows.hi)
+    if found.blocks not in blocks:
+        yield f"asked for {asked.columns} by {asked.rows} blocks, has {found.blocks}"
+    low, high = ((side + 1) * (other + 1) for side, other in ((columns.lo, rows.lo), (columns.hi, rows.hi)))
+    if math.isfinite(low) and len(found.nodes) not in Range(low - CORNERS, high):
+        count = plural(len(found.nodes), "junction")
+        wanted = f"{low - CORNERS:g} to {high:g}"
+        yield f"a grid of {asked.columns} by {asked.rows} blocks has {wanted} junctions, not {count}"
+
+
+def _kinds(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with the kinds of the junctions of a map."""
+    spans = [span(each.count) for each in asked.junctions]
+    total = Range(sum(each.lo for each in spans), sum(each.hi for each in spans))
+    if len(found.nodes) not in total:
+        yield f"asked for {total} junctions in all, has {len(found.nodes)}"
+    free = sum(span(each.count).hi for each in asked.junctions if each.kind == "junction")
+    named = [each for each in asked.junctions if each.kind != "junction"]
+    for kind in dict.fromkeys(each.kind for each in named):
+        counts = [span(each.count) for each in named if each.kind == kind]
+        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts) + free)
+        if found.number(kind) not in allowed:
+            yield f"asked for {allowed} of the kind {NAMES[kind][0]}, has {found.number(kind)}"
+
+
+def _allowed(length: Amount) -> Range:
+    """Returns the distances in metres that are allowed between junctions."""
+    asked = span(length)
+    slack = max(ROAD["length"].slack(asked.lo), SHARE * asked.lo) if asked.lo > 0 else 0.0
+    return Range(asked.lo - slack, asked.hi + (slack or SHARE * asked.hi))
+
+
+def _is_controlled(node: MeasuredNode, control: Control) -> bool:
+    """Returns whether a junction has a sign at some arm; lights stand at all arms."""
+    if control in ("none", "priority", "yield") and "roundabout" in node.kinds:
+        return node.controls == {"yield"}  # everybody gives way to those on the ring
+    if control in ("lights", "none"):
+        return node.controls == {control}
+    return ("yield" if control == "priority" else control) in node.controls

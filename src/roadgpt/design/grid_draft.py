@@ -1,0 +1,133 @@
+"""Drafts grids: blocks between streets, with a few roads that lead out of them.
+
+Streets are not quite evenly spaced, and nodes are moved a little. At a corner of the grid one road leads
+around it in a bend, unless a road leads out there.
+"""
+
+import cmath
+from math import inf, pi
+
+import numpy as np
+
+from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.words import Range, overlap
+from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub, kind_of
+from roadgpt.network.turning import tangent_length
+
+LEAST_BLOCK = 48.0  # m, side of a block of which no length is asked; smaller ones leave no room for bends
+MOST_BLOCK = 100.0  # m
+UNEVEN = 0.12  # share of the side of a block by which streets are unevenly spaced
+MOVED = 0.06  # share of the side of a block by which nodes are moved, along x and y
+ASKED = 0.025  # both shares where a length is asked
+LEANING = 8.0  # degrees, by which a road out of the grid may be off its usual direction
+ENTRANCES = (2, 4)  # roads that lead out of a grid
+CONTACT = 13.0  # m, about, from a node to the start of its roads
+ALIKE = 2  # more blocks than asked for at least, where there is no upper limit
+SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
+
+Cell = tuple[int, int]
+"""The column and the row of a node."""
+
+
+def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, haste: float) -> MapDraft | None:
+    """Returns the draft of a grid; None if this one has no room for its bends.
+
+    Args:
+        asked: the number of columns and rows, and the side of the blocks.
+        room: the side in metres of the square into which it should fit.
+        least_radius: the smallest radius in metres of a bend.
+        rng: random number generator.
+        haste: from 0 to 1; the larger it is, the smaller the grid.
+    """
+    size = drawn_count(asked.columns, rng), drawn_count(asked.rows, rng)
+    entrances = _entrances(size, rng, haste)
+    lengths = [
+        _streets(count, asked.length, room - _outside(entrances, axis), rng, haste)
+        for axis, count in enumerate(size)
+    ]
+    xs, ys = (np.concatenate([[0.0], np.cumsum(each)]) for each in lengths)
+    moved = (ASKED if asked.length else MOVED) * min(map(min, lengths))
+    draft, numbers = MapDraft(), dict[Cell, int]()
+    for i, x in enumerate(xs):
+        for j, y in enumerate(ys):
+            z = complex(x, y) + complex(*rng.uniform(-moved, moved, 2))
+            joined = [numbers[cell] for cell in ((i - 1, j), (i, j - 1)) if cell in numbers]
+            numbers[i, j] = draft.add(DraftNode(z, "end", drawn_kerb(rng, haste)), *joined)
+    for cell, side in entrances:
+        way = cmath.rect(1.0, cmath.phase(complex(*side)) + rng.uniform(-LEANING, LEANING) * pi / 180)
+        node = draft.nodes[numbers[cell]]
+        draft.add(DraftNode(node.z + way * (CONTACT + drawn_stub(rng, haste)), "end"), numbers[cell])
+    return draft if _finished(draft, least_radius, rng) else None
+
+
+def drawn_count(asked: Amount | None, rng: Rng, most: int = 8) -> int:
+    """Returns a whole number that an amount allows; where it has no upper limit, not much more than its
+    lower one.
+    """
+    both = overlap(span(asked), Range(1, most))
+    assert both is not None
+    low = int(np.ceil(both.lo))
+    high = int(both.hi) if span(asked).hi < inf else min(int(both.hi), low + ALIKE)
+    return int(rng.integers(low, max(low, high) + 1))
+
+
+def _entrances(size: tuple[int, int], rng: Rng, haste: float) -> list[tuple[Cell, tuple[int, int]]]:
+    """Returns the nodes at which roads lead out of a grid, each with its side; in great haste there are
+    none if junctions remain.
+    """
+    columns, rows = size
+    if haste > 0.7 and max(columns, rows) > 1:
+        return []
+    places = []
+    for side in SIDES:
+        along = rows if side[0] else columns
+        for n in range(along + 1):
+            cell = (0 if side[0] < 0 else columns, n) if side[0] else (n, 0 if side[1] < 0 else rows)
+            places.append((cell, side))
+    order = [places[n] for n in rng.permutation(len(places))]
+    chosen = dict[Cell, tuple[int, int]]()
+    for cell, side in order:
+        chosen.setdefault(cell, side)
+    count = int(rng.integers(ENTRANCES[0], ENTRANCES[1] + 1)) if haste < 0.4 else ENTRANCES[0]
+    return list(chosen.items())[:count]
+
+
+def _outside(entrances: list[tuple[Cell, tuple[int, int]]], axis: int) -> float:
+    """Returns the metres that roads out of the grid need beside it, along x (0) or y (1)."""
+    return sum(CONTACT + 25.0 for side in {side for _, side in entrances} if side[axis])
+
+
+def _streets(count: int, asked: Amount | None, room: float, rng: Rng, haste: float) -> list[float]:
+    """Returns the distances in metres between neighbouring streets."""
+    if asked is None:
+        most = min(max(room / count / (1 + UNEVEN / 2), LEAST_BLOCK), MOST_BLOCK)
+        usual = LEAST_BLOCK + (most - LEAST_BLOCK) * (1 - haste * float(rng.random()))
+        return [max(usual * (1 + float(rng.uniform(-UNEVEN, UNEVEN))), LEAST_BLOCK) for _ in range(count)]
+    allowed = span(asked)
+    low = allowed.lo if allowed.lo > 0 else min(LEAST_BLOCK, allowed.hi)
+    high = min(allowed.hi, 1.3 * low)
+    usual = float(rng.uniform(low, high)) if high > low else low
+    return [usual * (1 + float(rng.uniform(-ASKED, ASKED))) for _ in range(count)]
+
+
+def _finished(draft: MapDraft, least_radius: float, rng: Rng) -> bool:
+    """Gives each node its kind, and each bend its radius; returns whether all bends have room."""
+    ends = draft.neighbours()
+    for number, node in enumerate(draft.nodes):
+        node.kind = kind_of(len(ends[number]))
+    for number, node in enumerate(draft.nodes):
+        if node.kind != "bend":
+            continue
+        one, other = (draft.nodes[n] for n in ends[number])
+        turn = pi - abs(cmath.phase((one.z - node.z) / (other.z - node.z)))
+        room = min(
+            abs(each.z - node.z) * (0.48 if each.kind == "bend" else 1.0)
+            - (0.0 if each.kind == "bend" else each.kerb * 1.3 + 9.0)
+            for each in (one, other)
+        )
+        radius = drawn_bend(rng, least_radius, room / tangent_length(turn) if turn > 0 else inf)
+        if radius is None:
+            return False
+        node.radius = radius
+    return True

@@ -1,0 +1,74 @@
+"""Draws a route through the draft of a map: it passes several junctions and turns to both sides if it can."""
+
+import cmath
+from collections.abc import Sequence
+from itertools import pairwise
+
+from roadgpt.brief.junctions import side_of
+from roadgpt.design.map_draft import MapDraft, Rng
+
+WALKS = 60  # that are drawn, of which the best is taken
+PASSED = (3, 6)  # junctions that a route passes, where it can
+LONG = 120.0  # m; a shorter route counts as worse
+
+
+def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
+    """Returns the nodes along a route, from one end to another; None if there is no route.
+
+    A map without ends has a route from one junction to another. No node is passed twice.
+    """
+    ends = [n for n, node in enumerate(draft.nodes) if node.kind == "end"]
+    starts = ends or [n for n, node in enumerate(draft.nodes) if node.is_junction]
+    wanted = int(rng.integers(PASSED[0], PASSED[1] + 1))
+    neighbours = draft.neighbours()
+    best: tuple[tuple[float, ...], list[int]] | None = None
+    for _ in range(WALKS):
+        walk = _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, bool(ends), rng)
+        if walk is None:
+            continue
+        worth = _worth(draft, walk, wanted)
+        if best is None or worth > best[0]:
+            best = worth, walk
+    return None if best is None else best[1]
+
+
+def _walk(
+    draft: MapDraft, neighbours: Sequence[Sequence[int]], start: int, wanted: int, to_end: bool, rng: Rng
+) -> list[int] | None:
+    """Returns the nodes of a random walk; None if it does not reach an end or, if ``to_end`` is False,
+    another junction.
+    """
+    walk, passed = [start], 0
+    while True:
+        ways = [n for n in neighbours[walk[-1]] if n not in walk]
+        if not ways:
+            break
+        walk.append(ways[int(rng.integers(len(ways)))])
+        kind = draft.nodes[walk[-1]].kind
+        if kind == "end":
+            return walk
+        if kind != "bend":
+            if not to_end and passed == wanted:
+                return walk
+            passed += 1
+    if to_end:
+        return None
+    while len(walk) > 1 and not draft.nodes[walk[-1]].is_junction:
+        walk.pop()
+    return walk if len(walk) > 1 else None
+
+
+def _worth(draft: MapDraft, walk: Sequence[int], wanted: int) -> tuple[float, ...]:
+    """Returns numbers by which routes are compared; the larger, the better."""
+    inner = [n for n in range(1, len(walk) - 1) if draft.nodes[walk[n]].is_junction]
+    z = [draft.nodes[n].z for n in walk]
+    sides = {side_of(_degrees(z[n - 1], z[n], z[n + 1])) for n in inner}
+    length = sum(abs(b - a) for a, b in pairwise(z))
+    near = -abs(len(inner) - wanted)
+    turns = len(sides & {"left", "right"})
+    return float(bool(inner)), float(length >= LONG), float(turns), float(near)
+
+
+def _degrees(before: complex, here: complex, after: complex) -> float:
+    """Returns the change of direction at a node in degrees, positive to the left."""
+    return cmath.phase((after - here) / (here - before)) * 180 / cmath.pi

@@ -1,0 +1,197 @@
+"""Searches for a map of roads: tries random drafts until one fits on the map and breaks no rule.
+
+A draft is a grid or a number of junctions that are joined by roads. It is turned and moved onto the map,
+heights and a route are drawn, and the rules must accept the network that is built from it.
+"""
+
+from collections import Counter
+from functools import lru_cache
+
+import numpy as np
+
+from roadgpt import check
+from roadgpt.brief.junctions import Control
+from roadgpt.brief.map_fit import EDGE
+from roadgpt.brief.model import Brief
+from roadgpt.design.advice import larger_map
+from roadgpt.design.grid_draft import draft_grid
+from roadgpt.design.layout import boxes
+from roadgpt.design.map_draft import DraftNode, MapDraft
+from roadgpt.design.map_route import drawn_route
+from roadgpt.design.village_draft import draft_village
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.network import MapDesign, MapNode, build_map
+from roadgpt.network.map_growing import profile_of_map
+from roadgpt.road import World
+
+DRAFTS = 200  # for one map, at most
+BUILT = 30  # drafts that fit and break a rule, after which the search is given up
+TRIED = 40  # drafts that show whether maps of some size are large enough
+TRIALS = (1, 2)  # seeds of these searches
+NO_HASTE = 8  # drafts without haste
+LEANING = 14.0  # degrees, by which a grid may be turned, so that its columns still run from south to north
+TURNS = 24  # turns that are tried
+TIGHTEST = 1.05  # times the smallest radius allowed, of bends
+LEVEL = 0.4  # share of maps that are level
+TILT = 0.02  # ratio, steepest plane in which the nodes of a map lie
+STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest node
+TOO_LARGE = "too large"
+
+
+class MapSearch:
+    """The search for one map."""
+
+    def __init__(self, brief: Brief, world: World, rng: np.random.Generator) -> None:
+        """Prepares the search.
+
+        Args:
+            brief: the requirements, with a map.
+            world: size of the map, and limits that the rules check.
+            rng: random number generator.
+        """
+        assert brief.map is not None
+        self.brief, self.asked, self.world, self.rng = brief, brief.map, world, rng
+        self.failed: Counter[str] = Counter()
+
+    def run(self, drafts: int = DRAFTS) -> MapDesign:
+        """Returns the first draft that is accepted.
+
+        Args:
+            drafts: how many drafts are tried at most.
+
+        Raises:
+            DesignError: no draft was accepted; the message says why most of them failed.
+            UsageError: the World asks for lanes or banked bends that networks do not have.
+        """
+        profile_of_map(None, self.world)
+        built = 0
+        for number in range(drafts):
+            haste = min(1.0, max(0.0, (number - NO_HASTE) / (drafts / 2)) ** 0.5)
+            design = self._draft(haste)
+            if design is None:
+                continue
+            built += 1
+            try:
+                findings = check.inspect(build_map(design, self.world), self.brief, self.world)
+            except UsageError as error:
+                self.failed[str(error)] += 1
+                continue
+            if not findings:
+                return design
+            self.failed[findings[0].sentence] += 1
+            if built == BUILT:
+                break
+        raise DesignError(self._advice())
+
+    def _draft(self, haste: float) -> MapDesign | None:
+        """Returns a draft on the map; None if it found no place."""
+        world = self.world
+        room = world.site.map_size - world.section.road_width - 2 * EDGE
+        radius = TIGHTEST * world.limits.min_radius
+        if self.asked.junctions:
+            draft = draft_village(self.asked, world, radius, self.rng, haste)
+            turns = self.rng.uniform(0, 360, TURNS)
+        else:
+            draft = draft_grid(self.asked, room, radius, self.rng, haste)
+            turns = self.rng.uniform(-LEANING, LEANING, TURNS) * np.linspace(1, 0, TURNS)
+        if draft is None:
+            self.failed["its roads would overlap or bend too much"] += 1
+            return None
+        if not self._place(draft, turns, room):
+            self.failed[TOO_LARGE] += 1
+            return None
+        route = drawn_route(draft, self.rng)
+        if route is None:
+            self.failed["no route leads through it"] += 1
+            return None
+        heights = self._heights(draft, haste)
+        control: Control = self.asked.control or "none"
+        return MapDesign(
+            nodes=tuple(
+                _node(node, height, control) for node, height in zip(draft.nodes, heights, strict=True)
+            ),
+            roads=tuple((one + 1, other + 1) for one, other in draft.roads),
+            route=tuple(number + 1 for number in route),
+        )
+
+    def _place(self, draft: MapDraft, turns: np.ndarray, room: float) -> bool:
+        """Turns and moves a draft onto the map; returns whether it fits.
+
+        Args:
+            draft: the draft, whose nodes are moved.
+            turns: the angles in degrees that are tried, in this order.
+            room: the side in metres of the square into which it must fit.
+        """
+        left, low, width, height = boxes(draft.corners(), turns)
+        fits = np.flatnonzero(np.maximum(width, height) <= room)
+        if not fits.size:
+            return False
+        n = fits[0]
+        spin = np.exp(1j * np.radians(turns[n]))
+        border = (self.world.site.map_size - room) / 2
+        x, y = (
+            border - edge + float(self.rng.random()) * max(room - size, 0.0)
+            for edge, size in ((left[n], width[n]), (low[n], height[n]))
+        )
+        for node in draft.nodes:
+            moved = node.z * spin + complex(x, y)
+            node.z = complex(round(moved.real, 2), round(moved.imag, 2))
+        return True
+
+    def _heights(self, draft: MapDraft, haste: float) -> list[float]:
+        """Returns the height of each node in metres; all nodes lie in one plane, nearly level."""
+        low, high = STARTS_AT
+        ground = max(low, self.world.site.z_floor + 1) + float(self.rng.random()) * (high - low)
+        tilt = TILT * (1 - haste) * float(self.rng.random()) if self.rng.random() > LEVEL else 0.0
+        way = np.exp(2j * np.pi * self.rng.random())
+        along = np.array([(node.z * way).real for node in draft.nodes])
+        return [round(float(each), 2) for each in ground + tilt * (along - along.min())]
+
+    def _advice(self) -> str:
+        """Returns why most drafts failed and what to do, as one sentence."""
+        why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
+        size = self.world.site.map_size
+        if why == TOO_LARGE:
+            fewer = "junctions" if self.asked.junctions else "or shorter blocks"
+            return (
+                f"this map of roads found no place on a map of {size:g} m; ask for fewer {fewer}, or give a "
+                "larger map with --map-size"
+            )
+        return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
+
+
+def _node(node: DraftNode, height: float, control: Control) -> MapNode:
+    at = (node.z.real, node.z.imag, height)
+    if not node.is_junction:
+        return MapNode(at=at, kind=node.kind, radius=node.radius)
+    return MapNode(at=at, kind=node.kind, radius=node.radius, control=control, kerb=node.kerb)
+
+
+def map_fits(brief: Brief, world: World) -> bool:
+    """Returns whether each of two short searches with different seeds finds a map."""
+    return _failed(brief, world) is None
+
+
+def _failed(brief: Brief, world: World) -> MapSearch | None:
+    """Returns the first short search that finds no map; None if all find one."""
+    for seed in TRIALS:
+        search = MapSearch(brief, world, np.random.default_rng(seed))
+        try:
+            search.run(TRIED)
+        except DesignError:
+            return search
+    return None
+
+
+@lru_cache(maxsize=256)
+def room_for_map(brief: Brief, world: World) -> float | None:
+    """Returns the side in metres of a map large enough for a map of roads; None if the World's is, or if no
+    larger one would help.
+    """
+    try:
+        failed = _failed(brief, world)
+    except UsageError:
+        return None
+    if failed is None or not failed.failed[TOO_LARGE]:
+        return None
+    return larger_map(brief, world, map_fits, world.site.map_size)

@@ -1,0 +1,255 @@
+"""Drafts maps of junctions of some kinds: each new junction is joined to an arm that leads nowhere yet.
+
+Then pairs of arms that lead nowhere are joined where their directions meet. The others become roads that end.
+"""
+
+import cmath
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import combinations, pairwise
+from math import pi, radians
+
+from roadgpt.brief.amount import span
+from roadgpt.brief.junction_check import MOST_OF_KIND
+from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.map_clause import MapClause
+from roadgpt.design.clearance import Disc, Line, is_clear
+from roadgpt.design.grid_draft import drawn_count
+from roadgpt.design.junction_draft import drawn_junction
+from roadgpt.design.map_draft import STRAIGHT, DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub
+from roadgpt.network import JunctionDesign
+from roadgpt.network.growing import contact_distances
+from roadgpt.network.map_growing import profile_of_map
+from roadgpt.network.turning import tangent_length
+from roadgpt.road import World
+
+TRIES = 30  # places that are tried for one junction
+CHOICES = 4  # places that fit, of which the one nearest to the middle of the village is taken
+BETWEEN = (16.0, 70.0)  # m, of a straight road between two junctions
+BENT = 0.35  # share of roads between junctions that have a bend
+TURN = (20.0, 60.0)  # degrees, of such a bend
+WIDEST = 35.0  # m, radius of such a bend
+MARGIN = 2.0  # m between the shoulders of roads that do not meet
+FARTHEST = 130.0  # m, from a junction to the bend of a road that joins two arms
+SHARPEST = 115.0  # degrees, of such a bend
+GENTLEST = 8.0  # degrees, of such a bend
+JOINED = 0.8  # share of the arms that are joined where they can be
+ENDS = 2  # arms at least that are left as ends
+ASKED = 0.04  # share by which distances differ from the one that is asked for
+LONGER = 1.2  # share by which the ends of a map with one junction are longer, so that its route is not short
+STUB = 24.0  # m, kept free for each arm that leads nowhere yet
+
+
+def draft_village(
+    asked: MapClause, world: World, least_radius: float, rng: Rng, haste: float
+) -> MapDraft | None:
+    """Returns the draft of a map of junctions; None if one of them found no place.
+
+    Args:
+        asked: the kinds of junctions and how many of each.
+        world: the width of lanes and shoulders.
+        least_radius: the smallest radius in metres of a bend.
+        rng: random number generator.
+        haste: from 0 to 1; the larger it is, the smaller the map.
+    """
+    kinds = [each.kind for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
+    junctions = []
+    for n in rng.permutation(len(kinds)):
+        junction = drawn_junction(JunctionClause(kind=kinds[n]), 1, rng, haste)
+        if junction is None:
+            return None
+        junctions.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste)}))
+    village = _Village(asked, world, least_radius, rng, haste)
+    village.put(junctions[0], 0j, float(rng.uniform(0, 2 * pi)))
+    if not all(village.grow(junction) for junction in junctions[1:]):
+        return None
+    village.join_arms()
+    village.end_arms()
+    return village.draft
+
+
+@dataclass(frozen=True, eq=False)
+class _FreeArm:
+    """An arm that leads nowhere yet."""
+
+    node: int
+    z: complex
+    """The place of its junction."""
+    way: complex
+    """Its direction out of the junction, of length 1."""
+    reach: float
+    """Metres from the node to its contact."""
+
+    @property
+    def line(self) -> Line:
+        """The straight that is kept free for it."""
+        return Line(self.z, self.z + self.way * (self.reach + STUB), frozenset({self.node}))
+
+
+@dataclass
+class _Village:
+    """A draft that grows."""
+
+    asked: MapClause
+    world: World
+    least_radius: float
+    rng: Rng
+    haste: float
+    draft: MapDraft = field(default_factory=MapDraft)
+    free: list[_FreeArm] = field(default_factory=list)
+    discs: list[Disc] = field(default_factory=list)
+
+    def grow(self, junction: JunctionDesign) -> bool:
+        """Joins a junction to an arm that leads nowhere; returns whether it found a place."""
+        nodes = self.draft.nodes
+        middle = sum(node.z for node in nodes) / len(nodes)
+        found = []
+        for _ in range(TRIES):
+            arm = self.free[int(self.rng.integers(len(self.free)))]
+            back = int(self.rng.integers(len(junction.all_arms) + 1))
+            path = self._path(arm, self._reaches(junction)[back])
+            if path is None:
+                continue
+            bends, here = path
+            before = bends[-1].z if bends else arm.z
+            turn = cmath.phase((before - here) / _ways(junction, 0.0)[back])
+            if self._fits(arm, [*(each.z for each in bends), here], junction, turn, back):
+                found.append((arm, bends, here, turn, back))
+            if len(found) == CHOICES:
+                break
+        if not found:
+            return False
+        count = 1 + round(self.haste * (len(found) - 1))
+        arm, bends, here, turn, back = min(found[:count], key=lambda each: abs(each[2] - middle))
+        self.free.remove(arm)
+        last = arm.node
+        for bend in bends:
+            last = self.draft.add(bend, last)
+        self.put(junction, here, turn, back, last)
+        return True
+
+    def put(
+        self, junction: JunctionDesign, z: complex, turn: float, back: int | None = None, *joined_to: int
+    ) -> None:
+        """Adds a junction and its arms.
+
+        Args:
+            junction: the junction.
+            z: its place as x + iy in metres.
+            turn: the angle in radians by which it is turned.
+            back: index of the arm on which a road leads to it; None for none.
+            joined_to: the node from which this road comes.
+        """
+        radius = junction.radius if junction.kind == "roundabout" else None
+        number = self.draft.add(DraftNode(z, junction.kind, junction.kerb, radius), *joined_to)
+        reaches = self._reaches(junction)
+        self.discs.append(Disc(z, max(reaches), number))
+        for n, way in enumerate(_ways(junction, turn)):
+            if n != back:
+                self.free.append(_FreeArm(number, z, way, reaches[n]))
+
+    def _reaches(self, junction: JunctionDesign) -> list[float]:
+        directions = [cmath.phase(way) for way in _ways(junction, 0.0)]
+        profile = profile_of_map(None, self.world)
+        return contact_distances(junction, directions, [profile] * len(directions))
+
+    def _path(self, arm: _FreeArm, reach: float) -> tuple[list[DraftNode], complex] | None:
+        """Returns the bends of a road from an arm to a new junction, and the place of this junction.
+
+        ``reach`` is the distance in metres from the junction to the end of the road.
+        """
+        rng, (low, high) = self.rng, BETWEEN
+        if self.asked.length is not None:
+            allowed = span(self.asked.length)
+            usual = allowed.lo if allowed.lo > 0 else allowed.hi
+            distance = usual * float(rng.uniform(1 - ASKED, 1 + ASKED))
+            fits = distance > arm.reach + reach + low / 2
+            return ([], arm.z + arm.way * distance) if fits else None
+        length = low + (high - low) * (1 - self.haste) * float(rng.random())
+        if rng.random() > BENT * (1 - self.haste):
+            return [], arm.z + arm.way * (arm.reach + length + reach)
+        turn = radians(float(rng.uniform(*TURN))) * (1 if rng.random() < 0.5 else -1)
+        radius = drawn_bend(rng, self.least_radius, max(WIDEST, self.least_radius))
+        assert radius is not None
+        tangent = radius * tangent_length(abs(turn))
+        bend = arm.z + arm.way * (arm.reach + STRAIGHT + tangent)
+        further = tangent + max(length / 2, STRAIGHT) + reach
+        return [DraftNode(bend, "bend", radius=radius)], bend + arm.way * cmath.rect(further, turn)
+
+    def _fits(
+        self, arm: _FreeArm, points: Sequence[complex], junction: JunctionDesign, turn: float, back: int
+    ) -> bool:
+        """Returns whether a new junction at the last of some points, its arms, and the road to it keep off
+        everything else.
+        """
+        first = len(self.draft.nodes)
+        numbers = [arm.node, *range(first, first + len(points))]
+        lines = [
+            Line(a, b, frozenset(nodes))
+            for (a, b), nodes in zip(pairwise([arm.z, *points]), pairwise(numbers), strict=True)
+        ]
+        reaches, here = self._reaches(junction), points[-1]
+        for n, way in enumerate(_ways(junction, turn)):
+            if n != back:
+                lines.append(_FreeArm(numbers[-1], here, way, reaches[n]).line)
+        there = self._lines(arm)
+        disc = Disc(here, max(reaches), numbers[-1])
+        return is_clear(lines, there, self.discs, self.apart) and is_clear(there, [], [disc], self.apart)
+
+    @property
+    def apart(self) -> float:
+        """The least distance in metres between the centre lines of roads that do not meet."""
+        section = self.world.section
+        return float(2 * section.lane_width + 2 * section.shoulder + MARGIN)
+
+    def _lines(self, *without: _FreeArm) -> list[Line]:
+        """Returns the straights between nodes, and those kept free for arms, but for some of these."""
+        nodes = self.draft.nodes
+        roads = [Line(nodes[a].z, nodes[b].z, frozenset((a, b))) for a, b in self.draft.roads]
+        return roads + [arm.line for arm in self.free if arm not in without]
+
+    def join_arms(self) -> None:
+        """Joins pairs of arms that lead nowhere, where a bend can lead from one to the other."""
+        pairs = list(combinations(self.free, 2))
+        for n in self.rng.permutation(len(pairs)):
+            one, other = pairs[n]
+            if len(self.free) < ENDS + 2 or one not in self.free or other not in self.free:
+                continue
+            bend = None if one.node == other.node else self._meeting(one, other)
+            if bend is not None and self.rng.random() < JOINED:
+                self.free.remove(one)
+                self.free.remove(other)
+                number = self.draft.add(bend, one.node)
+                self.draft.roads.append((number, other.node))
+
+    def _meeting(self, one: _FreeArm, other: _FreeArm) -> DraftNode | None:
+        """Returns the bend at which two arms meet; None if they do not, or something is in the way."""
+        across = (one.way.conjugate() * other.way).imag
+        turn = abs(cmath.phase(-other.way / one.way))
+        if not radians(GENTLEST) <= turn <= radians(SHARPEST):
+            return None
+        between = (other.z - one.z).conjugate()
+        first, second = (between * other.way).imag / across, (between * one.way).imag / across
+        room = min(first - one.reach, second - other.reach) - STRAIGHT
+        if room <= 0 or max(first, second) > FARTHEST:
+            return None
+        radius = drawn_bend(self.rng, self.least_radius, room / tangent_length(turn))
+        z, number = one.z + one.way * first, len(self.draft.nodes)
+        lines = [Line(arm.z, z, frozenset((arm.node, number))) for arm in (one, other)]
+        if radius is None or not is_clear(lines, self._lines(one, other), self.discs, self.apart):
+            return None
+        return DraftNode(z, "bend", radius=radius)
+
+    def end_arms(self) -> None:
+        """Gives each arm that leads nowhere its end."""
+        longer = 1 + (1 - self.haste) * LONGER / len(self.discs)
+        for arm in self.free:
+            z = arm.z + arm.way * (arm.reach + longer * drawn_stub(self.rng, self.haste))
+            self.draft.add(DraftNode(z, "end"), arm.node)
+        self.free = []
+
+
+def _ways(junction: JunctionDesign, turn: float) -> list[complex]:
+    """Returns the directions out of a junction that is turned by an angle in radians."""
+    angles = [pi, *(radians(arm.angle) for arm in junction.all_arms)]
+    return [cmath.rect(1.0, angle + turn) for angle in angles]

@@ -1,0 +1,221 @@
+"""Builds a network from the design of a map: its junctions, the roads between them, and the route."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+from typing import cast
+
+from roadgpt.brief.junctions import Control
+from roadgpt.errors import UsageError
+from roadgpt.geometry import Piece, PieceCurve
+from roadgpt.geometry.curve import wrap_angle
+from roadgpt.geometry.pieces import joined
+from roadgpt.network.building import Builder, Stub
+from roadgpt.network.crossing import build_crossing
+from roadgpt.network.design import ISLAND, JunctionDesign
+from roadgpt.network.growing import contact_distances, roads_around
+from roadgpt.network.lane_legs import legs_along
+from roadgpt.network.map_design import BEND, MapDesign, MapLanes, MapNode
+from roadgpt.network.network import Junction, JunctionKind, Leg, Network, RoadEnd, Roundabout
+from roadgpt.network.ring import build_roundabout
+from roadgpt.network.route import Route
+from roadgpt.network.stretch import climb_between
+from roadgpt.network.stretch_profiles import refuse_other_lanes
+from roadgpt.network.turning import curve_between, tangent_length
+from roadgpt.road import Profile, Road, World
+from roadgpt.road.road import check_length
+
+SHORTEST = 0.1  # m, of a road between two junctions; the rules want more
+NO_TURN = 1e-6  # rad; at a smaller turn there is no curve
+
+
+def build_map(design: MapDesign, world: World) -> Route:
+    """Returns the route of a map, with the network of the whole map.
+
+    Args:
+        design: The nodes, the roads and the route.
+        world: The World, which gives the width of lanes and shoulders where the design gives none.
+
+    Raises:
+        UsageError: Junctions, roundabouts or bends have no room on a road, a road is longer than 50 km, or
+            the World asks for lanes or banked bends that networks do not have.
+    """
+    grown = _MapGrowth(design, profile_of_map(design.lanes, world))
+    for nodes in design.chains:
+        grown.add_road(nodes)
+    for number, node in enumerate(design.nodes, 1):
+        if node.is_junction:
+            grown.add_junction(number, node)
+    network = grown.builder.network()
+    return Route.along(network, grown.legs(network))
+
+
+def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
+    """Returns the cross-section of the roads of a map; without lanes, that of the World.
+
+    Raises:
+        UsageError: The World asks for lanes or banked bends that networks do not have.
+    """
+    refuse_other_lanes(world)
+    width = world.section.lane_width if lanes is None else lanes.width
+    return Profile.of(1, 1, width, world.section.shoulder)
+
+
+def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
+    """Returns the sign or light of each arm of a junction.
+
+    With "lights", every arm has lights. Otherwise the two arms that are most nearly opposite are the main
+    road: with "stop" or "yield", the other arms have this sign, and with "priority", they give way. At a
+    roundabout every arm has lights, stop signs, or else gives way.
+
+    Args:
+        node: The junction.
+        directions: The headings of its arms out of the junction in radians.
+    """
+    count = len(directions)
+    if node.kind == "roundabout":
+        return (node.control if node.control in ("lights", "stop") else "yield",) * count
+    if node.control in ("lights", "none"):
+        return (node.control,) * count
+    pairs = [(i, j) for i in range(count) for j in range(i)]
+    main = max(pairs, key=lambda pair: abs(float(wrap_angle(directions[pair[0]] - directions[pair[1]]))))
+    minor: Control = "yield" if node.control == "priority" else node.control
+    return tuple("priority" if n in main else minor for n in range(count))
+
+
+@dataclass
+class _MapGrowth:
+    """A network that is being built from a map."""
+
+    design: MapDesign
+    profile: Profile
+    builder: Builder = field(default_factory=Builder)
+    _roads: dict[tuple[int, ...], int] = field(default_factory=dict)
+    """The ids of roads, by the nodes along them."""
+    _ends: dict[tuple[int, int], RoadEnd] = field(default_factory=dict)
+    """The end of the road that leads from a node towards another one."""
+    _built: dict[int, Junction | Roundabout] = field(default_factory=dict)
+    _contacts: dict[int, dict[int, float]] = field(default_factory=dict)
+    """For each node, the distances in metres from it to the starts of its roads, by their next node."""
+
+    def _contact(self, number: int, towards: int) -> float:
+        """Returns the distance in metres from a node to the start of its road towards another node."""
+        if number not in self._contacts:
+            node, others = self.design.node(number), self.design.neighbours[number]
+            distances = [0.0] * len(others)
+            if node.is_junction:
+                directions = [self.design.direction(number, other) for other in others]
+                try:
+                    profiles = [self.profile] * len(others)
+                    distances = contact_distances(junction_of(node), directions, profiles)
+                except UsageError as error:
+                    raise UsageError(f"node {number}: {error}") from error
+            self._contacts[number] = dict(zip(others, distances, strict=True))
+        return self._contacts[number][towards]
+
+    def add_road(self, nodes: tuple[int, ...]) -> None:
+        """Builds the road along nodes, from a junction or end to the next."""
+        design = self.design
+        start, end = nodes[0], nodes[-1]
+        before, after = self._contact(start, nodes[1]), self._contact(end, nodes[-2])
+        pieces = self._pieces(nodes, before, after)
+        length = sum(piece.length for piece in pieces)
+        check_length(length)
+        x, y, z = design.node(start).at
+        heading = design.direction(start, nodes[1])
+        plan = PieceCurve(x + before * math.cos(heading), y + before * math.sin(heading), heading, pieces)
+        heights = climb_between(z, design.node(end).at[2], plan.length)
+        road = self.builder.add(Road(plan, heights, profile=self.profile))
+        self._roads[nodes] = road
+        self._ends[start, nodes[1]] = RoadEnd(road, "start")
+        self._ends[end, nodes[-2]] = RoadEnd(road, "end")
+
+    def _pieces(self, nodes: Sequence[int], before: float, after: float) -> tuple[Piece, ...]:
+        """Returns the straights and curves of a road that begins and ends so many metres from its nodes."""
+        pieces: list[Piece] = []
+        taken, curve = before, tuple[Piece, ...]()
+        for n, (one, other) in enumerate(pairwise(nodes), 1):
+            (x, y, _), (to_x, to_y, _) = self.design.node(one).at, self.design.node(other).at
+            needed, following = after, tuple[Piece, ...]()
+            if n < len(nodes) - 1:
+                turn = self.design.direction(other, nodes[n + 1]) - self.design.direction(one, other)
+                needed, following = self._bend(other, float(wrap_angle(turn)))
+            distance = math.hypot(to_x - x, to_y - y)
+            free = distance - taken - needed
+            if free < (SHORTEST if len(nodes) == 2 else 0.0):
+                raise UsageError(
+                    f"nodes {one} and {other} are {distance:.1f} m apart, and their junctions or bends take "
+                    f"{taken + needed:.1f} m of the road between them; move them apart, or give a smaller "
+                    "kerb or radius"
+                )
+            pieces += [*curve, Piece(free)]
+            taken, curve = needed, following
+        return joined(pieces)
+
+    def _bend(self, number: int, turn: float) -> tuple[float, tuple[Piece, ...]]:
+        """Returns the metres that a bend takes of the straights before and behind it, and its curve."""
+        if abs(turn) < NO_TURN:
+            return 0.0, ()
+        tangent = (self.design.node(number).radius or BEND) * tangent_length(abs(turn))
+        return tangent, curve_between(tangent, tangent, turn)
+
+    def add_junction(self, number: int, node: MapNode) -> None:
+        """Builds the junction or roundabout at a node, to which all roads are built already."""
+        others = self.design.neighbours[number]
+        directions = [self.design.direction(number, other) for other in others]
+        stubs = []
+        for other, direction in zip(others, directions, strict=True):
+            end = self._ends[number, other]
+            station = 0.0 if end.contact == "start" else self.builder.roads[end.road].road.length
+            stubs.append(Stub(end, direction, self.profile, station))
+        signs, distances = signs_at(node, directions), [self._contact(number, other) for other in others]
+        if node.kind == "roundabout":
+            self._built[number] = build_roundabout(
+                self.builder, node.at, node.radius or ISLAND, stubs, signs, node.kerb
+            )
+        else:
+            self._built[number] = build_crossing(
+                self.builder, junction_of(node).kind, node.at, stubs, distances, signs, node.kerb
+            )
+
+    def legs(self, network: Network) -> list[Leg]:
+        """Returns the legs of the route through the finished network."""
+        driven = list(self.design.driven)
+        if len(driven) == 1:
+            is_along = driven[0] in self._roads
+            return [Leg(self._road(driven[0]), -1 if is_along else 1)]
+        passed = [self._road(driven[0])]
+        for before, nodes in pairwise(driven):
+            passed += [*self._through(nodes[0], before[-2], nodes[1]), self._road(nodes)]
+        return legs_along(network, passed, {})
+
+    def _road(self, nodes: tuple[int, ...]) -> int:
+        """Returns the id of the road along nodes, in one direction or the other."""
+        return self._roads[nodes if nodes in self._roads else nodes[::-1]]
+
+    def _through(self, number: int, before: int, after: int) -> list[int]:
+        """Returns the ids of the roads through a junction, from the road towards one node to that towards
+        another.
+        """
+        built = self._built[number]
+        incoming, outgoing = self._ends[number, before], self._ends[number, after]
+        if isinstance(built, Junction):
+            ways = {(each.incoming, each.outgoing): each.road for each in built.connections}
+            return [ways[incoming, outgoing]]
+        others = self.design.neighbours[number]
+        first = others.index(before)
+        turned = replace(
+            built,
+            junctions=(*built.junctions[first:], *built.junctions[:first]),
+            ring=(*built.ring[first:], *built.ring[:first]),
+        )
+        return roads_around(self.builder, turned, (others.index(after) - first) % len(others))
+
+
+def junction_of(node: MapNode) -> JunctionDesign:
+    """Returns a junction of a route with the kind, kerb and island of a node."""
+    radius = ISLAND if node.radius is None else node.radius
+    return JunctionDesign.model_construct(
+        after=1, take=1, kind=cast(JunctionKind, node.kind), kerb=node.kerb, radius=radius
+    )

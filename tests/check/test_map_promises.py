@@ -1,0 +1,119 @@
+"""What a map must show of its Brief: blocks, kinds of junctions, signs and distances."""
+
+from typing import Any
+
+import pytest
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
+from roadgpt.check.map_measures import measured_map
+from roadgpt.network import Route, build_map, read_map_design
+from roadgpt.road import Site, World
+
+WORLD = World(site=Site(map_size=600))
+
+
+def made(
+    nodes: list[tuple[float, float, str]], roads: list[list[int]], route: list[int], **more: Any
+) -> Route:
+    data: dict[str, Any] = {
+        f"node{n}": {"at": [x, y, 0], "kind": kind, **(more if kind not in ("end", "bend") else {})}
+        for n, (x, y, kind) in enumerate(nodes, 1)
+    }
+    return build_map(read_map_design({**data, "roads": roads, "route": route})[0], WORLD)
+
+
+def grid(**more: Any) -> Route:
+    """Two by one blocks with sides of 80 m, and one road that leads out."""
+    nodes = [(100 + 80 * i, 100 + 80 * j, "bend") for j in range(2) for i in range(3)]
+    nodes[0], nodes[1], nodes[4] = (
+        (100, 100, "t_junction"),
+        (180, 100, "t_junction"),
+        (180, 180, "t_junction"),
+    )
+    nodes.append((60, 100, "end"))
+    roads = [[1, 2], [2, 3], [3, 6], [6, 5], [5, 4], [4, 1], [2, 5], [7, 1]]
+    return made(nodes, roads, [7, 1, 2, 5], **more)
+
+
+def village(**more: Any) -> Route:
+    """Crossroads, joined to a fork."""
+    nodes = [(200.0, 200.0, "crossroads"), (290.0, 200.0, "y_junction"), (160.0, 200.0, "end")]
+    nodes += [(200.0, 160.0, "end"), (200.0, 240.0, "end"), (310.0, 235.0, "end"), (310.0, 165.0, "end")]
+    return made(nodes, [[1, 2], [3, 1], [4, 1], [5, 1], [2, 6], [2, 7]], [3, 1, 2, 6], **more)
+
+
+def told(asked: str, route: Route) -> list[str]:
+    found = inspect(route, read_plan(asked), WORLD)
+    return [finding.sentence for finding in found if finding.rule == "promises"]
+
+
+def test_measures_of_a_grid_and_a_village() -> None:
+    found = measured_map(grid().network)
+    assert (found.blocks, found.ends, found.parts, len(found.nodes)) == (2, 1, 1, 3)
+    assert found.number("t_junction") == 3
+    assert sorted(found.distances) == pytest.approx([80, 80])
+    found = measured_map(village().network)
+    assert (found.blocks, found.ends, found.parts) == (0, 5, 1)
+    assert [node.kinds for node in found.nodes] == [("crossroads",), ("y_junction",)]
+
+
+@pytest.mark.parametrize(
+    ("asked", "control"),
+    [
+        ("map columns=2 rows=1", "none"),
+        ("map columns=1 rows=2", "none"),
+        ("map columns=2 rows=1 len=80", "none"),
+        ("map columns=2 rows=1 len=75..90 none", "none"),
+        ("map columns=2 rows=1 lights", "lights"),
+        ("map columns=2 rows=1 stop", "stop"),
+        ("map columns=2 rows=1 yield", "yield"),
+        ("map columns=2 rows=1 priority", "priority"),
+    ],
+)
+def test_a_grid_that_is_as_asked(asked: str, control: str) -> None:
+    assert told(asked, grid(control=control)) == []
+
+
+@pytest.mark.parametrize(
+    ("asked", "wanted"),
+    [
+        ("map columns=3 rows=1", "asked for 3 by 1 blocks, has 2"),
+        ("map columns=3 rows=3", "a grid of 3 by 3 blocks has 12 to 16 junctions, not 3 junctions"),
+        ("map columns=2 rows=1 len=100", "asked for 100 m between junctions, two are 80 m apart"),
+        (
+            "map columns=2 rows=1 lights",
+            "asked for traffic lights at all junctions, near (100, 100): no signs",
+        ),
+        ("map columns=2 rows=1 stop", "asked for stop signs at all junctions, near (100, 100): no signs"),
+    ],
+)
+def test_a_grid_that_is_not_as_asked(asked: str, wanted: str) -> None:
+    assert wanted in told(asked, grid())
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        "map crossroads; y_junction",
+        "map junction x2",
+        "map crossroads; junction",
+        "map crossroads x1..2; y_junction x1..3",
+        "map junction x2 len=90",
+    ],
+)
+def test_a_village_that_is_as_asked(asked: str) -> None:
+    assert told(asked, village()) == []
+
+
+@pytest.mark.parametrize(
+    ("asked", "wanted"),
+    [
+        ("map crossroads x2", "asked for 2 of the kind crossroads, has 1"),
+        ("map crossroads", "asked for 1 junctions in all, has 2"),
+        ("map crossroads; t_junction", "asked for 1 of the kind T-junction, has 0"),
+        ("map roundabout; junction", "asked for 1 to 2 of the kind roundabout, has 0"),
+    ],
+)
+def test_a_village_that_is_not_as_asked(asked: str, wanted: str) -> None:
+    assert wanted in told(asked, village())

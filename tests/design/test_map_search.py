@@ -1,0 +1,173 @@
+"""Maps of roads that the planner drafts: an outside referee, where it is at hand, sees what was asked for."""
+
+import importlib.util
+import json
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+from outside_judge import SHARED
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
+from roadgpt.design import draft, draft_road
+from roadgpt.design.room import world_for
+from roadgpt.drive import simulate
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.export import save
+from roadgpt.network import MapDesign, Route, build_map, made_from
+from roadgpt.road import CrossSection, Limits, Site, World
+from roadgpt.verdict import judge
+
+USUAL = World()
+CASES: dict[str, dict[str, Any]] = {
+    "map columns=3 rows=2": {"blocks": 6, "junctions": [8, 12]},
+    "map columns=3 rows=2 len=100 lights": {"blocks": 6, "junctions": [8, 12]},
+    "map columns=4 rows=3 stop": {"blocks": 12, "junctions": [16, 20]},
+    "map columns=1 rows=1": {"blocks": 1, "junctions": [2, 4]},
+    "map columns=5 rows=1 yield": {"blocks": 5},
+    "map crossroads x3": {"junctions": 3, "kinds": {"X": 3}},
+    "map crossroads x3; roundabout; t_junction x2": {
+        "junctions": 6,
+        "kinds": {"X": 3, "T": 2},
+        "roundabouts": 1,
+    },
+    "map t_junction x2; y_junction; roundabout stop": {
+        "junctions": 4,
+        "kinds": {"T": 2, "Y": 1},
+        "roundabouts": 1,
+        "controls": {"stop": 4},
+    },
+    "map star; y_junction x2; crossroads yield": {
+        "kinds": {"star": 1, "Y": 2, "X": 1},
+        "controls": {"yield": 4},
+    },
+    "map roundabout x3; t_junction lights": {"roundabouts": 3, "controls": {"lights": 4}},
+    "map junction x3": {"junctions": 3},
+    "map t_junction": {"junctions": 1, "kinds": {"T": 1}, "dead_ends": 3},
+}
+
+
+@pytest.fixture(scope="module")
+def referee() -> ModuleType:
+    """The outside referee of networks."""
+    path = SHARED / "referee_networks.py"
+    if not path.exists():
+        pytest.skip("the referee of networks is not at hand")
+    sys.path.insert(0, str(SHARED))
+    try:
+        spec = importlib.util.spec_from_file_location("referee_networks", path)
+        assert spec is not None
+        assert spec.loader is not None
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(SHARED))
+    return module
+
+
+def drafted(line: str, seed: int, world: World = USUAL) -> MapDesign:
+    """The map of a plan."""
+    found = draft(read_plan(line), world, seed=seed)
+    assert isinstance(found, MapDesign)
+    return found
+
+
+def route_of(line: str, seed: int, world: World = USUAL) -> Route:
+    """The route through the map of a plan."""
+    return build_map(drafted(line, seed, world), world)
+
+
+@pytest.mark.parametrize("line", CASES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_map_is_what_was_asked_for(line: str, seed: int, referee: ModuleType, tmp_path: Path) -> None:
+    world = world_for(read_plan(line), USUAL)
+    route = route_of(line, seed, world)
+    assert inspect(route, read_plan(line), world) == ()
+    save(route, tmp_path, ["opendrive"], world, "x")
+    way = json.loads((tmp_path / "x.route.json").read_text())
+    truth = {"map": {"connected": True, **CASES[line]}, "junctions": len(route.passages)}
+    holds, measured = referee.check(tmp_path / "x.xodr", way, truth)
+    assert all(holds.values()), (holds, measured["breaks"], measured["map"])
+    assert measured["faults"] == []
+
+
+def test_a_grid_of_three_by_two_blocks_fits_on_the_usual_map_and_longer_blocks_get_a_larger_one() -> None:
+    assert world_for(read_plan("map columns=3 rows=2"), USUAL).site.map_size == 250
+    larger = world_for(read_plan("map columns=3 rows=2 len=100"), USUAL)
+    assert larger.site.map_size > 250
+    assert inspect(route_of("map columns=3 rows=2 len=100", 3, larger), None, larger) == ()
+    given = World(site=Site(map_size=120))
+    assert world_for(read_plan("map columns=3 rows=2"), given).site.map_size == 120
+
+
+def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
+    small = World(site=Site(map_size=120))
+    with pytest.raises(DesignError, match=r"no place on a map of 120 m; ask for fewer or shorter blocks, or"):
+        drafted("map columns=3 rows=2", 1, small)
+    with pytest.raises(DesignError, match=r"no place on a map of 120 m; ask for fewer junctions, or give"):
+        drafted("map crossroads x5", 1, small)
+    with pytest.raises(DesignError, match="give other numbers"):
+        drafted("map columns=2 rows=2 len=20", 1)
+    with pytest.raises(UsageError, match="leave out --lanes"):
+        drafted("map columns=2 rows=1", 1, World(section=CrossSection(lanes="2+1")))
+
+
+def test_where_maps_do_not_belong_they_are_refused() -> None:
+    with pytest.raises(DesignError, match="single roads only"):
+        draft_road(read_plan("map columns=2 rows=1"), USUAL)
+    with pytest.raises(DesignError, match="without junctions"):
+        draft(read_plan("map columns=2 rows=1"), USUAL, designer="thesis")
+
+
+def test_the_same_seed_gives_the_same_map_and_another_seed_another() -> None:
+    line = "map crossroads x2; roundabout"
+    one, same, other = (json.dumps(drafted(line, seed).to_json()) for seed in (7, 7, 8))
+    assert one == same
+    assert one != other
+
+
+def test_routes_are_long_enough_and_turn_to_both_sides_where_they_can() -> None:
+    for seed in range(8):
+        route = route_of("map columns=3 rows=2", seed)
+        assert route.length > 100
+        turns = [
+            (float(route.heading(each.end) - route.heading(each.start)) + 4) % 6.283 - 4
+            for each in route.passages
+        ]
+        assert max(turns) > 0.5
+        assert min(turns) < -0.5
+
+
+def test_limits_of_the_world_are_kept() -> None:
+    world = World(limits=Limits(min_radius=25.0, max_grade=0.05))
+    for line in ("map columns=2 rows=1", "map t_junction x3"):
+        assert inspect(route_of(line, 2, world), read_plan(line), world) == ()
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("line", ["map columns=2 rows=2 stop", "map crossroads; roundabout; t_junction x2"])
+def test_the_reference_driver_keeps_its_lane(line: str, seed: int) -> None:
+    world = World(limits=Limits(speed_limit=50 / 3.6))
+    road = made_from(drafted(line, seed, world), world)
+    assert judge(road, simulate(road, world, "reference", seed), world).kept
+
+
+def test_searches_refuse_maps() -> None:
+    from roadgpt.campaign.search import settings_of
+
+    class Asked:
+        """Stands for a cell of a campaign that asks for a map."""
+
+        brief = read_plan("map columns=2 rows=1")
+        generator = "genetic"
+        settings = ()
+
+        class request:  # noqa: N801
+            class setup:  # noqa: N801
+                geometry = "arcs"
+
+    with pytest.raises(UsageError, match="searches roads without junctions"):
+        settings_of(Asked)  # type: ignore[arg-type]

@@ -1,0 +1,98 @@
+"""Laws of maps: roads join, all of them are connected, and what is written is read."""
+
+import json
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from network.random_maps import PLANS, WORLD, map_route, random_map
+from network.test_laws import pose
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
+from roadgpt.check.map_measures import measured_map
+from roadgpt.design.map_search import MapSearch
+from roadgpt.network import RoadEnd, read_map_design, road_from_json
+from roadgpt.network.map_growing import signs_at
+
+settled = settings(max_examples=25, deadline=None)
+seeds = st.integers(0, 10_000)
+EXACT = 1e-6  # m and rad
+
+
+@given(seeds)
+@settled
+def test_connecting_roads_begin_and_end_on_the_arms(seed: int) -> None:
+    network = map_route(seed).network
+    for junction in network.junctions:
+        for each in junction.connections:
+            start = pose(network, RoadEnd(each.road, "start"), inwards=False)
+            end = pose(network, RoadEnd(each.road, "end"), inwards=True)
+            assert start == pytest.approx(pose(network, each.incoming, inwards=True), abs=EXACT)
+            assert end == pytest.approx(pose(network, each.outgoing, inwards=False), abs=EXACT)
+
+
+@given(seeds)
+@settled
+def test_a_map_is_connected_and_breaks_no_rule(seed: int) -> None:
+    route = map_route(seed)
+    assert measured_map(route.network).parts == 1
+    assert inspect(route, read_plan(PLANS[seed % len(PLANS)]), WORLD) == ()
+
+
+@given(seeds)
+@settled
+def test_what_is_written_is_read(seed: int) -> None:
+    design, route = random_map(seed), map_route(seed)
+    again, remarks = read_map_design(json.loads(json.dumps(design.to_json())))
+    assert again == design
+    assert remarks == ()
+    assert again.to_json() == design.to_json()
+    written = json.loads(json.dumps(route.on_ground().to_json()))
+    assert road_from_json(written).to_json() == written
+
+
+@given(seeds)
+@settled
+def test_the_same_seed_gives_the_same_map(seed: int) -> None:
+    brief = read_plan(PLANS[seed % len(PLANS)])
+    again = MapSearch(brief, WORLD, np.random.default_rng(seed)).run()
+    assert json.dumps(again.to_json()) == json.dumps(random_map(seed).to_json())
+
+
+@given(seeds)
+@settled
+def test_the_route_passes_the_junctions_that_the_design_names(seed: int) -> None:
+    design, route = random_map(seed), map_route(seed)
+    named = [design.node(n).at for n in design.route[1:-1] if design.node(n).is_junction]
+    assert [each.entered.node for each in route.passages] == named
+    start, end = (design.node(design.route[n]) for n in (0, -1))
+    if start.kind == end.kind == "end":
+        assert route.at(0.0) == pytest.approx(start.at)
+        assert route.at(route.length) == pytest.approx(end.at, abs=EXACT)
+
+
+@given(seeds)
+@settled
+def test_bends_are_as_wide_as_the_design_says(seed: int) -> None:
+    design = random_map(seed)
+    least = min((node.radius or 20.0 for node in design.nodes if node.kind == "bend"), default=None)
+    plans = [each.road.plan for each in map_route(seed).network.plain_roads]
+    bends = [abs(piece.k0) for plan in plans for piece in plan.pieces if piece.k0 == piece.k1 != 0]
+    rings = [node.radius for node in design.nodes if node.kind == "roundabout"]
+    widest = max([1 / least] if least else [0.0], default=0.0)
+    assert all(k <= widest + 1e-9 or any(k == pytest.approx(1 / r) for r in rings if r) for k in bends)
+
+
+@given(seeds)
+@settled
+def test_the_main_road_of_a_junction_has_no_sign(seed: int) -> None:
+    design = random_map(seed)
+    for number, node in enumerate(design.nodes, 1):
+        if not node.is_junction or node.kind == "roundabout" or node.control not in ("stop", "yield"):
+            continue
+        directions = [design.direction(number, other) for other in design.neighbours[number]]
+        signs = signs_at(node, directions)
+        assert signs.count("priority") == 2
+        assert signs.count(node.control) == len(directions) - 2
