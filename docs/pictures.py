@@ -39,6 +39,9 @@ COMMANDS = {
     "-n 3 --seed 4 --speed-limit 50 --out junctions",
     "ramp": "roadgpt run --plan '| lanes=2 len=300 motorway // diverge ramp' "
     "--seed 1 --speed-limit 80 --out ramp",
+    "grid": "roadgpt run --plan 'map columns=3 rows=2 lights' -n 2 --seed 4 --speed-limit 50 --out grid",
+    "village": "roadgpt run --plan 'map crossroads x3; roundabout; t_junction x2' "
+    "-n 2 --seed 5 --speed-limit 50 --out village",
     "junctions.html": "roadgpt view junctions/runs/0001 --out junctions.html",
     "thesis/report.html": "roadgpt study thesis --roads 100 --out thesis",
 }
@@ -67,6 +70,16 @@ def junctions(work: Path) -> Image.Image:
 def ramp(work: Path) -> Image.Image:
     """Returns the exit of a motorway from above."""
     return Image.open(made(work, "ramp") / "runs" / "0001" / "birds_eye.png")
+
+
+def maps(work: Path) -> Image.Image:
+    """Returns two maps from above, side by side."""
+    both = [Image.open(made(work, name) / "runs" / "0001" / "birds_eye.png") for name in ("grid", "village")]
+    height = max(each.height for each in both)
+    whole = Image.new("RGB", (sum(each.width for each in both), height), "white")
+    whole.paste(both[0])
+    whole.paste(both[1], (both[0].width, 0))
+    return whole
 
 
 def junctions_view(work: Path) -> Image.Image:
@@ -159,6 +172,7 @@ PICTURES = {
     "junctions": junctions,
     "junctions-view": junctions_view,
     "ramp": ramp,
+    "maps": maps,
     "study": study,
     "lane-finder": lane_finder,
 }

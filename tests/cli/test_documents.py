@@ -21,7 +21,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
 from roadgpt.cli.command_table import EARLIER_OPTIONS, renamed
-from roadgpt.network import build_route, read_network_design
+from roadgpt.network import build_map, build_route, read_map_design, read_network_design
 from roadgpt.road import World, build, read_design
 from roadgpt.run.folder_names import slug
 
@@ -68,7 +68,7 @@ def test_the_rule_in_the_docs_objects_to_a_straight_road() -> None:
 
 
 def test_the_design_in_the_docs_is_one() -> None:
-    text, _ = blocks("docs/reference/design-format.md", "json")
+    text, *_ = blocks("docs/reference/design-format.md", "json")
     design, remarks = read_design(json.loads(text))
     assert build(design).length == pytest.approx(40 + 35 + 30)
     assert remarks == ()
@@ -86,6 +86,14 @@ def test_the_designs_with_junctions_in_the_docs_are_valid(page: str, number: int
     assert remarks == ()
     route = build_route(design, World())
     assert [each.entered.kind for each in route.passages] == kinds
+    assert inspect(route, None, World()) == ()
+
+
+def test_the_map_in_the_docs_is_valid() -> None:
+    design, remarks = read_map_design(json.loads(blocks("docs/reference/design-format.md", "json")[-1]))
+    assert remarks == ()
+    route = build_map(design, World())
+    assert [each.entered.kind for each in route.passages] == ["t_junction", "roundabout"]
     assert inspect(route, None, World()) == ()
 
 
