@@ -30,10 +30,10 @@ from roadgpt.network.network import JunctionKind
 from roadgpt.road.design import Finite, FrozenFields, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
 
-KEY = re.compile(r"node(\d{1,6})")
-MOST_NODES = 2000
-MOST_ROADS = 4000
-MOST_PASSED = 4000
+KEY = re.compile(r"node([1-9][0-9]{0,5})")
+MOST_NODES = 400
+MOST_ROADS = 800
+MOST_PASSED = 1000
 """The largest number of nodes that a route may pass."""
 BEND = 20.0  # m, radius of a bend that has none
 
