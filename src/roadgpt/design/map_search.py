@@ -10,6 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from roadgpt import check
+from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import Control
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
@@ -29,6 +30,9 @@ BUILT = 30  # drafts that fit and break a rule, after which the search is given 
 TRIED = 40  # drafts that show whether maps of some size are large enough
 TRIALS = (1, 2)  # seeds of these searches
 NO_HASTE = 8  # drafts without haste
+HURRIED = 0.12  # of haste from the start on, for each junction beyond the first ones
+FEW = 2.0  # junctions, which need no haste on the usual map
+PARTS = 250.0  # m, the usual map
 LEANING = 14.0  # degrees, by which a grid may be turned, so that its columns still run from south to north
 TURNS = 24  # turns that are tried
 TIGHTEST = 1.05  # times the smallest radius allowed, of bends
@@ -66,8 +70,8 @@ class MapSearch:
         profile_of_map(None, self.world)
         built = 0
         for number in range(drafts):
-            haste = min(1.0, max(0.0, (number - NO_HASTE) / (drafts / 2)) ** 0.5)
-            design = self._draft(haste)
+            haste = max(0.0, (number - NO_HASTE) / (drafts / 2)) ** 0.5
+            design = self._draft(min(max(haste, self._least_haste), 1.0))
             if design is None:
                 continue
             built += 1
@@ -82,6 +86,13 @@ class MapSearch:
             if built == BUILT:
                 break
         raise DesignError(self._advice())
+
+    @property
+    def _least_haste(self) -> float:
+        """The haste from the start on: many junctions find no place on the map otherwise."""
+        count = sum(max(each.lo, 1.0) for each in (span(kind.count) for kind in self.asked.junctions))
+        share = PARTS / self.world.site.map_size
+        return HURRIED * max(count * share**2 - FEW, 0.0)
 
     def _draft(self, haste: float) -> MapDesign | None:
         """Returns a draft on the map; None if it found no place."""
