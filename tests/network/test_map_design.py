@@ -92,6 +92,7 @@ def test_a_road_may_lead_back_to_its_junction_and_a_route_back_at_a_roundabout()
         ({"node1": {"kind": "bend"}}, "node 1 is a bend, which has 2 roads, and here it has 1 road; change"),
         ({"node3": {"kind": "end"}}, "node 3 is an end, which has 1 road, and here it has 2 roads;"),
         ({"node4": {"radius": 4}}, "node 4: an island with a radius of 4 m is too small for its arms; give"),
+        ({"node3": {"radius": 3}}, "node 3: a bend with a radius of 3 m is tighter than the lane beside"),
         ({"node3": {"radius": 60}}, "nodes 2 and 3 are 70.0 m apart, and their junctions or bends take"),
         ({"node1": {"at": [80.5, 80, 0]}}, "nodes 1 and 2 are less than 1 m apart; move them apart"),
         ({"node1": {"at": [150, 100, 0]}}, "from node 2 to nodes 3 and 1 are 16 degrees apart, and 25 are"),

@@ -157,7 +157,13 @@ class _MapGrowth:
         """Returns the metres that a bend takes of the straights before and behind it, and its curve."""
         if abs(turn) < NO_TURN:
             return 0.0, ()
-        tangent = (self.design.node(number).radius or BEND) * tangent_length(abs(turn))
+        radius, width = self.design.node(number).radius or BEND, float(self.profile.width(0.0))
+        if radius < width:
+            raise UsageError(
+                f"node {number}: a bend with a radius of {radius:g} m is tighter than the lane beside it is "
+                f"wide; give a radius of {width:g} m or more"
+            )
+        tangent = radius * tangent_length(abs(turn))
         return tangent, curve_between(tangent, tangent, turn)
 
     def add_junction(self, number: int, node: MapNode) -> None:
