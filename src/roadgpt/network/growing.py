@@ -140,7 +140,7 @@ class _RouteGrowth:
             built = build_crossing(
                 self.builder, junction.kind, node, stubs, distances, controls, junction.kerb
             )
-            self.passed.append(_way(built.connections, stubs[0], stubs[to]))
+            self.passed.append(_way(built.connections, stubs[0].end, stubs[to].end))
         self.passed.append(stubs[to].end.road)
 
 
@@ -155,7 +155,7 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         before: The cross-section of the road on which the route arrives.
         after: The cross-section of the road on which it goes on.
     """
-    width, shoulder = float(after.width(FAR)), after.shoulder_width
+    width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring = (junction.ring_lanes, junction.ring_lanes)
     counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
     side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
@@ -165,14 +165,14 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     ]
 
 
-def _way(connections: Sequence[Connection], start: Stub, end: Stub) -> int:
-    """Returns the id of the connecting road from one arm to another.
+def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
+    """Returns the id of the connecting road from one road to another.
 
     Raises:
         UsageError: There is none.
     """
     for each in connections:
-        if (each.incoming, each.outgoing) == (start.end, end.end):
+        if (each.incoming, each.outgoing) == (start, end):
             return each.road
     raise UsageError("the route cannot go on there: no lane leads out of the junction; give that road a lane")
 
@@ -262,14 +262,14 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
 
 def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
     """Returns the ids of the roads around a roundabout, from its first arm to the arm with index ``to``."""
-    mouths = {each.id: each.connections for each in builder.junctions if each.id in ring.junctions}
-    passed = [mouths[ring.junctions[0]][2].road]
-    count = len(ring.ring)
-    for n in range((to - 1) % count + 1):
-        passed.append(ring.ring[n])
-        along, off, _ = mouths[ring.junctions[(n + 1) % count]]
-        is_last = n == (to - 1) % count
-        passed.append((off if is_last else along).road)
+    mouths = {each.id: each for each in builder.junctions if each.id in ring.junctions}
+    count, last = len(ring.ring), (to - 1) % len(ring.ring)
+    entered = mouths[ring.junctions[0]]
+    passed = [_way(entered.connections, entered.arms[0].end, RoadEnd(ring.ring[0], "start"))]
+    for n in range(last + 1):
+        mouth = mouths[ring.junctions[(n + 1) % count]]
+        after = mouth.arms[0].end if n == last else RoadEnd(ring.ring[(n + 1) % count], "start")
+        passed += [ring.ring[n], _way(mouth.connections, RoadEnd(ring.ring[n], "end"), after)]
     return passed
 
 

@@ -69,5 +69,5 @@ def _ways(network: Network, one: int, two: int) -> Ways:
         return {way.own: way.outgoing for way in found[1].lanes}
     for each in network.continuations:
         if (each.before.road, each.after.road) == (one, two):
-            return dict(each.lanes)
+            return {lane: after for lane, after in each.lanes if lane < 0}
     raise UsageError(f"no way leads from road {one} to road {two}")

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from roadgpt.geometry import CubicProfile
-from roadgpt.network.building import Builder, Stub, connecting_road
+from roadgpt.network.building import Builder, Stub, connecting_road, width_at
 from roadgpt.network.lane_design import RampDesign
 from roadgpt.network.network import Arm, Connection, Continuation, Junction, LaneLink, RoadEnd
 from roadgpt.network.pose import NetworkPose
@@ -26,6 +26,7 @@ ANGLE = math.radians(8.0)  # between the ramp and the main road
 CONTACT = 25.0  # m, from the node to each contact
 TAPER = 60.0  # m, of the lane for acceleration or deceleration: RAA 2008, entries and exits
 BESIDE = 60.0  # m, of the road that the route does not take
+FAR = 1e6  # m, a station behind all changes of a cross-section
 
 LanePairs = tuple[tuple[int, int], ...]
 
@@ -105,19 +106,20 @@ class RampBuilder:
 
     def _merge(self, going_on: int) -> list[int]:
         by_ramp, node = self.ramp.take == "ramp", self._node
-        width = _width(self.after)
+        after = _constant(self.after, 0.0)
+        width = _width(after)
         length, full = length_beside(self.ramp), self.ramp.length
         lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
-        beside = self._straight(node.ahead(CONTACT), length, _with_lane(self.after, lane))
+        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane))
         self._continue(beside, going_on)
         if by_ramp:
-            main = self._straight(node.ahead(-CONTACT - BESIDE), BESIDE, self.after)
+            main = self._straight(node.ahead(-CONTACT - BESIDE), BESIDE, after)
             ramp = self.arrival
         else:
             from_ramp = NetworkPose(node.point, node.heading + ANGLE)
             main, ramp = (
                 self.arrival,
-                self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, self._ramp()),
+                self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, _ramp_beside(after)),
             )
         junction = self.builder.number()
         stubs = [self._stub(main, "end"), self._stub(ramp, "end"), self._stub(beside, "start")]
@@ -132,15 +134,16 @@ class RampBuilder:
 
     def _exit(self, going_on: int) -> list[int]:
         by_ramp, node = self.ramp.take == "ramp", self._node
-        width, length = _width(self.before), length_beside(self.ramp)
-        lane = CubicProfile.smooth([(0.0, 0.0), (TAPER, width)])
-        beside = self._straight(self.end, length, _with_lane(self.before, lane))
+        before, length = _constant(self.before, FAR), length_beside(self.ramp)
+        lane = CubicProfile.smooth([(0.0, 0.0), (TAPER, _width(before))])
+        beside = self._straight(self.end, length, _with_lane(before, lane))
         self._continue(self.arrival, beside)
         if by_ramp:
-            main, ramp = self._straight(node.ahead(CONTACT), BESIDE, self.before), going_on
+            main, ramp = self._straight(node.ahead(CONTACT), BESIDE, before), going_on
         else:
             onto_ramp = NetworkPose(node.point, node.heading - ANGLE)
-            main, ramp = going_on, self._straight(onto_ramp.ahead(CONTACT), BESIDE, self._ramp())
+            ramp = self._straight(onto_ramp.ahead(CONTACT), BESIDE, _ramp_beside(before))
+            main = going_on
         junction = self.builder.number()
         stubs = [self._stub(beside, "end"), self._stub(ramp, "start"), self._stub(main, "start")]
         count = len(stubs[2].out_of)
@@ -151,12 +154,6 @@ class RampBuilder:
         ]
         self._close(junction, stubs, ways)
         return [beside, ways[1 if by_ramp else 0].road]
-
-    def _ramp(self) -> Profile:
-        """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
-        main = self.before
-        made = Profile.of(1, 0, _width(main), main.shoulder_width)
-        return replace(made, offset=float(main.edges(0.0).right))
 
     def _straight(self, start: NetworkPose, length: float, profile: Profile) -> int:
         segment = Segment(distance=length, direction="straight")
@@ -204,10 +201,24 @@ class RampBuilder:
         self.builder.junctions.append(made)
 
 
+def _constant(profile: Profile, s: float) -> Profile:
+    """Returns the cross-section that a road has at a station, as one that does not change along a road."""
+    left, right = (
+        tuple(replace(lane, width=width_at(lane.width, s)) for lane in side)
+        for side in (profile.left, profile.right)
+    )
+    return replace(profile, left=left, right=right, offset=width_at(profile.offset, s))
+
+
+def _ramp_beside(main: Profile) -> Profile:
+    """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
+    made = Profile.of(1, 0, _width(main), main.shoulder_width)
+    return replace(made, offset=float(main.edges(0.0).right))
+
+
 def _width(profile: Profile) -> float:
-    """Returns the width in metres of the rightmost lane."""
-    width = profile.right[profile.count[0] - 1].width
-    return float(width.height(0.0)) if isinstance(width, CubicProfile) else width
+    """Returns the width in metres of the rightmost lane, at the start of the road."""
+    return width_at(profile.right[profile.count[0] - 1].width, 0.0)
 
 
 def _with_lane(profile: Profile, width: CubicProfile) -> Profile:

@@ -10,10 +10,10 @@ from dataclasses import replace
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
+from roadgpt.network.building import width_at
 from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
 from roadgpt.network.lane_design import MEDIAN, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.road import Profile, World
-from roadgpt.road.profile import Width
 from roadgpt.road.world import OWN
 
 MAIN = LanesDesign(forward=2, backward=0)
@@ -66,10 +66,9 @@ def profiles_between(
     for n, length in enumerate(lengths):
         before, after = around[n], around[n + 1]
         found[n] = replace(found[n], offset=offsets[n])
-        if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop":
-            found[n] = _tapered(found[n], after, length, is_end=True)
-        if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain":
-            found[n] = _tapered(found[n], before, length, is_end=False)
+        gain = before if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain" else None
+        drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
+        found[n] = _tapered(found[n], gain, drop, length)
         is_ramp = _is_ramp(after, "merge") or _is_ramp(before, "diverge")
         if is_ramp and (lanes[n].forward, lanes[n].backward) != (1, 0):
             raise UsageError(
@@ -148,18 +147,27 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
     return made if lanes.centre is None else replace(made, centre_marking=lanes.centre)
 
 
-def _tapered(profile: Profile, place: LanesChangeDesign, length: float, is_end: bool) -> Profile:
-    """Returns the cross-section with a lane whose width falls to 0 at the end, or rises from 0."""
-    count = profile.count[0]
-    index = 0 if place.side == "left" else count - 1
-    full = profile.right[index].width
-    assert not isinstance(full, CubicProfile)
-    run = min(place.length, MOST_OF_ROAD * length)
-    knots = [(0.0, full), (length - run, full), (length, 0.0)] if is_end else [(0.0, 0.0), (run, full)]
-    return _with_width(profile, index, CubicProfile.smooth(knots))
-
-
-def _with_width(profile: Profile, index: int, width: Width) -> Profile:
+def _tapered(
+    profile: Profile, gain: LanesChangeDesign | None, drop: LanesChangeDesign | None, length: float
+) -> Profile:
+    """Returns the cross-section with a lane whose width rises from 0 at the start, and one whose width falls
+    to 0 at the end. It may be the same lane.
+    """
+    first, last = (None if each is None else _index(each, profile) for each in (gain, drop))
+    most = MOST_OF_ROAD * length / (2 if first == last else 1)
     lanes = list(profile.right)
-    lanes[index] = replace(lanes[index], width=width)
+    for index, lane in enumerate(lanes):
+        full = width_at(lane.width, 0.0)
+        knots = [(0.0, full)]
+        if gain is not None and index == first:
+            knots = [(0.0, 0.0), (min(gain.length, most), full)]
+        if drop is not None and index == last:
+            knots += [(length - min(drop.length, most), full), (length, 0.0)]
+        if len(knots) > 1:
+            lanes[index] = replace(lane, width=CubicProfile.smooth(knots))
     return replace(profile, right=tuple(lanes))
+
+
+def _index(place: LanesChangeDesign, profile: Profile) -> int:
+    """Returns the index of the lane that ends or begins, counted from 0 at the centre line."""
+    return 0 if place.side == "left" else profile.count[0] - 1
