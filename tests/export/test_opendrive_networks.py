@@ -45,6 +45,7 @@ class WrittenRoad:
         self.length = float(element.attrib["length"])
         self.links = {link.tag: link.attrib for link in element.find("link") or ()}
         self.lanes = {int(lane.attrib["id"]): lane for lane in element.iter("lane")}
+        self.has_offset = self.element.find("lanes/laneOffset") is not None
         self.driven = {n for n, lane in self.lanes.items() if lane.attrib["type"] == "driving"}
 
     @cached_property
@@ -75,9 +76,12 @@ class WrittenRoad:
         return cubic(self.lanes[lane], s, "width", "sOffset")
 
     def border(self, lane: int, s: float) -> float:
-        """The offset t of the outer edge of a lane; the edge of lane 0 is the reference line."""
+        """The offset t of the outer edge of a lane; the edge of lane 0 lies where laneOffset says."""
         sign = 1 if lane > 0 else -1
-        return sign * sum(self.width(n, s) for n in self.lanes if n * sign > 0 and abs(n) <= abs(lane))
+        offset = cubic(self.element.find("lanes"), s, "laneOffset", "s") if self.has_offset else 0.0
+        return offset + sign * sum(
+            self.width(n, s) for n in self.lanes if n * sign > 0 and abs(n) <= abs(lane)
+        )
 
     def at(self, s: float, t: float) -> tuple[float, float]:
         x, y, heading = self.pose(s)

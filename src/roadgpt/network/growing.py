@@ -130,7 +130,11 @@ class _RouteGrowth:
                 side = (Segment(distance=arm.length or STUB, direction="straight"),)
                 road = self.builder.add(road_of(side, *start, profiles[n + 1], (True, False)))
             stubs.append(Stub(RoadEnd(road, "start"), direction, profiles[n + 1], 0.0))
-        controls = controls_of(junction)
+        # where no lane leads into the junction, nobody sees a sign
+        controls = [
+            control if stub.into else "none"
+            for control, stub in zip(controls_of(junction), stubs, strict=True)
+        ]
         to = 0 if taken is None else taken + 1
         if junction.kind == "roundabout":
             size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes

@@ -154,7 +154,8 @@ def _across(network: Network, arm: Arm) -> Array:
     s = member.road.length - half if at_end else half
     edges = member.profile.edges(s)
     outer = float(edges.right) + LINE if at_end else float(edges.left) - LINE
-    return member.road.at(np.full(2, s), np.array([0.0, outer]))
+    inner = float(member.profile.sides(s)[1 if at_end else 0])
+    return member.road.at(np.full(2, s), np.array([inner, outer]))
 
 
 def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) -> Array | None:
@@ -201,6 +202,6 @@ def place_of_sign(member: NetworkRoad, contact: Contact) -> tuple[float, float]:
     """
     before = min(BEFORE, member.road.length)
     s = member.road.length - before if contact == "end" else before
-    lanes = member.profile.right if contact == "end" else member.profile.left
-    t = sum(width_at(lane.width, s) for lane in lanes) + BESIDE
-    return s, -t if contact == "end" else t
+    side, lanes = (-1, member.profile.right) if contact == "end" else (1, member.profile.left)
+    aside = sum(width_at(lane.width, s) for lane in lanes) + BESIDE
+    return s, float(member.profile.sides(s)[1 if contact == "end" else 0]) + side * aside

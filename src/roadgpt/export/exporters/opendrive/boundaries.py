@@ -6,11 +6,11 @@ edge; a segment of type "lane" leads along the outer edge of a lane. Lane 0 has 
 line between the lanes of both directions, at which a connecting road begins.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from roadgpt.export.exporters.opendrive.kerbs import outermost
 from roadgpt.export.markup import Value, XmlElement
-from roadgpt.network import Junction, Network, RoadEnd
+from roadgpt.network import Connection, Junction, Network, RoadEnd
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -22,7 +22,7 @@ def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
     arms = [arm.end for arm in junction.arms]
     ways = {(each.incoming, each.outgoing): each for each in junction.connections}
     for n, end in enumerate(arms):
-        yield _across(network, end)
+        yield _across(junction, end)
         after = arms[(n + 1) % len(arms)]
         if (right := ways.get((end, after))) is not None:
             # traffic on the right that turns right into the next arm keeps to the kerb
@@ -32,16 +32,42 @@ def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
         elif (left := ways.get((after, end))) is not None:
             # along the central island of a roundabout, where there is no traffic on the other side
             yield _along(left.road, 0, "end", "start")
+        else:
+            yield from _between(network, ways, end, after)
 
 
-def _across(network: Network, end: RoadEnd) -> XmlElement:
-    """Returns the segment across the driving lanes of an arm.
+def _between(
+    network: Network, ways: Mapping[tuple[RoadEnd, RoadEnd], Connection], end: RoadEnd, after: RoadEnd
+) -> Iterator[XmlElement]:
+    """Yields the segments between two neighbouring arms which no way joins, as at a merge or an exit.
+
+    They lead along the ways from both arms to a third one, or from a third arm to both, to where these meet.
+    """
+    for third in dict.fromkeys(each for way in ways for each in way):
+        if (end, third) in ways and (after, third) in ways:
+            yield _right(network, ways[end, third])
+            yield _along(ways[after, third].road, 0, "end", "start")
+            return
+        if (third, end) in ways and (third, after) in ways:
+            yield _along(ways[third, end].road, 0, "end", "start")
+            yield _right(network, ways[third, after])
+            return
+
+
+def _right(network: Network, way: Connection) -> XmlElement:
+    return _along(way.road, -len(network.road(way.road).profile.right), "start", "end")
+
+
+def _across(junction: Junction, end: RoadEnd) -> XmlElement:
+    """Returns the segment across those lanes of an arm which lead on in the junction.
 
     Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
     to those that lead into it. Shoulders end at the junction.
     """
-    profile = network.road(end.road).profile
-    right, left = -profile.count[0], profile.left_ids[-1] if profile.count[1] else 0
+    lanes = [link.incoming for each in junction.connections if each.incoming == end for link in each.lanes]
+    lanes += [link.outgoing for each in junction.connections if each.outgoing == end for link in each.lanes]
+    right, left = min(lanes), max(lanes)
+    right, left = right if right < 0 else right - 1, left if left > 0 else left + 1
     first, last = (right, left) if end.contact == "start" else (left, right)
     return XmlElement(
         "segment",
