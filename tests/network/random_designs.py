@@ -109,7 +109,7 @@ def _place(rng: np.random.Generator, lanes: dict[str, Any], is_rightmost: bool) 
     forward, backward = lanes["forward"], lanes["backward"]
     allowed = {
         "crossing": True,
-        "roundabout": forward == 1 and backward < 2,
+        "roundabout": max(forward, backward) < 3,
         "main": True,
         "from ramp": (forward, backward) == (1, 0),
         "to ramp": True,
@@ -121,6 +121,8 @@ def _place(rng: np.random.Generator, lanes: dict[str, Any], is_rightmost: bool) 
     if what in ("crossing", "roundabout"):
         found = _junction(rng, (what,) if what == "roundabout" else CROSSINGS)
         behind = _lanes(rng) if rng.random() < 0.6 and what == "crossing" else None
+        if what == "roundabout":
+            found["ring_lanes"] = int(rng.integers(max(forward, backward), 3))
         return {**found, **({"lanes": behind} if behind else {})}, behind or lanes, False
     length = {"length": float(rng.uniform(10, 150))} if rng.random() < 0.7 else {}
     if what == "main":

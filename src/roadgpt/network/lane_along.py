@@ -6,7 +6,7 @@
 A lane change is a smooth curve from one lane to the next, within part of the road.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from roadgpt.road.profile import Lane, Width
 
 LONGEST = 65.0  # m, of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
 SHARE = 0.8  # of the room for a lane change, at most
+PARTS = 8  # cubics of a lane change
 ROUNDING = 1e-9
 
 
@@ -54,8 +55,11 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     oncoming: list[Width] = [lane.width for lane in profile.left[: count[1]]]
     length = road.length
     offsets = [added([(1, profile.offset), *((-1, w) for w in right[:k])], length) for k in lanes]
-    offset = _through(offsets, length)
-    width = _through([right[k] for k in lanes], length)
+    stations = {
+        s for each in (profile.offset, *right) if isinstance(each, CubicProfile) for s in each.stations
+    }
+    offset = _through(offsets, length, stations)
+    width = _through([right[k] for k in lanes], length, stations)
     oncoming.append(profile.median)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
@@ -87,7 +91,9 @@ def added(terms: Sequence[Term], length: float) -> Width:
     for _, width in terms:
         if isinstance(width, CubicProfile):
             inside |= {s for s in width.stations if 0 < s < length - ROUNDING}
-    stations = np.array(sorted(inside))
+    ordered = np.array(sorted(inside))
+    # of stations that differ by rounding only, the last one: from there on, every width has its next cubic
+    stations = ordered[np.append(np.diff(ordered) > ROUNDING, True)]
     total = np.zeros((len(stations), 4))
     for factor, width in terms:
         total += factor * cubics_at(width, stations)
@@ -107,25 +113,47 @@ def profile_of(stations: Array, table: Array) -> CubicProfile:
     return CubicProfile(tuple(stations.tolist()), tuple(rows))
 
 
-def _through(values: Sequence[Width], length: float) -> Width:
-    """Returns one width after another, with smooth changes between them."""
+def _through(values: Sequence[Width], length: float, stations: Iterable[float]) -> Width:
+    """Returns one width after another, with smooth changes between them.
+
+    ``stations`` are those at which any width of the road begins to change or ends to.
+    """
     found = values[0]
     for (start, end), after in zip(change_windows(length, len(values) - 1), values[1:], strict=True):
-        found = _blended(found, after, start, end, length)
+        knots = np.linspace(start, end, PARTS + 1)
+        own = [s for s in stations if start < s < end and np.abs(knots - s).min() > ROUNDING]
+        found = _blended(found, after, np.sort([*knots, *own]), length)
     return found
 
 
-def _blended(one: Width, other: Width, start: float, end: float, length: float) -> Width:
+def _blended(one: Width, other: Width, knots: Array, length: float) -> Width:
+    """Returns a width that changes to another one: between the knots, cubics with its values and slopes.
+
+    What lies beside the lane is then as wide as it is, and nowhere less than nothing.
+    """
     if one == other:
         return one
+    start, end = knots[0], knots[-1]
     before = added([(1, one), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
     after = added([(1, other), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
     assert isinstance(before, CubicProfile)
     assert isinstance(after, CubicProfile)
-    smooth = CubicProfile.smooth([(start, float(before.height(start))), (end, float(after.height(end)))])
-    early = [s for s in before.stations if s < start]
-    late = [s for s in after.stations if s > end]
+    smooth = CubicProfile.smooth([(start, 0.0), (end, 1.0)])
+    share, rise, step = smooth.height(knots), smooth.grade(knots), np.diff(knots)
+    value = (1 - share) * before.height(knots) + share * after.height(knots)
+    slope = (1 - share) * before.grade(knots) + share * after.grade(knots)
+    slope += rise * (after.height(knots) - before.height(knots))
+    mean = np.diff(value) / step
+    rows = [
+        value[:-1],
+        slope[:-1],
+        (3 * mean - 2 * slope[:-1] - slope[1:]) / step,
+        (slope[:-1] + slope[1:] - 2 * mean) / step**2,
+    ]
+    early = [s for s in before.stations if s < start - ROUNDING]
+    late = [s for s in after.stations if s > end + ROUNDING]
+    at_end = max([end, *(s for s in after.stations if abs(s - end) <= ROUNDING)])
     table = np.concatenate(
-        (before.cubics(np.array(early)), [smooth.coefficients[0]], after.cubics(np.array([end, *late])))
+        (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
     )
-    return profile_of(np.array([*early, start, end, *late]), table)
+    return profile_of(np.array([*early, *knots, *late]), table)
