@@ -1,12 +1,12 @@
 """Says which lanes lead where at a junction.
 
 Traffic that turns to the rightmost arm keeps to the rightmost lane, traffic that turns to the leftmost arm to
-the leftmost lane; all other ways on have all lanes, as many as both roads have.
+the leftmost lane; other ways on have all lanes, as many as both roads have. Where a lane would lead nowhere,
+every way has lanes of its own. Ways from one arm never cross.
 """
 
 import math
 from collections.abc import Iterator, Sequence
-from operator import or_
 
 from roadgpt.brief.junctions import side_of
 from roadgpt.geometry.curve import wrap_angle
@@ -28,21 +28,55 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
     others = [(start + n) % count for n in range(1, count)]
     exits = [j for j in others if stubs[start].into and stubs[j].out_of]
     turns = [side_of(_turn(stubs[start], stubs[j])) for j in exits]
-    into = len(stubs[start].into)
-    is_rightmost = [n == 0 and side == "right" and len(exits) > 1 for n, side in enumerate(turns)]
-    is_leftmost = [n == len(exits) - 1 and side == "left" and n > 0 for n, side in enumerate(turns)]
-    # without a way straight on, those to the left and to the right share all lanes
-    has_through = not all(map(or_, is_rightmost, is_leftmost))
-    left = 1 if has_through else max(into - into // 2, 1)
-    right = 1 if has_through else max(into // 2, 1)
+    into, room = len(stubs[start].into), [len(stubs[j].out_of) for j in exits]
+    turns_right = bool(exits) and turns[0] == "right" and len(exits) > 1
+    turns_left = bool(exits) and turns[-1] == "left" and len(exits) > 1
+    spans = _usual_spans(into, room, turns_right, turns_left)
+    if len({n for span in spans for n in span}) < min(into, sum(room)) and len(exits) <= into:
+        spans = _spans_of_their_own(into, room, turns_right, turns_left)
     for n, j in enumerate(exits):
-        out_of = len(stubs[j].out_of)
-        if is_rightmost[n]:
-            lanes = min(right, out_of)
-            yield j, tuple((into - lanes + k, out_of - lanes + k) for k in range(lanes))
+        lanes = spans[n]
+        beside = room[n] - len(lanes) if turns_right and n == 0 else 0
+        yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
+
+
+def _usual_spans(into: int, room: Sequence[int], turns_right: bool, turns_left: bool) -> list[range]:
+    """Returns the lanes that lead to each exit, where exits may share lanes.
+
+    Args:
+        into: The number of lanes that lead into the junction.
+        room: The number of lanes of each exit, from the right to the left.
+        turns_right: Whether the first exit is for traffic that turns right.
+        turns_left: Whether the last exit is for traffic that turns left.
+    """
+    through = len(room) - turns_right - turns_left
+    # without a way straight on, those to the left and to the right share all lanes
+    left = 1 if through else max(into - into // 2, 1)
+    right = 1 if through else max(into // 2, 1)
+    found = []
+    for n, most in enumerate(room):
+        if turns_right and n == 0:
+            found.append(range(into - min(right, most), into))
+        elif turns_left and n == len(room) - 1:
+            found.append(range(min(left, most)))
         else:
-            lanes = min(left if is_leftmost[n] else into, out_of)
-            yield j, tuple((k, k) for k in range(lanes))
+            place = len(room) - 1 - turns_left - n  # 0 for the leftmost way on
+            first, last = (round(k * (into - 1) / through) for k in (place, place + 1))
+            found.append(range(first, min(last + 1, first + most)))
+    return found
+
+
+def _spans_of_their_own(into: int, room: Sequence[int], turns_right: bool, turns_left: bool) -> list[range]:
+    """Returns the lanes that lead to each exit, where no lane leads to two exits; see ``_usual_spans``."""
+    sizes = [1] * len(room)
+    order = range(turns_right, len(room) - turns_left), range(len(room))
+    for n in (n for each in order for n in each):
+        sizes[n] = min(room[n], sizes[n] + into - sum(sizes))
+    found = []
+    for n, size in enumerate(sizes):
+        first = into - size if turns_right and n == 0 else sum(sizes[n + 1 :])
+        found.append(range(first, first + size))
+    return found
 
 
 def _turn(start: Stub, end: Stub) -> float:
