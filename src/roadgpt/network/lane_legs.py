@@ -25,6 +25,8 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
         UsageError: Two roads are not joined, or a lane that the route needs cannot be reached.
     """
     ways = [_ways(network, one, two) for one, two in pairwise(roads)]
+    fit = _fit(network, roads, ways, shifts)
+    ways = [_kept(each, lanes) for each, lanes in zip(ways, fit[1:], strict=True)]
     lane = _first(ways[0] if ways else {-1: -1}, shifts.get(roads[0], 0))
     found: list[Leg] = []
     for n, road in enumerate(roads):
@@ -48,6 +50,26 @@ def _first(ways: Ways, shift: int) -> int:
     target = max(ways, key=abs)
     side = 1 if target > 0 else -1
     return target + side * shift
+
+
+def _fit(
+    network: Network, roads: Sequence[int], ways: Sequence[Ways], shifts: Mapping[int, int]
+) -> list[set[int]]:
+    """Returns for each road the lanes in which one can enter it, so that there is a lane for its lane change,
+    and for the one on the next road.
+    """
+    found: list[set[int]] = [set()] * len(roads)
+    for n, road in reversed(list(enumerate(roads))):
+        lanes, shift = range(-network.road(road).profile.count[0], 0), shifts.get(road, 0)
+        found[n] = {lane for lane in lanes if lane + shift in lanes}
+        if shift and n < len(ways):
+            found[n] = {lane for lane in found[n] if ways[n].get(lane + shift) in found[n + 1]} or found[n]
+    return found
+
+
+def _kept(ways: Ways, lanes: set[int]) -> Ways:
+    """Returns the ways that lead to some lanes; all, if there is none."""
+    return {lane: after for lane, after in ways.items() if after in lanes} or ways
 
 
 def _beside(network: Network, road: int, lane: int, left: int) -> int:
