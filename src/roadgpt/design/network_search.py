@@ -56,11 +56,6 @@ ROOM_TO_TURN = 20.0  # m, of a road whose length is required and that is partly 
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
 
 
-def is_kind(place: PlaceDesign, kind: str) -> bool:
-    """Returns whether a place is of this kind."""
-    return place.kind == kind
-
-
 Draft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
 
@@ -195,9 +190,13 @@ class NetworkSearch:
     def _without_ramps(self, n: int, places: Sequence[PlaceDesign]) -> Brief:
         """Returns the requirements for the part of a road that is not beside a lane of a ramp."""
         asked = self.brief.stretches[n]
-        beside = [place for place in places[max(n - 1, 0) : n] if is_kind(place, "merge")]
-        beside += [place for place in places[n : n + 1] if is_kind(place, "diverge")]
-        less = sum(length_beside(place) for place in beside if isinstance(place, RampDesign))
+        around = [(place, "merge") for place in places[max(n - 1, 0) : n]]
+        around += [(place, "diverge") for place in places[n : n + 1]]
+        less = sum(
+            length_beside(place)
+            for place, kind in around
+            if isinstance(place, RampDesign) and place.kind == kind
+        )
         if asked.length is None or not less:
             return asked
         low, high = span(asked.length).lo - less, span(asked.length).hi - less

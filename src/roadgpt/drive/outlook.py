@@ -66,7 +66,9 @@ def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:
 
 
 def _beside_on_leg(route: Route, leg: Leg) -> tuple[int, int]:
-    forward, backward = route.network.road(leg.road).profile.count
-    own, oncoming = (forward, backward) if leg.lane < 0 else (backward, forward)
-    number = abs(leg.lane)
-    return number - 1 + oncoming, own - number
+    profile = route.network.road(leg.road).profile
+    forward, backward = profile.count
+    if leg.lane < 0:
+        return -leg.lane - 1 + backward, forward + leg.lane
+    index = profile.left_ids.index(leg.lane)
+    return index + forward, backward - 1 - index

@@ -81,7 +81,7 @@ def build_crossing(
     for i in range(len(stubs)):
         for j, way in lane_ways(stubs, i):
             ends, far = (stubs[i], stubs[j]), (distances[i], distances[j])
-            connections.append(_connection(builder, number, node, ends, far, way))
+            connections.append(connected(builder, number, node, ends, far, way))
     arms = tuple(
         Arm(stub.end, stub.direction, control) for stub, control in zip(stubs, controls, strict=True)
     )
@@ -90,7 +90,7 @@ def build_crossing(
     return junction
 
 
-def _connection(
+def connected(
     builder: Builder,
     junction: int,
     node: tuple[float, float, float],
@@ -98,6 +98,16 @@ def _connection(
     distances: tuple[float, float],
     way: LaneWay,
 ) -> Connection:
+    """Adds a connecting road between two arms whose reference lines meet at a node; returns the connection.
+
+    Args:
+        builder: The network.
+        junction: The id of the junction.
+        node: The point in metres.
+        ends: The arm on which one arrives, and the one on which one goes on.
+        distances: The distance in metres from the node to the contacts of these arms.
+        way: The lanes that continue each other.
+    """
     start, end = ends
     x, y, z = node
     heading = start.direction + math.pi

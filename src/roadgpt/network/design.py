@@ -21,9 +21,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, ValidationError
 
-from roadgpt.brief.junctions import Control, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, side_of
 from roadgpt.errors import UsageError
-from roadgpt.network.lane_design import LANE_KINDS, RAMP_KINDS, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.network.network import JunctionKind
 from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
@@ -262,7 +262,7 @@ def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:
 
 
 OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
-    **dict.fromkeys(RAMP_KINDS, RampDesign),
+    **dict.fromkeys(RAMPS, RampDesign),
     **dict.fromkeys(LANE_KINDS, LanesChangeDesign),
 }
 

@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool
 
+from roadgpt.brief.junctions import LaneKind, Side
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.road.design import FrozenFields
 from roadgpt.road.profile import Marking
@@ -22,8 +23,6 @@ TAPER = 60.0  # m, of a lane that ends or begins
 
 After = Annotated[int, Field(ge=1, le=500)]
 LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
-RAMP_KINDS = ("merge", "diverge")
-LANE_KINDS = ("lane_drop", "lane_gain", "lane_change")
 
 
 class LanesDesign(FrozenFields):
@@ -60,8 +59,8 @@ class LanesChangeDesign(FrozenFields):
 
     after: After
     """Number of segments of the route before it."""
-    kind: Literal["lane_drop", "lane_gain", "lane_change"]
-    side: Literal["left", "right"] = "right"
+    kind: LaneKind
+    side: Side = "right"
     """The lane that ends or begins: the leftmost or the rightmost; or the side to which the route changes."""
     length: LaneLength = TAPER
     """Length in metres in which the width of the lane changes."""

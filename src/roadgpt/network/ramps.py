@@ -13,9 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from roadgpt.geometry import CubicProfile
-from roadgpt.network.building import Builder, Stub, connecting_road, width_at
+from roadgpt.network.building import Builder, Stub, width_at
+from roadgpt.network.crossing import connected
 from roadgpt.network.lane_design import RampDesign
-from roadgpt.network.network import Arm, Connection, Continuation, Junction, LaneLink, RoadEnd
+from roadgpt.network.network import Arm, Connection, Continuation, Junction, RoadEnd
 from roadgpt.network.pose import NetworkPose
 from roadgpt.network.stretch import road_of
 from roadgpt.network.turning import curve_between
@@ -27,8 +28,6 @@ CONTACT = 25.0  # m, from the node to each contact
 TAPER = 60.0  # m, of the lane for acceleration or deceleration: RAA 2008, entries and exits
 BESIDE = 60.0  # m, of the road that the route does not take
 FAR = 1e6  # m, a station behind all changes of a cross-section
-
-LanePairs = tuple[tuple[int, int], ...]
 
 
 def length_beside(ramp: RampDesign) -> float:
@@ -186,14 +185,8 @@ class RampBuilder:
 
     def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
         """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions."""
-        heading = start.direction + math.pi
-        turn = math.remainder(end.direction - heading, 2 * math.pi)
-        contact = NetworkPose(self._node.point, start.direction).ahead(CONTACT).point
-        widths = [(start.width_of(start.into[i]), end.width_of(end.out_of[j])) for i, j in lanes]
-        offset = (-start.inside_into(lanes[0][0]), -end.inside_out_of(lanes[0][1]))
-        made = connecting_road(contact, heading, curve_between(CONTACT, CONTACT, turn), widths, offset)
-        links = [LaneLink(start.id_into(i), -1 - n, end.id_out_of(j)) for n, (i, j) in enumerate(lanes)]
-        return Connection(self.builder.add(made, junction), start.end, end.end, tuple(links))
+        far = (CONTACT, CONTACT)
+        return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes))
 
     def _close(self, number: int, stubs: Sequence[Stub], ways: Sequence[Connection]) -> None:
         arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)

@@ -25,8 +25,7 @@ LINE = 0.12  # m, width of a painted line: narrow mark of rural roads (Germany, 
 DOUBLE = 2 * LINE  # m, between the middles of the two lines of a double line (Germany, RMS-1)
 DASH, GAP = 4.0, 8.0  # m, of a broken line: middle line outside of towns (Germany, RMS-1)
 
-Kind = Literal["driving", "shoulder", "median"]
-"""A median is no lane of a Profile, which has a width for it; files may have a lane of this kind."""
+Kind = Literal["driving", "shoulder"]
 Marking = Literal["solid", "broken", "none", "double"]
 """A double line is two solid lines."""
 Width = float | CubicProfile

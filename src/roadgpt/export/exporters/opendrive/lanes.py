@@ -66,10 +66,10 @@ class RoadParts:
 
     def _lanes(self, profile: Profile, length: float, links: LaneLinks, is_inside: bool) -> XmlElement:
         section = XmlElement("laneSection", {"s": 0})
-        left_lanes = profile.left
+        left = list(self._side(profile.left, profile.left_ids.start, length, links, is_inside))
         if profile.median:
-            left_lanes = (Lane("median", profile.median, profile.centre_marking), *profile.left)
-        left = list(self._side(left_lanes, 1, length, links, is_inside))
+            width = XmlElement("width", {"sOffset": 0, "a": profile.median, "b": 0, "c": 0, "d": 0})
+            left.insert(0, _lane(1, "median").extended(width, *_mark(profile.centre_marking, is_inside)))
         if left:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))
@@ -78,14 +78,15 @@ class RoadParts:
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
-        self, side: Sequence[Lane], sign: int, length: float, links: LaneLinks, is_inside: bool
+        self, side: Sequence[Lane], first: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
-        """Yields the lanes of one side from the centre line outwards; their ids have the given sign."""
+        """Yields the lanes of one side from the centre line outwards; the first one has this id."""
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
-        for number, lane in enumerate(kept, 1):
+        for index, lane in enumerate(kept):
+            number = first + index if first > 0 else first - index
             widths = rows("width", "sOffset", _cubics(lane.width), length)
-            made = _lane(sign * number, lane.kind)
-            before, after = links.get(sign * number, (None, None))
+            made = _lane(number, lane.kind)
+            before, after = links.get(number, (None, None))
             if before is not None or after is not None:
                 link = made.add("link")
                 for name, other in (("predecessor", before), ("successor", after)):
