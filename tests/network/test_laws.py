@@ -292,3 +292,9 @@ def test_a_network_with_two_roads_of_one_id_or_a_road_that_is_missing_is_refused
 def test_the_paved_area_is_in_one_piece() -> None:
     for seed in SEEDS:
         assert len(shapely.get_parts(drawn(seed).network.paved)) == 1
+
+
+def test_a_turn_that_is_tighter_than_its_lane_is_paved() -> None:
+    turn = {"distance": 30, "direction": "left", "turn_degrees": 120, "radius": 1}
+    route = built(design(40.0, turn, 20.0, {"kind": "crossroads", "take": "left"}, 60.0)).on_ground()
+    assert route.network.paved.is_valid

@@ -6,16 +6,18 @@ heights and a route are drawn, and the rules must accept the network that is bui
 
 from collections import Counter
 from functools import lru_cache
+from math import inf, sqrt
 
 import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import Control
+from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
 from roadgpt.design.advice import larger_map
-from roadgpt.design.grid_draft import draft_grid
+from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
 from roadgpt.design.layout import boxes
 from roadgpt.design.map_draft import DraftNode, MapDraft
 from roadgpt.design.map_route import drawn_route
@@ -27,7 +29,8 @@ from roadgpt.road import World
 
 DRAFTS = 200  # for one map, at most
 BUILT = 30  # drafts that fit and break a rule, after which the search is given up
-TRIED = 40  # drafts that show whether maps of some size are large enough
+PER_JUNCTION = 80.0  # m, times the root of the number of junctions: a map of which they fill all
+TRIED = 24  # drafts that show whether maps of some size are large enough
 TRIALS = (1, 2)  # seeds of these searches
 NO_HASTE = 8  # drafts without haste
 HURRIED = 0.12  # of haste from the start on, for each junction beyond the first ones
@@ -90,9 +93,8 @@ class MapSearch:
     @property
     def _least_haste(self) -> float:
         """The haste from the start on: many junctions find no place on the map otherwise."""
-        count = sum(max(each.lo, 1.0) for each in (span(kind.count) for kind in self.asked.junctions))
         share = PARTS / self.world.site.map_size
-        return HURRIED * max(count * share**2 - FEW, 0.0)
+        return HURRIED * max(_least_count(self.asked) * share**2 - FEW, 0.0)
 
     def _draft(self, haste: float) -> MapDesign | None:
         """Returns a draft on the map; None if it found no place."""
@@ -199,10 +201,26 @@ def room_for_map(brief: Brief, world: World) -> float | None:
     """Returns the side in metres of a map large enough for a map of roads; None if the World's is, or if no
     larger one would help.
     """
+    assert brief.map is not None
+    likely = _likely_room(brief.map)
     try:
-        failed = _failed(brief, world)
+        failed = _failed(brief, world) if likely <= world.site.map_size else None
+        if likely <= world.site.map_size and (failed is None or not failed.failed[TOO_LARGE]):
+            return None
+        return larger_map(brief, world, map_fits, likely)
     except UsageError:
         return None
-    if failed is None or not failed.failed[TOO_LARGE]:
-        return None
-    return larger_map(brief, world, map_fits, world.site.map_size)
+
+
+def _likely_room(asked: MapClause) -> float:
+    """Returns the side in metres of a square on which a map of roads has little room."""
+    if asked.junctions:
+        return PER_JUNCTION * sqrt(_least_count(asked))
+    blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
+    length = span(asked.length).lo
+    return blocks * (length if 0 < length < inf else LEAST_BLOCK)
+
+
+def _least_count(asked: MapClause) -> float:
+    """Returns the least number of junctions of a map of some kinds of junctions."""
+    return sum(max(span(each.count).lo, 1.0) for each in asked.junctions)

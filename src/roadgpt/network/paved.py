@@ -23,7 +23,10 @@ def paved_by(roads: Sequence[Road]) -> Area:
     """Returns the area that the carriageways of roads cover together."""
     import shapely
 
-    return filled(shapely.union_all([ribbon(road) for road in roads], grid_size=GRID))
+    ribbons = [ribbon(road) for road in roads]
+    # where a road turns more tightly than it is wide, its ribbon crosses itself
+    whole = [each if each.is_valid else shapely.make_valid(each) for each in ribbons]
+    return filled(shapely.union_all(whole, grid_size=GRID))
 
 
 def filled(area: Area) -> Area:
