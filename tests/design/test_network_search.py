@@ -4,10 +4,8 @@ The junctions are measured here on the built network, and by an outside referee 
 is at hand.
 """
 
-import importlib.util
 import json
 import math
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -15,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from outside_judge import networks_referee
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
@@ -26,7 +25,6 @@ from roadgpt.export import save
 from roadgpt.network import Junction, NetworkDesign, Route, build_route, read_network_design
 from roadgpt.road import Site, World
 
-SHARED = Path(__file__).resolve().parents[3] / "shared"
 USUAL = World()
 CASES: dict[str, dict[str, Any]] = {
     "// t_junction right //": {"sequence": [{"kind": "T", "take": "right"}]},
@@ -86,19 +84,7 @@ FIVE = "// t_junction // // crossroads // // roundabout // // y_junction // // t
 @pytest.fixture(scope="module")
 def referee() -> ModuleType:
     """The outside referee of networks."""
-    path = SHARED / "referee_networks.py"
-    if not path.exists():
-        pytest.skip("the referee of networks is not at hand")
-    sys.path.insert(0, str(SHARED))
-    try:
-        spec = importlib.util.spec_from_file_location("referee_networks", path)
-        assert spec is not None
-        assert spec.loader is not None
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-    finally:
-        sys.path.remove(str(SHARED))
-    return module
+    return networks_referee()
 
 
 def drafted(line: str, seed: int, world: World = USUAL) -> Route:

@@ -2,7 +2,6 @@
 
 import json
 import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from collections import Counter
 from pathlib import Path
@@ -14,7 +13,7 @@ import pytest
 from exported import program, python_with
 from network.random_designs import random_design
 from network.random_maps import map_route
-from outside_judge import SHARED
+from outside_judge import networks_referee
 from roadgpt.export import save
 from roadgpt.network import Network, Route, build_route, read_network_design
 from roadgpt.road import World
@@ -169,15 +168,7 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
 
 @pytest.fixture(scope="module")
 def referee() -> ModuleType:
-    if not (SHARED / "referee_networks.py").exists():
-        pytest.skip("the referee of networks is not at hand")
-    sys.path.insert(0, str(SHARED))
-    try:
-        import referee_networks
-    finally:
-        sys.path.remove(str(SHARED))
-    module: ModuleType = referee_networks
-    return module
+    return networks_referee()
 
 
 KINDS = {"t_junction": "T", "y_junction": "Y", "crossroads": "X", "star": "star", "roundabout": "roundabout"}

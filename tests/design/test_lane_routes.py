@@ -1,0 +1,195 @@
+"""Routes with several lanes, one-way roads and ramps that the planner drafts, measured by an outside referee.
+
+The referee is used where it is at hand; it reads only the exported files.
+"""
+
+import json
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+from outside_judge import networks_referee
+from roadgpt.brief import check
+from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
+from roadgpt.design import draft
+from roadgpt.design.designers.planner import Planner
+from roadgpt.errors import DesignError, UsageError
+from roadgpt.export import save
+from roadgpt.network import NetworkDesign, Route, build_route, read_network_design
+from roadgpt.road import Site, World
+
+WIDE = World(site=Site(map_size=600))
+TWO_EACH = {"lanes": 2, "lanes_against": 2}
+LANE_CHANGE = {"kind": "lane_change", "dir": "left"}
+CASES: dict[str, dict[str, Any]] = {
+    "merge ramp // | motorway": {
+        "sequence": [{"kind": "merge", "take": "ramp", "side": "right", "accel": [50, None]}],
+        "between": [{"lanes": 1, "oneway": True}, {"lanes": [2, None], "oneway": True}],
+    },
+    "| motorway // merge main len=120 //": {
+        "sequence": [{"kind": "merge", "take": "main", "accel": 120, "taper": [20, 120]}],
+        "between": [{"lanes": [2, None]}, {"lanes": [2, None]}],
+    },
+    "| lanes=2 len=300 motorway // diverge ramp side=right": {
+        "sequence": [{"kind": "diverge", "take": "exit", "side": "right", "after": 300, "decel": [30, None]}],
+        "between": [{"lanes": 2}, {"lanes": 1, "oneway": True}],
+    },
+    "| lanes=2 motorway // diverge main len=80 //": {
+        "sequence": [{"kind": "diverge", "take": "main", "decel": 80}],
+        "between": [{"lanes": 2}, {"lanes": 2}],
+    },
+    "| lanes=2 against=2 // crossroads straight lights // | lanes=2 against=2": {
+        "sequence": [{"kind": "X", "take": "straight", "control": "lights", "all_control": "lights"}],
+        **TWO_EACH,
+    },
+    "| lanes=2 against=2 // crossroads left // | lanes=2 against=2": {
+        "sequence": [{"kind": "X", "take": "left"}],
+        **TWO_EACH,
+    },
+    "| oneway // t_junction left": {
+        "sequence": [{"kind": "T", "take": "left", "two_way": [0, 3]}],
+        "between": [{"oneway": True, "lanes": 1}, None],
+    },
+    "| lanes=2 // lane_drop // | lanes=1": {
+        "sequence": [{"kind": "lane_drop", "from": 2, "to": 1}],
+        "between": [{"lanes": [1, 2]}],
+        "junctions": 0,
+    },
+    "| lanes=1 // lane_gain // | lanes=2": {
+        "sequence": [{"kind": "lane_gain", "from": 1, "to": 2}],
+        "junctions": 0,
+    },
+    "| lanes=3 // lane_drop side=left // // t_junction right //": {
+        "sequence": [{"kind": "lane_drop", "from": 3, "to": 2}, {"kind": "T", "take": "right"}],
+        "junctions": 1,
+    },
+    "| lanes=2 // lane_change left": {
+        "sequence": [{"kind": "lane_change", "dir": "left"}],
+        "lanes": 2,
+        "junctions": 0,
+    },
+    "| lanes=2 // lane_change right": {
+        "sequence": [{"kind": "lane_change", "dir": "right"}],
+        "lanes": 2,
+        "junctions": 0,
+    },
+    "| lanes=3 // lane_change left // // lane_change left //": {
+        "sequence": [LANE_CHANGE, LANE_CHANGE],
+        "lanes": 3,
+        "junctions": 0,
+    },
+    "// crossroads stop all_way //": {"sequence": [{"kind": "X", "control": "stop", "all_control": "stop"}]},
+    "| centre=double // t_junction straight // | centre=double": {
+        "sequence": [{"kind": "T", "take": "straight"}],
+        "centre": "double",
+        "no_overtaking": True,
+    },
+    "| centre=solid // lane_gain // || len=400": {
+        "sequence": [{"kind": "lane_gain"}],
+        "length": 400,
+        "junctions": 0,
+    },
+}
+
+
+@pytest.fixture(scope="module")
+def referee() -> ModuleType:
+    return networks_referee()
+
+
+def drafted(line: str, seed: int) -> Route:
+    design = Planner().draft(read_plan(line), WIDE, (), (), seed)
+    assert isinstance(design, NetworkDesign)
+    return build_route(design, WIDE)
+
+
+@pytest.mark.parametrize("line", CASES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_referee_finds_what_was_asked_for(
+    line: str, seed: int, referee: ModuleType, tmp_path: Path
+) -> None:
+    route = drafted(line, seed)
+    assert inspect(route, read_plan(line), WIDE) == ()
+    save(route, tmp_path, ["opendrive"], WIDE, "x")
+    way = json.loads((tmp_path / "x.route.json").read_text())
+    truth = {"junctions": len(CASES[line]["sequence"]), **CASES[line]}
+    holds, measured = referee.check(tmp_path / "x.xodr", way, truth)
+    assert all(holds.values()), (holds, measured["breaks"], measured["junctions"])
+    assert measured["faults"] == []
+
+
+@pytest.mark.parametrize("line", CASES)
+def test_a_design_with_lanes_is_read_back_as_it_was_written(line: str) -> None:
+    design = draft(read_plan(line), WIDE, seed=3)
+    assert isinstance(design, NetworkDesign)
+    again, remarks = read_network_design(json.loads(json.dumps(design.to_json())))
+    assert (again, remarks) == (design, ())
+
+
+def test_the_same_seed_gives_the_same_route() -> None:
+    line = "| lanes=2 // lane_gain side=left // // diverge ramp //"
+    one, same, other = (Planner().draft(read_plan(line), WIDE, (), (), seed).to_json() for seed in (4, 4, 5))
+    assert one == same
+    assert one != other
+
+
+def test_a_lane_that_the_words_count_is_there_on_every_road() -> None:
+    route = drafted("| lanes=3 against=1 // crossroads straight // | lanes=2 against=0", 1)
+    counts = [member.profile.count for _, member in route.roads]
+    assert counts == [(3, 1), (2, 0)]
+
+
+def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
+    for seed in range(3):
+        route = drafted("merge ramp // | motorway", seed)
+        ((start, end, *_),) = route.passages
+        turned = np.ptp(route.heading(np.linspace(start, end + 100, 50)))
+        assert np.degrees(turned) < 10
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("merge ramp side=left // | motorway", "a ramp on the left cannot be built yet; leave it out"),
+        ("crossroads straight crosswalk", "a crosswalk cannot be built yet; leave it out"),
+        (
+            "crossroads crosswalk // // diverge ramp side=left",
+            "a crosswalk and a ramp on the left cannot be built yet; leave them out",
+        ),
+    ],
+)
+def test_what_cannot_be_built_yet_is_named(line: str, said: str) -> None:
+    with pytest.raises(DesignError, match=f"^{said}$"):
+        draft(read_plan(line), WIDE, seed=1)
+
+
+def checked_draft(line: str) -> None:
+    brief = read_plan(line)
+    check(brief)
+    draft(brief, WIDE, seed=1)
+
+
+@pytest.mark.parametrize(
+    ("line", "word"),
+    [
+        ("t_junction ramp", "a T-junction has no ramp"),
+        ("merge left // | motorway", "ramp or main, not left"),
+        ("| lanes=9 // crossroads", "1 to 4 lanes"),
+        ("| oneway against=2 // crossroads", "against twice"),
+        ("merge ramp lights // | motorway", "has no control"),
+        ("| lanes=2 // lane_change left len=80", "leave side and len out"),
+        ("| lanes=2 // lane_drop // | lanes=2", "behind a lane_drop"),
+        ("| lanes=4 // lane_gain", "5 lanes"),
+        ("| lanes=1 // lane_drop", "0 lanes"),
+        ("| lanes=1 // lane_change left", "change to the left"),
+        ("| lanes=2 against=1 // merge ramp", "comes or goes by the ramp"),
+    ],
+)
+def test_lanes_that_contradict_each_other_are_refused_in_one_sentence(line: str, word: str) -> None:
+    with pytest.raises((UsageError, DesignError), match=word) as error:
+        checked_draft(line)
+    assert "\n" not in str(error.value)
