@@ -304,3 +304,59 @@ def test_a_design_says_what_it_is() -> None:
     assert repr(made) == "NetworkDesign(120 m of road, junctions: crossroads)"
     assert [len(stretch) for stretch in made.stretches] == [1, 1]
     assert built(GOOD, WORLD).network.nodes[0][0] == "crossroads"
+
+
+def with_lanes(*parts: dict[str, Any], **lanes: Any) -> dict[str, Any]:
+    """A design of roads of 100 m with these places between them; the lanes of the first road are given."""
+    data = design(*[each for part in parts for each in (100.0, part)], 100.0)
+    return {**data, "lanes": lanes}
+
+
+RAMP = {"kind": "merge", "take": "ramp"}
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        (with_lanes({"kind": "lane_drop"}, forward=1), "a lane_drop leaves 0 lanes, and a road has 1 to 4"),
+        (with_lanes({"kind": "lane_gain"}, forward=4), "a lane_gain leaves 5 lanes, and a road has 1 to 4"),
+        (with_lanes({"kind": "lane_change"}, forward=1), "cannot change to the right on road 2: there is no"),
+        (with_lanes({"kind": "lane_change", "side": "left"}, forward=1), "cannot change to the left"),
+        (
+            with_lanes(*[{"kind": "lane_change", "side": "left"}] * 2, forward=2),
+            "cannot change to the left on road 3: there is no lane",
+        ),
+        (with_lanes(RAMP, forward=1, backward=1), "the ramp, which has one lane and no oncoming traffic"),
+        (with_lanes(RAMP, forward=2, backward=0), "the ramp, which has one lane and no oncoming traffic"),
+        (
+            with_lanes(
+                {"kind": "diverge", "take": "ramp", "lanes": {"forward": 2, "backward": 0}}, forward=2
+            ),
+            "the ramp, which has one lane and no oncoming traffic",
+        ),
+        (with_lanes({"kind": "merge"}, forward=2), "junction 1 cannot be read: take: is missing"),
+        (with_lanes({"kind": "merge", "take": "left"}, forward=2), "junction 1 cannot be read: take"),
+        (with_lanes({**RAMP, "length": 5}, forward=1, backward=0), "junction 1 cannot be read: length"),
+        (with_lanes({**RAMP, "length": True}, forward=1, backward=0), "junction 1"),
+        (with_lanes({**RAMP, "arms": []}, forward=1, backward=0), "junction 1 cannot be read: arms"),
+        (with_lanes({**RAMP, "lanes": {"forward": 0}}, forward=1, backward=0), "lanes.forward"),
+        (with_lanes({**RAMP, "lanes": 2}, forward=1, backward=0), "the lanes of junction 1 cannot be read"),
+        (with_lanes({"kind": "lane_drop", "side": "middle"}, forward=2), "junction 1 cannot be read: side"),
+        (with_lanes({"kind": "roundabout", "take": 2}, forward=2), "a roundabout with one lane joins roads"),
+        (with_lanes({"kind": "roundabout", "take": 2, "ring_lanes": 3}, forward=3), "ring_lanes"),
+        (with_lanes({"kind": "crossroads", "take": 1}, forward=5), "the lanes of the design cannot be read"),
+        (with_lanes({"kind": "crossroads", "take": 1}, forward=0), "the lanes of the design cannot be read"),
+        (
+            with_lanes({"kind": "crossroads", "take": 1}, backward=-1),
+            "the lanes of the design cannot be read",
+        ),
+        (
+            with_lanes({"kind": "crossroads", "take": 1}, centre="wavy"),
+            "the lanes of the design cannot be read",
+        ),
+        (with_lanes({"kind": "crossroads", "take": 1}, forward=True), "the lanes of the design"),
+        (with_lanes({"kind": "crossroads", "take": 1}, width=1.5), "the lanes of the design cannot be read"),
+    ],
+)
+def test_lanes_that_cannot_be_are_refused_in_one_sentence(data: dict[str, Any], sentence: str) -> None:
+    assert sentence in said(data)

@@ -26,7 +26,10 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
     """
     ways = [_ways(network, one, two) for one, two in pairwise(roads)]
     fit = _fit(network, roads, ways, shifts)
-    ways = [_kept(each, lanes) for each, lanes in zip(ways, fit[1:], strict=True)]
+    ways = [
+        each if shifts.get(roads[n]) else _kept(each, lanes)
+        for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
+    ]
     lane = _first(ways[0] if ways else {-1: -1}, shifts.get(roads[0], 0))
     found: list[Leg] = []
     for n, road in enumerate(roads):
