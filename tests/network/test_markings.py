@@ -136,6 +136,29 @@ def test_the_parts_of_the_surface_cover_the_paved_area_once(network: Network) ->
             assert shapely.intersection(island, network.paved).area < 1e-3
 
 
+@pytest.mark.parametrize("kind", ["crossroads", "roundabout"])
+def test_a_crosswalk_leads_over_each_arm_behind_its_stop_line(kind: str) -> None:
+    fields = {"kind": kind, "take": "straight", "control": "stop", "crosswalk": True}
+    route = route_of(fields)
+    network, without = route.network, route_of({**fields, "crosswalk": False}).network
+    stripes = [stroke for stroke in strokes(network) if stroke.kind == "crosswalk"]
+    assert not [stroke for stroke in strokes(without) if stroke.kind == "crosswalk"]
+    lines = [shapely.LineString(stroke.points[:, :2]) for stroke in stripes]
+    assert len(lines) == 4 * 8  # arms, each 8 m wide, with a stripe on every metre
+    assert all(line.length == pytest.approx(3.0) and network.paved.contains(line) for line in lines)
+    outer = [arm for junction in network.junctions for arm in junction.arms if arm.crosswalk]
+    assert len(outer) == 4
+    for arm in outer:
+        road = network.road(arm.end.road).road
+        s = road.length if arm.end.contact == "end" else 0.0
+        contact = shapely.Point(road.at(s)[:2])
+        near = sorted(line.distance(contact) for line in lines)[:2]
+        assert near == pytest.approx([math.hypot(1.0, 0.5)] * 2, abs=1e-6)  # half a metre from mid-road
+    (stopped,) = (passage.stop_line for passage in route.passages)
+    assert stopped is not None
+    assert route.passages[0].start - stopped == pytest.approx(1 + 3 + 1 + 0.5)
+
+
 @pytest.mark.parametrize("radius", [7.0, 16.0])
 def test_a_roundabout_has_grass_in_its_middle_and_kerbs_at_its_arms(radius: float) -> None:
     route = route_of({"kind": "roundabout", "take": "straight", "radius": radius})

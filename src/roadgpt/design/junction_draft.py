@@ -72,6 +72,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             kerb=round(kerb + haste * (TIGHT_KERB - kerb), 1),
             radius=radius,
             ring_lanes=_ring_lanes(clause),
+            crosswalk=clause.crosswalk,
             arms=arms,
         )
     return None

@@ -32,5 +32,3 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
 def _of_junction(junction: JunctionClause) -> Iterator[str]:
     if junction.kind in RAMPS and junction.side == "left":
         yield "a ramp on the left"
-    if junction.crosswalk:
-        yield "a crosswalk"

@@ -64,6 +64,7 @@ def build_crossing(
     distances: Sequence[float],
     controls: Sequence[Control],
     kerb: float,
+    crosswalk: bool = False,
 ) -> Junction:
     """Adds a junction and its connecting roads to a network; returns the junction.
 
@@ -75,6 +76,7 @@ def build_crossing(
         distances: The distance in metres from the node to the contact of each arm.
         controls: The sign or light of each arm.
         kerb: The radius in metres of the kerbs that was asked for.
+        crosswalk: Whether each arm has a crosswalk.
     """
     number = builder.number()
     connections = []
@@ -83,7 +85,8 @@ def build_crossing(
             ends, far = (stubs[i], stubs[j]), (distances[i], distances[j])
             connections.append(connected(builder, number, node, ends, far, way))
     arms = tuple(
-        Arm(stub.end, stub.direction, control) for stub, control in zip(stubs, controls, strict=True)
+        Arm(stub.end, stub.direction, control, crosswalk)
+        for stub, control in zip(stubs, controls, strict=True)
     )
     junction = Junction(number, kind, arms, tuple(connections), node, kerb)
     builder.junctions.append(junction)

@@ -19,7 +19,7 @@ from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field, StrictBool, ValidationError
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, side_of
 from roadgpt.errors import UsageError
@@ -83,6 +83,8 @@ class JunctionDesign(FrozenFields):
     """Radius in metres of the central island of a roundabout."""
     ring_lanes: Annotated[int, Field(ge=1, le=2)] = 1
     """Number of lanes around the central island of a roundabout."""
+    crosswalk: StrictBool = False
+    """Whether each arm has a crosswalk."""
     lanes: LanesDesign | None = None
     """The lanes of the road on which the route goes on; None for those of the road before."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
@@ -166,8 +168,9 @@ class NetworkDesign(FrozenFields):
             out[f"road_segment{number}"] = _plain(segment)
         for number, junction in enumerate(self.junctions, 1):
             row = _plain(junction, exclude={"arms", "lanes"})
-            if row.get("ring_lanes") == 1:
-                del row["ring_lanes"]
+            for name, usual in (("ring_lanes", 1), ("crosswalk", False)):
+                if row.get(name) == usual:
+                    del row[name]
             if junction.lanes is not None:
                 row["lanes"] = _plain_lanes(junction.lanes)
             arms = [_plain(arm) for arm in junction.arms] if isinstance(junction, JunctionDesign) else []
@@ -236,7 +239,7 @@ def _check_object(what: str, raw: Any, fields: str) -> None:
     """Raises UsageError if parsed JSON is not an object, or has true or false in place of a number."""
     if not isinstance(raw, Mapping):
         raise UsageError(f"{what} cannot be read: give an object with {fields}")
-    no_truths(what, {name: value for name, value in raw.items() if name != "divided"})
+    no_truths(what, {name: value for name, value in raw.items() if name not in ("divided", "crosswalk")})
 
 
 def _check_order(junctions: Sequence[PlaceDesign], segments: int) -> None:

@@ -137,12 +137,19 @@ class _RouteGrowth:
         ]
         to = 0 if taken is None else taken + 1
         if junction.kind == "roundabout":
-            size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes
+            size = junction.radius, stubs, controls, junction.kerb, junction.ring_lanes, junction.crosswalk
             ring = build_roundabout(self.builder, node, *size)
             self.passed += roads_around(self.builder, ring, to)
         else:
             built = build_crossing(
-                self.builder, junction.kind, node, stubs, distances, controls, junction.kerb
+                self.builder,
+                junction.kind,
+                node,
+                stubs,
+                distances,
+                controls,
+                junction.kerb,
+                junction.crosswalk,
             )
             self.passed.append(_way(built.connections, stubs[0].end, stubs[to].end))
         self.passed.append(stubs[to].end.road)

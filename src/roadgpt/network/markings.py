@@ -14,7 +14,7 @@ from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, Roundabout
-from roadgpt.network.passages import STOP_LINE
+from roadgpt.network.passages import CROSSWALK, STOP_LINE, line_before
 from roadgpt.network.paved import paved_by, ribbon, stations_of
 from roadgpt.network.surface import roads_inside
 from roadgpt.road.profile import DASH, GAP, LINE
@@ -25,7 +25,9 @@ BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
 SHORTEST = 0.3  # m; shorter pieces of lines come from rounding
 CIRCLE = 64  # segments in a quarter of the circle on which a give-way line lies
 
-StrokeKind = Literal["edge", "lane", "stop", "give_way"]
+STRIPE = 0.5  # m, width of a stripe of a crosswalk, and between two (Germany, RMS-1)
+
+StrokeKind = Literal["edge", "lane", "stop", "give_way", "crosswalk"]
 
 
 class PaintedStroke(NamedTuple):
@@ -133,7 +135,10 @@ def _raised(points: Array, height: float) -> Array:
 
 
 def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedStroke]:
-    """Yields the stop line of an arm, or the blocks of its give-way line."""
+    """Yields the stripes of a crosswalk, and the stop line of an arm or the blocks of its give-way line."""
+    if arm.crosswalk:
+        for stripe in _stripes(network.road(arm.end.road), arm.end.contact):
+            yield PaintedStroke("crosswalk", STRIPE, stripe)
     if arm.control in ("priority", "none"):
         return
     ring = network.roundabout_of.get(junction.id)
@@ -150,12 +155,25 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
 def _across(network: Network, arm: Arm) -> Array:
     """Returns the middle ``(2, 3)`` of the line at the end of an arm, from mid-road outwards."""
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
-    half = min(STOP_LINE / 2, member.road.length)
+    half = min(line_before(arm) + STOP_LINE / 2, member.road.length)
     s = member.road.length - half if at_end else half
     edges = member.profile.edges(s)
     outer = float(edges.right) + LINE if at_end else float(edges.left) - LINE
     inner = float(member.profile.sides(s)[1 if at_end else 0])
     return member.road.at(np.full(2, s), np.array([inner, outer]))
+
+
+def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
+    """Yields the middles ``(2, 3)`` of the stripes of a crosswalk at one end of a road, along the road."""
+    near, length = CROSSWALK
+    away = np.minimum(np.array([near, near + length]), member.road.length)
+    s = member.road.length - away if contact == "end" else away
+    edges = member.profile.edges(float(s[0]))
+    left, right = float(edges.left), float(edges.right)
+    count = max(1, round((left - right) / (2 * STRIPE)))
+    for n in range(count):
+        t = right + (left - right) * (n + 0.5) / count
+        yield member.road.at(s, np.full(2, t))
 
 
 def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) -> Array | None:

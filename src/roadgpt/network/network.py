@@ -103,6 +103,8 @@ class Arm:
     """The heading in radians out of the junction."""
     control: Control = "none"
     """The sign or the light at which traffic into the junction has to stop or give way."""
+    crosswalk: bool = False
+    """Whether pedestrians cross the road there."""
 
 
 @dataclass(frozen=True)

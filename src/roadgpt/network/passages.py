@@ -4,11 +4,13 @@ from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
 
 from roadgpt.brief.junctions import Control
-from roadgpt.network.network import Junction, Leg, RoadEnd
+from roadgpt.network.network import Arm, Junction, Leg, RoadEnd
 
 if TYPE_CHECKING:
     from roadgpt.network.route import Route
 
+CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of its stripes (Germany, R-FGUe)
+GAP = 1.0  # m, between a stop line and a crosswalk
 STOP_LINE = 0.5  # m, width of a stop line, which ends where the junction begins (Germany, RMS-1)
 
 
@@ -36,12 +38,23 @@ class Passage(NamedTuple):
     @property
     def stop_line(self) -> float | None:
         """Station in metres of the stop line of a stop sign; None if there is no stop sign."""
-        return self.start - STOP_LINE if self.control == "stop" else None
+        return self.start - line_before(self._arm) - STOP_LINE if self.control == "stop" else None
 
     @property
     def control(self) -> Control:
         """The sign or the light that the route meets."""
-        return next(arm.control for arm in self.entered.arms if arm.end == self.arrival)
+        return self._arm.control
+
+    @property
+    def _arm(self) -> Arm:
+        return next(arm for arm in self.entered.arms if arm.end == self.arrival)
+
+
+def line_before(arm: Arm) -> float:
+    """Returns the distance in metres from a junction to the stop line of an arm, which leaves a crosswalk
+    free.
+    """
+    return sum(CROSSWALK) + GAP if arm.crosswalk else 0.0
 
 
 def passages_of(route: "Route") -> tuple[Passage, ...]:

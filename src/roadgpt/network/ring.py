@@ -87,6 +87,7 @@ def build_roundabout(
     controls: Sequence[Control],
     kerb: float,
     lanes: int = 1,
+    crosswalk: bool = False,
 ) -> Roundabout:
     """Adds a roundabout to a network and returns it.
 
@@ -98,6 +99,7 @@ def build_roundabout(
         controls: The sign or light of each arm.
         kerb: Kept in the junctions.
         lanes: The number of lanes of the ring.
+        crosswalk: Whether each arm has a crosswalk.
 
     Raises:
         UsageError: A road has more lanes in one direction than the ring.
@@ -123,7 +125,7 @@ def build_roundabout(
         before, after = RoadEnd(ring[i - 1], "end"), RoadEnd(ring[i], "start")
         connections = _mouth(builder, found, numbers[i], stub, (before, after), half, lanes)
         arms = (
-            Arm(stub.end, stub.direction, controls[i]),
+            Arm(stub.end, stub.direction, controls[i], crosswalk),
             Arm(after, stub.direction + half + math.pi / 2),
             Arm(before, stub.direction - half - math.pi / 2),
         )

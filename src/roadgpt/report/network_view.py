@@ -46,7 +46,8 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
             _fill(axes, island, GRASS, 2.1)
     _draw_route(axes, route, per_inch)
     painted = strokes(network)
-    for kinds, width in ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS)):
+    least = ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS), (("crosswalk",), 0.0))
+    for kinds, width in least:
         found = [stroke for stroke in painted if stroke.kind in kinds]
         if found:
             points = max(width, found[0].width / per_inch * POINTS)

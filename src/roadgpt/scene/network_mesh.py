@@ -97,7 +97,7 @@ def network_patches(
     for stroke in strokes(route.network):
         if stroke.kind == "edge" and stroke.road is None:
             out.append(_kerb_line(stroke.points, axis.kerb))
-        elif stroke.kind in ("stop", "give_way"):
+        elif stroke.kind in ("stop", "give_way", "crosswalk") or stroke.road in route.network.roundabout_of:
             out.append(_painted(stroke.points, stroke.width))
     out += _start_and_goal(route)
     for sign in signs(route.network):

@@ -11,7 +11,7 @@ from roadgpt.export.markup import XmlElement
 from roadgpt.network import Arm, Network
 from roadgpt.network.building import width_at
 from roadgpt.network.markings import place_of_sign
-from roadgpt.network.passages import STOP_LINE
+from roadgpt.network.passages import CROSSWALK, STOP_LINE, line_before
 
 TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
 NAMES = {
@@ -41,6 +41,8 @@ class Signals:
 
     network: Network
     them: tuple[_Signal, ...]
+    first_free: int
+    """The first id behind those of all signals."""
 
     @classmethod
     def of(cls, network: Network) -> "Signals":
@@ -52,14 +54,13 @@ class Signals:
             if arm.control != "none"
         ]
         first = 1 + max([*(each.id for each in network.roads), *(each.id for each in network.junctions)])
-        return cls(
-            network, tuple(_Signal(first + n, junction, arm) for n, (junction, arm) in enumerate(arms))
-        )
+        them = tuple(_Signal(first + n, junction, arm) for n, (junction, arm) in enumerate(arms))
+        return cls(network, them, first + len(arms))
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
         """Yields the elements ``objects`` and ``signals`` of a road; nothing if it has none."""
         own = [signal for signal in self.them if signal.arm.end.road == road]
-        lines = [line for signal in own for line in self._line(signal)]
+        lines = [*(line for signal in own for line in self._line(signal)), *self._crosswalks(road)]
         if lines:
             yield XmlElement("objects").extended(*lines)
         if own:
@@ -111,6 +112,34 @@ class Signals:
         made.add("validity", {"fromLane": lanes[0], "toLane": lanes[1]})
         return made
 
+    def _crosswalks(self, road: int) -> Iterator[XmlElement]:
+        """Yields the crosswalks of a road; their ids follow those of the signals."""
+        junctions, member = self.network.junctions, self.network.road(road)
+        ends = [arm.end for junction in junctions for arm in junction.arms if arm.crosswalk]
+        for number, end in enumerate(ends):
+            if end.road != road:
+                continue
+            away = min(CROSSWALK[0] + CROSSWALK[1] / 2, member.road.length)
+            s = member.road.length - away if end.contact == "end" else away
+            left, right = (float(t) for t in member.profile.edges(s))
+            yield XmlElement(
+                "object",
+                {
+                    "id": str(self.first_free + number),
+                    "name": "crosswalk",
+                    "type": "crosswalk",
+                    "s": s,
+                    "t": (left + right) / 2,
+                    "zOffset": 0.0,
+                    "hdg": 0.0,
+                    "orientation": "none",
+                    "length": CROSSWALK[1],
+                    "width": left - right,
+                    "height": 0.01,
+                    "dynamic": "no",
+                },
+            )
+
     def _line(self, signal: _Signal) -> Iterator[XmlElement]:
         """Yields the stop line or give-way line of an arm; nothing for a road with priority."""
         if signal.arm.control == "priority":
@@ -118,7 +147,7 @@ class Signals:
         end = signal.arm.end
         member = self.network.road(end.road)
         at_end = end.contact == "end"
-        half = min(STOP_LINE / 2, member.road.length)
+        half = min(line_before(signal.arm) + STOP_LINE / 2, member.road.length)
         s = member.road.length - half if at_end else half
         forward, backward = member.profile.count
         profile = member.profile
