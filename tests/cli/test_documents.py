@@ -21,6 +21,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
 from roadgpt.cli.command_table import EARLIER_OPTIONS, renamed
+from roadgpt.design.unbuilt import check_built
 from roadgpt.network import build_map, build_route, read_map_design, read_network_design
 from roadgpt.road import World, build, read_design
 from roadgpt.run.folder_names import slug
@@ -99,12 +100,14 @@ def test_the_map_in_the_docs_is_valid() -> None:
 
 def test_the_plans_on_the_page_of_junctions_are_plans() -> None:
     page = (ROOT / "docs" / "how-to" / "junctions.md").read_text(encoding="utf-8")
-    rows = re.findall(r"^\| [^|]+ \| (?:`|<code>)(.+?)(?:`|</code>) \|", page, flags=re.MULTILINE)
-    assert len(rows) == 7
-    for row in rows:
-        brief = read_plan(html.unescape(row))
-        assert brief.junctions
+    cells = re.findall(r"^\| [^|]+ \| (.+) \|$", page, flags=re.MULTILINE)
+    plans = [a or b for cell in cells for a, b in re.findall(r"`([^`]+)`|<code>(.+?)</code>", cell)]
+    assert len(plans) > 20
+    for plan in plans:
+        brief = read_plan(html.unescape(plan))
+        assert brief.junctions or brief.map is not None
         check(brief)
+        check_built(brief)
 
 
 def test_the_python_in_the_readme_runs() -> None:
