@@ -1,9 +1,11 @@
 """Programs of others, where they are at hand, find in the files of networks what was designed."""
 
 import json
+import re
 import subprocess
 import xml.etree.ElementTree as ET
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -11,7 +13,7 @@ from typing import Any
 import pytest
 
 from exported import program, python_with
-from network.random_designs import random_design
+from network.random_designs import random_design, random_lanes_design
 from network.random_maps import map_route
 from outside_judge import networks_referee
 from roadgpt.export import save
@@ -19,6 +21,7 @@ from roadgpt.network import Network, Route, build_route, read_network_design
 from roadgpt.road import World
 
 SEEDS = range(6)
+LANES = range(6)
 MAPS = range(100, 104)
 CHECK = """
 import logging, sys
@@ -71,9 +74,13 @@ print(json.dumps(found))
 """
 
 
-def drawn(seed: int) -> tuple[dict[str, Any], Route]:
+Drawing = Callable[[int], dict[str, Any]]
+"""Draws a design from a seed."""
+
+
+def drawn(seed: int, draw: Drawing = random_design) -> tuple[dict[str, Any], Route]:
     """A design whose roads are straight near junctions, so that arms have the directions of the design."""
-    data = random_design(seed)
+    data = draw(seed)
     before = {each["after"] for key, each in data.items() if key.startswith("junction")}
     for number in sorted(before | {each + 1 for each in before}):
         data[f"road_segment{number}"] |= {"direction": "straight", "turn_degrees": 0.0}
@@ -81,11 +88,14 @@ def drawn(seed: int) -> tuple[dict[str, Any], Route]:
 
 
 def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:
-    """Files of the networks of all seeds, by path."""
+    """Files of the networks of all seeds, by path; those with several lanes and ramps are called lanes."""
     found = {}
-    for seed in (*SEEDS, *MAPS):
-        route = map_route(seed) if seed in MAPS else drawn(seed)[1]
-        written = save(route, folder, [format_], World(), f"network{seed}")
+    routes = [
+        (f"network{seed}", map_route(seed) if seed in MAPS else drawn(seed)[1]) for seed in (*SEEDS, *MAPS)
+    ]
+    routes += [(f"lanes{seed}", drawn(seed, random_lanes_design)[1]) for seed in LANES]
+    for name, route in routes:
+        written = save(route, folder, [format_], World(), name)
         (file,) = (path for path in written if path.suffix == ".xodr")
         found[str(file)] = route.network
     return found
@@ -132,7 +142,8 @@ def test_commonroad_counts_the_same_ways_lights_and_signs(tmp_path: Path) -> Non
         junctions = files[file].junctions
         controls = Counter(arm.control for junction in junctions for arm in junction.arms)
         ours = [sorted(Counter(c.incoming for c in junction.connections).values()) for junction in junctions]
-        assert ways == sorted(ours)
+        if "lanes" not in Path(file).name:  # it makes several arms of one with several lanes
+            assert ways == sorted(ours)
         assert lights == controls["lights"]
         for control, sign in (("stop", "STOP"), ("yield", "YIELD"), ("priority", "PRIORITY")):
             assert signs.get(sign, 0) == controls[control]
@@ -146,11 +157,13 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
         done = subprocess.run(run, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         root = ET.parse(target).getroot()
+        # its edges begin where a lane does: "-3#1" is part of road 3
         theirs = {
-            (each.attrib["from"].split(".")[0], each.attrib["to"].split(".")[0])
+            (re.split("[.#]", each.attrib["from"])[0], re.split("[.#]", each.attrib["to"])[0])
             for each in root.iter("connection")
             if not each.attrib["from"].startswith(":") and each.attrib["dir"] != "t"
         }
+        theirs = {(before, after) for before, after in theirs if before != after}
         # SUMO puts a minus before the id of a road for its edge along the road
         ours = {
             (
@@ -160,6 +173,9 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
             for junction in network.junctions
             for c in junction.connections
         }
+        for each in network.continuations:
+            ours |= {(f"-{each.before.road}", f"-{each.after.road}") for lane, _ in each.lanes if lane < 0}
+            ours |= {(f"{each.after.road}", f"{each.before.road}") for lane, _ in each.lanes if lane > 0}
         assert theirs == ours
         lit = [j for j in network.junctions if any(arm.control == "lights" for arm in j.arms)]
         assert len(list(root.iter("tlLogic"))) == len(lit)
@@ -199,3 +215,38 @@ def test_the_referee_measures_what_was_designed(tmp_path: Path, referee: ModuleT
         segments = range(last + 1, junction["after"] + 1)
         assert measured["after"] == pytest.approx(sum(data[f"road_segment{n}"]["distance"] for n in segments))
         last = junction["after"]
+
+
+RAMPS = {"merge", "diverge"}
+WIDE_IN_TAPER = 11.75  # m, of a taper of 60 m, in which a lane is wider than 0.9 of its width
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_referee_measures_the_lanes_and_ramps_that_were_designed(
+    tmp_path: Path, referee: ModuleType, seed: int
+) -> None:
+    data, route = drawn(seed, random_lanes_design)
+    save(route, tmp_path, ["opendrive"], World(), "network")
+    legs = json.loads((tmp_path / "network.route.json").read_text())["route"]
+    found = referee.measure(str(tmp_path / "network.xodr"), legs)
+    assert (found["breaks"], found["faults"]) == ([], [])
+    places = [data[f"junction{n}"] for n in range(1, 5) if f"junction{n}" in data]
+    junctions = [(n, place) for n, place in enumerate(places) if not place["kind"].startswith("lane_")]
+    assert len(found["junctions"]) == len(junctions)
+    for (n, place), measured in zip(junctions, found["junctions"], strict=True):
+        if place["kind"] not in RAMPS:
+            angle = sorted(arm["angle"] for arm in place["arms"])[place["take"] - 1]
+            assert measured["deg"] == pytest.approx(angle, abs=0.1)
+            continue
+        assert measured["kinds"] == [place["kind"]]
+        beside = {each["kind"] for each in (*places[max(n - 1, 0) : n], *places[n + 1 : n + 2])}
+        if beside & {"lane_drop", "lane_gain"}:
+            continue  # it may take a lane that ends or begins there for that of the ramp
+        takes = {"ramp": "exit" if place["kind"] == "diverge" else "ramp", "main": "main"}
+        assert measured["take"] == takes[place["take"]]
+        length = measured["accel" if place["kind"] == "merge" else "decel"]
+        assert length == pytest.approx(place.get("length", 130.0) + WIDE_IN_TAPER, abs=1.5)
+        assert measured["side"] == "right"
+    events = [event["kind"] for stretch in found["stretches"] for event in stretch["events"]]
+    for kind in ("lane_drop", "lane_gain"):
+        assert events.count(kind) >= sum(place["kind"] == kind for place in places)
