@@ -22,7 +22,7 @@ from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route, read_netwo
 from roadgpt.network.lane_along import change_windows
 from roadgpt.road import World
 
-settled = settings(max_examples=30, deadline=None)
+settled = settings(max_examples=20, deadline=None)
 seeds = st.integers(0, 10_000)
 EXACT = 1e-9  # m and rad
 NEAR = 1e-6  # m

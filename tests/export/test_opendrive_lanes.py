@@ -1,0 +1,137 @@
+"""OpenDRIVE files of networks with several lanes, ramps, and lanes that end or begin."""
+
+import math
+from collections import Counter
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+
+from export.test_opendrive_networks import SIGNS, WORLD, WrittenMap, boundary_of, turned
+from network.random_designs import random_lanes_design
+from roadgpt.export.exporters.opendrive import document
+from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.network.paved import paved_by
+
+SEEDS = range(25)
+TIP = 0.15  # m^2, between two ways that touch each other at an acute angle
+
+
+@cache
+def route_of(seed: int) -> Route:
+    return build_route(read_network_design(random_lanes_design(seed))[0], WORLD)
+
+
+@cache
+def written(seed: int) -> WrittenMap:
+    return WrittenMap(document(route_of(seed), WORLD).to_text())
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_the_boundary_of_a_ramp_encloses_what_is_paved(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    for each in network.junctions:
+        if each.kind not in ("merge", "diverge"):
+            continue
+        segments = boundary_of(here, here.junctions[str(each.id)])
+        for one, two in zip(segments, [*segments[1:], segments[0]], strict=True):
+            assert one[-1] == pytest.approx(two[0], abs=1e-3)
+        points = np.array([point for segment in segments for point in segment])
+        is_new = np.hypot(*(np.roll(points, -1, axis=0) - points).T) > 1e-6
+        inside = shapely.Polygon(points[is_new])
+        paved = paved_by([network.road(way.road).road for way in each.connections])
+        assert inside.exterior.is_ccw
+        assert shapely.symmetric_difference(inside.buffer(0), paved).area < TIP
+
+
+def lane_of(here: WrittenMap, road: int, contact: str, lane: int) -> tuple[float, ...]:
+    """x and y of both borders of a lane at an end of a road, and the road's height there."""
+    member = here.roads[str(road)]
+    s = member.end(contact)
+    inner = member.border(lane + (1 if lane < 0 else -1), s)
+    return (*member.at(s, inner), *member.at(s, member.border(lane, s)), member.height(s))
+
+
+def linked(here: WrittenMap, road: int, lane: int, tag: str) -> int | None:
+    link = here.roads[str(road)].lanes[lane].find(f"link/{tag}")
+    return None if link is None else int(link.attrib["id"])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_roads_that_continue_each_other_are_linked_lane_by_lane(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    for each in network.continuations:
+        one, two = each.before.road, each.after.road
+        for road, other, tag, contact in ((one, two, "successor", "start"), (two, one, "predecessor", "end")):
+            link = here.roads[str(road)].links[tag]
+            assert (link["elementType"], link["elementId"]) == ("road", str(other))
+            assert link["contactPoint"] == contact
+        assert each.lanes
+        for before, after in each.lanes:
+            assert (linked(here, one, before, "successor"), linked(here, two, after, "predecessor")) == (
+                after,
+                before,
+            )
+            assert lane_of(here, one, "end", before) == pytest.approx(
+                lane_of(here, two, "start", after), abs=1e-6
+            )
+        for road, contact, tag in ((one, "end", "successor"), (two, "start", "predecessor")):
+            member = here.roads[str(road)]
+            for lane in member.driven:
+                has_width = member.width(lane, member.end(contact)) > 1e-6
+                assert (linked(here, road, lane, tag) is not None) == has_width
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_lanes_lead_through_junctions_without_a_step(seed: int) -> None:
+    here = written(seed)
+    for connection, way in here.ways():
+        pairs = {(int(link.attrib["from"]), int(link.attrib["to"])) for link in connection.iter("laneLink")}
+        assert {own for _, own in pairs} == way.driven
+        for tag, contact in (("predecessor", "start"), ("successor", "end")):
+            link = way.links[tag]
+            other = here.roads[link["elementId"]]
+            heading = way.pose(way.end(contact))[2] - other.pose(other.end(link["contactPoint"]))[2]
+            is_same_way = (link["contactPoint"] == "end") == (tag == "predecessor")
+            assert turned(heading - (0 if is_same_way else math.pi)) == pytest.approx(0, abs=1e-6)
+            for own in way.driven:
+                lane = linked(here, int(way.id), own, tag)
+                assert lane is not None
+                assert tag == "successor" or (lane, own) in pairs
+                assert lane_of(here, int(way.id), contact, own) == pytest.approx(
+                    lane_of(here, int(other.id), link["contactPoint"], lane), abs=1e-6
+                )
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_signs_stand_beside_lanes_that_lead_to_the_junction(seed: int) -> None:
+    here, network = written(seed), route_of(seed).network
+    wanted = Counter(
+        (str(arm.end.road), arm.end.contact, *SIGNS[arm.control])
+        for junction in network.junctions
+        for arm in junction.arms
+        if arm.control != "none"
+    )
+    found: Counter[tuple[str, ...]] = Counter()
+    for road in here.roads.values():
+        objects = {each.attrib["id"]: each.attrib for each in road.element.iter("object")}
+        for signal in road.element.iter("signal"):
+            data = signal.attrib
+            contact = "end" if data["orientation"] == "+" else "start"
+            into = road.into(contact)
+            assert into
+            s, t = float(data["s"]), float(data["t"])
+            outermost = max(road.lanes, key=lambda n: n if contact == "start" else -n)
+            side = 1 if contact == "start" else -1
+            assert side * (t - road.border(outermost, s)) == pytest.approx(0.6)
+            found[road.id, contact, data["country"], data["type"]] += 1
+            if data["type"] == "306":
+                continue
+            line = objects[data["id"]]
+            nearest, farthest = min(into, key=abs), max(into, key=abs)
+            at = float(line["s"])
+            edges = road.border(nearest - (1 if nearest > 0 else -1), at), road.border(farthest, at)
+            assert float(line["t"]) == pytest.approx(sum(edges) / 2)
+            assert float(line["width"]) == pytest.approx(abs(edges[1] - edges[0]))
+    assert found == wanted
