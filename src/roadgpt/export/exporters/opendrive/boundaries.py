@@ -8,9 +8,15 @@ line between the lanes of both directions, at which a connecting road begins.
 
 from collections.abc import Iterator, Mapping
 
+from roadgpt.brief.junctions import RAMPS
 from roadgpt.export.exporters.opendrive.kerbs import outermost
+from roadgpt.export.exporters.opendrive.paved_outline import PavedOutline
 from roadgpt.export.markup import Value, XmlElement
+from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network, RoadEnd
+from roadgpt.network.building import width_at
+
+ROUNDABOUT_WAYS = 3  # of a junction of a roundabout at a road with both directions
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -21,6 +27,9 @@ def boundary(network: Network, junction: Junction) -> XmlElement:
 def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
     arms = [arm.end for arm in junction.arms]
     ways = {(each.incoming, each.outgoing): each for each in junction.connections}
+    if _needs_outline(junction):
+        yield from _by_outline(network, junction)
+        return
     for n, end in enumerate(arms):
         yield _across(junction, end)
         after = arms[(n + 1) % len(arms)]
@@ -34,6 +43,42 @@ def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
             yield _along(left.road, 0, "end", "start")
         else:
             yield from _between(network, ways, end, after)
+
+
+def _needs_outline(junction: Junction) -> bool:
+    """Returns whether any way may be the outermost one: several lanes meet, or one-way roads."""
+    if junction.kind in RAMPS:
+        return False
+    count = len(junction.arms)
+    usual = ROUNDABOUT_WAYS if junction.kind == "roundabout" else count * (count - 1)
+    return len(junction.connections) < usual or any(len(each.lanes) > 1 for each in junction.connections)
+
+
+def _by_outline(network: Network, junction: Junction) -> Iterator[XmlElement]:
+    """Yields the segments of a boundary that follows the outline of the paved area."""
+    outline, ends = PavedOutline.of(network, junction), [arm.end for arm in junction.arms]
+    for n, end in enumerate(ends):
+        after = ends[(n + 1) % len(ends)]
+        yield _across(junction, end)
+        start, goal = _corner(network, junction, end, 1), _corner(network, junction, after, 0)
+        for edge, first, last in outline.between(start, goal):
+            yield _along(edge.road, edge.lane, first, last)
+
+
+def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> Array:
+    """Returns the first (0) or the last (1) point of the segment across an arm."""
+    member = network.road(end.road)
+    lane = _lanes_across(junction, end)[which]
+    s = 0.0 if end.contact == "start" else member.road.length
+    side, first = (
+        (member.profile.left, member.profile.sides(s).left)
+        if lane > 0
+        else (member.profile.right, member.profile.sides(s).right)
+    )
+    count = member.profile.left_ids.index(lane) + 1 if lane in member.profile.left_ids else -min(lane, 0)
+    width = sum(width_at(each.width, s) for each in side[:count])
+    t = float(first) + (width if lane > 0 else -width)
+    return member.road.at(s, t)[:2]
 
 
 def _between(
@@ -64,11 +109,7 @@ def _across(junction: Junction, end: RoadEnd) -> XmlElement:
     Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
     to those that lead into it. Shoulders end at the junction.
     """
-    lanes = [link.incoming for each in junction.connections if each.incoming == end for link in each.lanes]
-    lanes += [link.outgoing for each in junction.connections if each.outgoing == end for link in each.lanes]
-    right, left = min(lanes), max(lanes)
-    right, left = right if right < 0 else right - 1, left if left > 0 else left + 1
-    first, last = (right, left) if end.contact == "start" else (left, right)
+    first, last = _lanes_across(junction, end)
     return XmlElement(
         "segment",
         {
@@ -79,6 +120,15 @@ def _across(junction: Junction, end: RoadEnd) -> XmlElement:
             "jointLaneEnd": last,
         },
     )
+
+
+def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
+    """Returns the lanes at whose outer edges the segment across an arm begins and ends."""
+    lanes = [link.incoming for each in junction.connections if each.incoming == end for link in each.lanes]
+    lanes += [link.outgoing for each in junction.connections if each.outgoing == end for link in each.lanes]
+    right, left = min(lanes), max(lanes)
+    right, left = right if right < 0 else right - 1, left if left > 0 else left + 1
+    return (right, left) if end.contact == "start" else (left, right)
 
 
 def _along(road: int, lane: int, start: Value, end: Value) -> XmlElement:
