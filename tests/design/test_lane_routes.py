@@ -50,6 +50,10 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "X", "take": "left"}],
         **TWO_EACH,
     },
+    "| lanes=2 against=2 // roundabout straight // | lanes=2 against=2": {
+        "sequence": [{"kind": "roundabout", "take": "straight", "ring_lanes": 2}],
+        **TWO_EACH,
+    },
     "| oneway // t_junction left": {
         "sequence": [{"kind": "T", "take": "left", "two_way": [0, 3]}],
         "between": [{"oneway": True, "lanes": 1}, None],
@@ -155,10 +159,9 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
     ("line", "said"),
     [
         ("merge ramp side=left // | motorway", "a ramp on the left cannot be built yet; leave it out"),
-        ("crossroads straight crosswalk", "a crosswalk cannot be built yet; leave it out"),
         (
-            "crossroads crosswalk // // diverge ramp side=left",
-            "a crosswalk and a ramp on the left cannot be built yet; leave them out",
+            "merge ramp side=left // | motorway || left_hand",
+            "traffic on the left and a ramp on the left cannot be built yet; leave them out",
         ),
     ],
 )

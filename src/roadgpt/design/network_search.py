@@ -14,7 +14,7 @@ import numpy as np
 
 from roadgpt import check
 from roadgpt.brief.amount import at_least, between, exactly, span
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.junction_draft import drawn_junction
@@ -142,7 +142,7 @@ class NetworkSearch:
                 room = self._room_beside(number)
                 found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
                 continue
-            junction = drawn_junction(clause, 1, self.rng, haste)
+            junction = drawn_junction(self._with_ring_lanes(number), 1, self.rng, haste)
             if junction is None:
                 is_ring = clause.kind == "roundabout"
                 why = "such an island is too small for so many arms" if is_ring else "it has no such ways on"
@@ -150,6 +150,14 @@ class NetworkSearch:
                 return None
             found.append(junction if lanes is None else junction.model_copy(update={"lanes": lanes}))
         return found
+
+    def _with_ring_lanes(self, number: int) -> JunctionClause:
+        """Returns what is required of a junction; a ring has as many lanes as the roads that it joins."""
+        clause = self.brief.junctions[number]
+        if clause.kind != "roundabout" or clause.lanes is not None:
+            return clause
+        most = max(max(each.forward, each.backward) for each in self.lanes[number : number + 2])
+        return clause.model_copy(update={"lanes": exactly(most)}) if most > 1 else clause
 
     def _room_beside(self, number: int) -> float:
         """Returns the length in metres that a lane for acceleration or deceleration can have."""
