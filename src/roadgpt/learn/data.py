@@ -23,16 +23,16 @@ from roadgpt.learn.shared_values import with_shared_values
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
 SHARES = {
-    "networks": 0.36,
-    "routes": 0.10,
-    "hand": 0.161,
-    "free": 0.105,
-    "contrasts": 0.062,
-    "changes": 0.062,
-    "generated": 0.025,
-    "generated contrasts": 0.062,
-    "generated changes": 0.075,
-    "generated specs": 0.068,
+    "networks": 0.33,
+    "routes": 0.09,
+    "hand": 0.15,
+    "free": 0.10,
+    "contrasts": 0.06,
+    "changes": 0.06,
+    "generated": 0.02,
+    "generated contrasts": 0.06,
+    "generated changes": 0.07,
+    "generated specs": 0.06,
 }
 """The share of each series of pairs. ``networks`` are hand-written routes with junctions, ``routes`` are put
 together of those and of hand-written roads.

@@ -145,7 +145,7 @@ class NeuralNetwork:
             likeliest = np.argsort(total, axis=None)[::-1][: 2 * width]
             longer, rows = list[Draft](), list[int]()
             for row, token in zip(*np.unravel_index(likeliest, total.shape), strict=True):
-                if np.isfinite(total[row, token]) and len(longer) < width:
+                if total[row, token] > UNKNOWN / 2 and len(longer) < width:
                     draft = drafts[row].longer(int(token), float(logs[row, token]))
                     if draft.is_done:
                         done.append(draft)
@@ -159,6 +159,12 @@ class NeuralNetwork:
             drafts, own = longer, own[:, :, rows]
         best_first = sorted(done or drafts, key=lambda draft: -draft.score)
         return tuple(draft.written(refusal) for draft in best_first)
+
+    def refusal(self, text: SlottedText) -> float:
+        """Returns the probability that the network writes a refusal as the first token."""
+        across, draft = self.encode(text), Draft.of(text)
+        scores, _ = self._step([draft], 0, _nothing(across), across)
+        return float(np.exp(_log_chances(scores[0], draft.writer.allowed())[REFUSED]).sum())
 
     def drawn(
         self, across: Array, text: SlottedText, rng: np.random.Generator, temperature: float

@@ -135,11 +135,8 @@ def _are_clear(variants: Sequence[VariantPlans]) -> bool:
 
 def refusal(networks: Sequence[NeuralNetwork], words: str) -> float:
     """Returns the mean probability of a refusal over all networks and variants."""
-    chances: list[float] = []
-    for network in networks:
-        for variant in (words, *(other for other, _ in _others(words))):
-            chances.append(_plans_of_variant(network, slotted(variant), 2.0, False, _normal_form).refusal)
-    return sum(chances) / len(chances)
+    texts = [slotted(variant) for variant in (words, *(other for other, _ in _others(words)))]
+    return sum(network.refusal(text) for network in networks for text in texts) / len(networks) / len(texts)
 
 
 def _others(words: str) -> list[tuple[str, bool]]:
