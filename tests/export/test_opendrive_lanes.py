@@ -1,14 +1,13 @@
 """OpenDRIVE files of networks with several lanes, ramps, and lanes that end or begin."""
 
 import math
-from collections import Counter
 from functools import cache
 
 import numpy as np
 import pytest
 import shapely
 
-from export.test_opendrive_networks import SIGNS, WORLD, WrittenMap, boundary_of, turned
+from export.test_opendrive_networks import WORLD, WrittenMap, boundary_of, check_signs, turned
 from network.random_designs import random_lanes_design
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Junction, Route, build_route, read_network_design
@@ -119,33 +118,5 @@ def test_lanes_lead_through_junctions_without_a_step(seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-def test_signs_stand_beside_lanes_that_lead_to_the_junction(seed: int) -> None:
-    here, network = written(seed), route_of(seed).network
-    wanted = Counter(
-        (str(arm.end.road), arm.end.contact, *SIGNS[arm.control])
-        for junction in network.junctions
-        for arm in junction.arms
-        if arm.control != "none"
-    )
-    found: Counter[tuple[str, ...]] = Counter()
-    for road in here.roads.values():
-        objects = {each.attrib["id"]: each.attrib for each in road.element.iter("object")}
-        for signal in road.element.iter("signal"):
-            data = signal.attrib
-            contact = "end" if data["orientation"] == "+" else "start"
-            into = road.into(contact)
-            assert into
-            s, t = float(data["s"]), float(data["t"])
-            outermost = max(road.lanes, key=lambda n: n if contact == "start" else -n)
-            side = 1 if contact == "start" else -1
-            assert side * (t - road.border(outermost, s)) == pytest.approx(0.6)
-            found[road.id, contact, data["country"], data["type"]] += 1
-            if data["type"] == "306":
-                continue
-            line = objects[data["id"]]
-            nearest, farthest = min(into, key=abs), max(into, key=abs)
-            at = float(line["s"])
-            edges = road.border(nearest - (1 if nearest > 0 else -1), at), road.border(farthest, at)
-            assert float(line["t"]) == pytest.approx(sum(edges) / 2)
-            assert float(line["width"]) == pytest.approx(abs(edges[1] - edges[0]))
-    assert found == wanted
+def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) -> None:
+    check_signs(written(seed), route_of(seed).network)

@@ -13,7 +13,7 @@ import shapely
 from network.random_designs import random_design
 from network.random_maps import map_route
 from roadgpt.export.exporters.opendrive import document
-from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.network import Network, Route, build_route, read_network_design
 from roadgpt.road import World
 
 WORLD = World()
@@ -222,9 +222,8 @@ def test_a_boundary_encloses_what_is_paved(seed: int) -> None:
         assert {(each.attrib["roadId"], each.attrib["contactPoint"]) for each in joints} == here.meets(name)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) -> None:
-    here, network = written(seed), route_of(seed).network
+def check_signs(here: WrittenMap, network: Network) -> None:
+    """Every sign, light and line of a file stands where traffic comes to a junction, and none is missing."""
     wanted = Counter(
         (str(arm.end.road), arm.end.contact, *SIGNS[arm.control])
         for junction in network.junctions
@@ -237,9 +236,11 @@ def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) ->
         for signal in road.element.iter("signal"):
             data = signal.attrib
             contact = "end" if data["orientation"] == "+" else "start"
+            into = road.into(contact)
             (validity,) = signal.findall("validity")
             lanes = [int(validity.attrib[key]) for key in ("fromLane", "toLane")]
-            assert set(range(lanes[0], lanes[1] + 1)) == road.into(contact)
+            assert into
+            assert set(range(lanes[0], lanes[1] + 1)) == into
             s, t = float(data["s"]), float(data["t"])
             assert abs(s - road.end(contact)) == pytest.approx(1.0)
             outermost = max(road.lanes, key=lambda n: n if contact == "start" else -n)
@@ -251,12 +252,19 @@ def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) ->
                 continue
             line = objects.pop(data["id"])
             assert line["orientation"] == data["orientation"]
-            edge = road.border(max(road.into(contact), key=abs), s)
-            assert float(line["t"]) == pytest.approx(edge / 2)
-            assert float(line["width"]) == pytest.approx(abs(edge))
-            assert abs(float(line["s"]) - road.end(contact)) == pytest.approx(float(line["length"]) / 2)
+            nearest, farthest = min(into, key=abs), max(into, key=abs)
+            at = float(line["s"])
+            edges = road.border(nearest - (1 if nearest > 0 else -1), at), road.border(farthest, at)
+            assert float(line["t"]) == pytest.approx(sum(edges) / 2)
+            assert float(line["width"]) == pytest.approx(abs(edges[1] - edges[0]))
+            assert abs(at - road.end(contact)) == pytest.approx(float(line["length"]) / 2)
         assert not objects
     assert found == wanted
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) -> None:
+    check_signs(written(seed), route_of(seed).network)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -17,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from network.random_designs import random_lanes_design
+from network.shared_laws import Motion, check_that_ways_join_the_arms
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route, read_network_design, road_from_json
 from roadgpt.network.lane_along import change_windows
@@ -74,6 +75,12 @@ def joints(route: Route) -> Iterator[tuple[tuple[NetworkRoad, int, float], tuple
     for each in network.continuations:
         for before, after in each.lanes:
             yield at(each.before, before), at(each.after, after)
+
+
+@given(seeds)
+@settled
+def test_connecting_roads_begin_and_end_on_the_arms(seed: int) -> None:
+    check_that_ways_join_the_arms(drawn(seed).network, EXACT)
 
 
 @given(seeds)
@@ -153,22 +160,18 @@ def test_a_stored_network_is_restored_exactly(seed: int) -> None:
 def test_a_design_that_is_moved_and_turned_gives_the_network_moved_and_turned(
     seed: int, dx: float, dy: float, dz: float, degrees: float
 ) -> None:
-    data = random_lanes_design(seed)
-    x, y, z = data["starting_point"]
-    there = {**data, "starting_point": [x + dx, y + dy, z + dz], "theta": data["theta"] + degrees}
-    one, other = drawn(seed), build_route(read_network_design(there)[0], World())
+    moved = Motion(random_lanes_design(seed), (dx, dy, dz), degrees)
+    one, other = drawn(seed), build_route(read_network_design(moved.design)[0], World())
     assert other.legs == one.legs
     assert other.network.continuations == one.network.continuations
-    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    turn = np.array([[cos, sin], [-sin, cos]])
     for a, b in zip(one.network.roads, other.network.roads, strict=True):
         assert (a.id, a.junction) == (b.id, b.junction)
         s = np.linspace(0, min(a.road.length, b.road.length), 5)
         for lane in (-1, -a.profile.count[0]):
-            t = np.array([offsets(a, lane, each)[1] for each in s])
-            here, moved = a.road.at(s, t), b.road.at(s, np.array([offsets(b, lane, each)[1] for each in s]))
-            assert moved[:, :2] == pytest.approx((here[:, :2] - [x, y]) @ turn + [x + dx, y + dy], abs=NEAR)
-            assert moved[:, 2] == pytest.approx(here[:, 2] + dz, abs=NEAR)
+            here, there = (
+                each.road.at(s, np.array([offsets(each, lane, at)[1] for at in s])) for each in (a, b)
+            )
+            assert there == pytest.approx(moved(here), abs=NEAR)
 
 
 @given(seeds)

@@ -13,8 +13,9 @@ from scipy.special import fresnel
 
 from network.changing import built, design, passing
 from network.random_designs import random_design
+from network.shared_laws import Motion, check_that_ways_join_the_arms, pose
 from roadgpt.geometry import PieceCurve
-from roadgpt.network import Junction, Network, RoadEnd, Route, build_route, read_network_design
+from roadgpt.network import Junction, Network, Route, build_route, read_network_design
 from roadgpt.network.turning import SHARE, curve_between, tangent_length
 from roadgpt.road import World
 
@@ -28,26 +29,10 @@ def drawn(seed: int) -> Route:
     return build_route(read_network_design(random_design(seed))[0], World())
 
 
-def pose(network: Network, end: RoadEnd, inwards: bool) -> np.ndarray:
-    """The point (x, y, z) at an end, the direction of travel as a unit vector, and the grade in it."""
-    road = network.road(end.road).road
-    s = 0.0 if end.contact == "start" else road.length
-    along = (end.contact == "end") == inwards
-    heading = float(road.heading(s)) + (0.0 if along else math.pi)
-    grade = float(road.grade(s)) * (1 if along else -1)
-    return np.array([*road.at(s), math.cos(heading), math.sin(heading), grade])
-
-
 @given(seeds)
 @settled
 def test_connecting_roads_begin_and_end_on_the_arms(seed: int) -> None:
-    network = drawn(seed).network
-    for junction in network.junctions:
-        for each in junction.connections:
-            start = pose(network, RoadEnd(each.road, "start"), inwards=False)
-            end = pose(network, RoadEnd(each.road, "end"), inwards=True)
-            assert start == pytest.approx(pose(network, each.incoming, inwards=True), abs=EXACT)
-            assert end == pytest.approx(pose(network, each.outgoing, inwards=False), abs=EXACT)
+    check_that_ways_join_the_arms(drawn(seed).network, EXACT)
 
 
 @given(seeds)
@@ -116,20 +101,15 @@ def test_arms_stand_counter_clockwise_and_look_out(seed: int) -> None:
 def test_a_design_that_is_moved_and_turned_gives_the_network_moved_and_turned(
     seed: int, dx: float, dy: float, dz: float, degrees: float
 ) -> None:
-    data = random_design(seed)
-    x, y, z = data["starting_point"]
-    there = {**data, "starting_point": [x + dx, y + dy, z + dz], "theta": data["theta"] + degrees}
-    one, other = drawn(seed), build_route(read_network_design(there)[0], World())
+    moved = Motion(random_design(seed), (dx, dy, dz), degrees)
+    one, other = drawn(seed), build_route(read_network_design(moved.design)[0], World())
     assert other.legs == one.legs
-    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
-    turn = np.array([[cos, -sin], [sin, cos]])
     for a, b in zip(one.network.roads, other.network.roads, strict=True):
         assert (a.id, a.junction) == (b.id, b.junction)
         s = np.linspace(0, a.road.length, 7)
-        here, moved = a.road.at(s), b.road.at(np.minimum(s, b.road.length))
-        expected = (here[:, :2] - [x, y]) @ turn.T + [x + dx, y + dy]
-        assert moved[:, :2] == pytest.approx(expected, abs=1e-6)
-        assert moved[:, 2] == pytest.approx(here[:, 2] + dz, abs=1e-9)
+        there, expected = b.road.at(np.minimum(s, b.road.length)), moved(a.road.at(s))
+        assert there[:, :2] == pytest.approx(expected[:, :2], abs=1e-6)
+        assert there[:, 2] == pytest.approx(expected[:, 2], abs=1e-9)
 
 
 @given(st.floats(0.01, 3.0))

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 
 from network.random_maps import random_map
+from network.shared_laws import sentence_of
 from roadgpt.errors import UsageError
 from roadgpt.network import MapDesign, Route, build_map, read_any_design, read_blueprint, read_road
 from roadgpt.network.map_design import has_nodes, read_map_design
@@ -37,12 +38,7 @@ def built(data: Any) -> Route:
 
 
 def said(data: Any) -> str:
-    with pytest.raises(UsageError) as error:
-        built(data)
-    sentence = str(error.value)
-    assert "\n" not in sentence
-    assert "pydantic" not in sentence
-    return sentence
+    return sentence_of(built, data)
 
 
 def changed(**fields: Any) -> dict[str, Any]:

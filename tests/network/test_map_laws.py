@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from network.random_maps import PLANS, WORLD, map_route, random_map
-from network.test_laws import pose
+from network.shared_laws import check_that_ways_join_the_arms
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.check.map_measures import measured_map
 from roadgpt.design.map_search import MapSearch
-from roadgpt.network import RoadEnd, read_map_design, road_from_json
+from roadgpt.network import read_map_design, road_from_json
 from roadgpt.network.map_growing import signs_at
 
 settled = settings(max_examples=25, deadline=None)
@@ -24,13 +24,7 @@ EXACT = 1e-6  # m and rad
 @given(seeds)
 @settled
 def test_connecting_roads_begin_and_end_on_the_arms(seed: int) -> None:
-    network = map_route(seed).network
-    for junction in network.junctions:
-        for each in junction.connections:
-            start = pose(network, RoadEnd(each.road, "start"), inwards=False)
-            end = pose(network, RoadEnd(each.road, "end"), inwards=True)
-            assert start == pytest.approx(pose(network, each.incoming, inwards=True), abs=EXACT)
-            assert end == pytest.approx(pose(network, each.outgoing, inwards=False), abs=EXACT)
+    check_that_ways_join_the_arms(map_route(seed).network, EXACT)
 
 
 @given(seeds)

@@ -8,15 +8,14 @@ from typing import cast
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, side_of
+from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, PlainKind, side_of
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
-from roadgpt.network.network import JunctionKind
 from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
-ANY: tuple[JunctionKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
+ANY: tuple[PlainKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
 """The kinds of a junction whose kind is not said; T-junctions are twice as frequent."""
 
 KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
@@ -78,14 +77,12 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
     return None
 
 
-def _kind(asked: JunctionClause, rng: Rng) -> JunctionKind:
+def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
     """Returns the kind of a junction; where the description names none, one of those that have its arms."""
     if asked.kind != "junction":
-        return cast(JunctionKind, asked.kind)
+        return cast(PlainKind, asked.kind)
     arms = span(asked.arms)
-    kinds: list[JunctionKind] = [
-        kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo
-    ]
+    kinds: list[PlainKind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
     return kinds[int(rng.integers(len(kinds)))]
 
 

@@ -8,8 +8,8 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.junctions import PlainKind
 from roadgpt.network.map_design import NodeKind
-from roadgpt.network.network import JunctionKind
 from roadgpt.network.ring import ring_width
 
 Rng = np.random.Generator
@@ -96,5 +96,5 @@ def drawn_bend(rng: Rng, least: float, room: float) -> float | None:
 
 def kind_of(arms: int) -> NodeKind:
     """Returns the kind of a node of a grid by the number of its roads."""
-    kinds: Sequence[JunctionKind] = ("t_junction", "crossroads", "star")
+    kinds: Sequence[PlainKind] = ("t_junction", "crossroads", "star")
     return "end" if arms == 1 else "bend" if arms == 2 else kinds[arms - 3]

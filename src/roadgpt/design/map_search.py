@@ -10,13 +10,13 @@ from math import inf, sqrt
 
 import numpy as np
 
-from roadgpt import check
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import Control
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
 from roadgpt.design.advice import larger_map
+from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
 from roadgpt.design.layout import boxes
 from roadgpt.design.map_draft import DraftNode, MapDraft
@@ -71,24 +71,12 @@ class MapSearch:
             UsageError: the World asks for lanes or banked bends that networks do not have.
         """
         profile_of_map(None, self.world)
-        built = 0
-        for number in range(drafts):
-            haste = max(0.0, (number - NO_HASTE) / (drafts / 2)) ** 0.5
-            design = self._draft(min(max(haste, self._least_haste), 1.0))
-            if design is None:
-                continue
-            built += 1
-            try:
-                findings = check.inspect(build_map(design, self.world), self.brief, self.world)
-            except UsageError as error:
-                self.failed[str(error)] += 1
-                continue
-            if not findings:
-                return design
-            self.failed[findings[0].sentence] += 1
-            if built == BUILT:
-                break
-        raise DesignError(self._advice())
+        hastes = (max(0.0, (n - NO_HASTE) / (drafts / 2)) ** 0.5 for n in range(drafts))
+        tried = (self._draft(min(max(haste, self._least_haste), 1.0)) for haste in hastes)
+        found = first_accepted(tried, build_map, self.brief, self.world, self.failed, BUILT)
+        if found is None:
+            raise DesignError(self._advice())
+        return found
 
     @property
     def _least_haste(self) -> float:

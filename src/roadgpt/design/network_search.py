@@ -12,11 +12,11 @@ from math import inf
 
 import numpy as np
 
-from roadgpt import check
 from roadgpt.brief.amount import at_least, between, exactly, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
+from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.lane_draft import SHORT_ROAD, drawn_change, drawn_ramp, lanes_of_roads
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
@@ -25,7 +25,7 @@ from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.errors import DesignError
 from roadgpt.network import NetworkDesign, build_route
 from roadgpt.network.design import PlaceDesign, ends_route
 from roadgpt.network.growing import length_inside
@@ -82,24 +82,13 @@ class NetworkSearch:
         Raises:
             DesignError: no draft was accepted; the message says why most of them failed.
         """
-        built, least = 0, HURRIED * max(len(self.brief.junctions) - 2, 0)
-        for number in range(DRAFTS):
-            haste = max(0.0, (number - NO_HASTE) / (DRAFTS - NO_HASTE)) ** 0.5
-            design = self._draft(min(max(haste, least), 1.0))
-            if design is None:
-                continue
-            built += 1
-            try:
-                route = build_route(design, self.world)
-            except UsageError as error:
-                raise DesignError(str(error)) from error
-            findings = check.inspect(route, self.brief, self.world)
-            if not findings:
-                return design
-            self.failed[findings[0].sentence] += 1
-            if built == BUILT:
-                break
-        raise DesignError(self._advice())
+        least = HURRIED * max(len(self.brief.junctions) - 2, 0)
+        hastes = (max(0.0, (n - NO_HASTE) / (DRAFTS - NO_HASTE)) ** 0.5 for n in range(DRAFTS))
+        drafts = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
+        found = first_accepted(drafts, build_route, self.brief, self.world, self.failed, BUILT)
+        if found is None:
+            raise DesignError(self._advice())
+        return found
 
     def _draft(self, haste: float) -> NetworkDesign | None:
         junctions = self._places(haste)
