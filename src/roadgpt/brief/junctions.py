@@ -11,19 +11,10 @@ from pydantic import field_validator
 from roadgpt.brief.amount import Amount, Frozen
 from roadgpt.brief.words import Range
 
-JunctionKind = Literal[
-    "t_junction",
-    "y_junction",
-    "crossroads",
-    "star",
-    "roundabout",
-    "junction",
-    "merge",
-    "diverge",
-    "lane_drop",
-    "lane_gain",
-    "lane_change",
-]
+PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
+"""The kinds of junctions at which no road is a ramp."""
+MapJunctionKind = Literal[PlainKind, "junction"]
+JunctionKind = Literal[MapJunctionKind, "merge", "diverge", "lane_drop", "lane_gain", "lane_change"]
 LaneKind = Literal["lane_drop", "lane_gain", "lane_change"]
 RAMPS: tuple[JunctionKind, ...] = ("merge", "diverge")
 LANE_KINDS: tuple[JunctionKind, ...] = get_args(LaneKind)

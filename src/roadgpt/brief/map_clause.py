@@ -5,17 +5,16 @@ map crossroads x3; roundabout      three crossroads and a roundabout, joined by 
 """
 
 import re
-from typing import Literal, Self, get_args
+from typing import Self, get_args
 
 from pydantic import ValidationError, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, MapJunctionKind
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
 MAP = "map"
-MapJunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"]
 KEYS = {"columns": "columns", "rows": "rows", "len": "length"}
 CONTROLS = get_args(Control)
 ONE = exactly(1)

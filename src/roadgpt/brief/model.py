@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exactly, figure, span
 from roadgpt.brief.beside import BESIDE, friction_of
-from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.words import MOST_LANES, Range, nearest
 
@@ -34,7 +34,6 @@ __all__ = [
     "span",
 ]
 
-Side = Literal["left", "right"]
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 Sharpness = Literal["gentle", "sweeping", "sharp"]
 Size = Literal["long", "short"]

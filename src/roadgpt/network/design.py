@@ -21,10 +21,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, Field, StrictBool, ValidationError
 
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, side_of
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
 from roadgpt.errors import UsageError
 from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
-from roadgpt.network.network import JunctionKind
 from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
@@ -37,7 +36,7 @@ ASTERN = 25.0  # degrees; an arm nearer to the road on which one arrives cannot 
 MOST_JUNCTIONS = 100
 MOST_ARMS = 7
 
-USUAL_ARMS: dict[JunctionKind, tuple[float, ...]] = {
+USUAL_ARMS: dict[PlainKind, tuple[float, ...]] = {
     "t_junction": (-90.0, 90.0),
     "y_junction": (-60.0, 60.0),
     "crossroads": (-90.0, 0.0, 90.0),
@@ -45,7 +44,7 @@ USUAL_ARMS: dict[JunctionKind, tuple[float, ...]] = {
     "roundabout": (-90.0, 0.0, 90.0),
 }
 """The arms of a junction for which none are given, as angles in degrees."""
-COUNTS: dict[JunctionKind, tuple[int, int]] = {
+COUNTS: dict[PlainKind, tuple[int, int]] = {
     "t_junction": (2, 2),
     "y_junction": (2, 2),
     "crossroads": (3, 3),
@@ -73,7 +72,7 @@ class JunctionDesign(FrozenFields):
 
     after: Annotated[int, Field(ge=1, le=500)]
     """Number of segments of the route before it."""
-    kind: JunctionKind
+    kind: PlainKind
     take: Take
     control: Control = "none"
     """What the driver of the route meets: "priority", "yield", "stop", "lights" or "none"."""
@@ -112,7 +111,7 @@ class JunctionDesign(FrozenFields):
         return _towards(self.kind, self.take, [arm.angle for arm in arms])
 
 
-def _towards(kind: JunctionKind, take: str, angles: Sequence[float]) -> int:
+def _towards(kind: PlainKind, take: str, angles: Sequence[float]) -> int:
     """Returns the index of the arm on a side; in a fork the leftmost or the rightmost arm."""
     if kind == "y_junction" and take != "straight":
         return len(angles) - 1 if take == "left" else 0

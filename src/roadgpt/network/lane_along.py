@@ -13,8 +13,8 @@ import numpy as np
 
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.road import Profile, Road
-from roadgpt.road.profile import Lane, Width
+from roadgpt.road import Road
+from roadgpt.road.profile import Lane, Width, as_cubics
 
 LONGEST = 65.0  # m, of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
 SHARE = 0.8  # of the room for a lane change, at most
@@ -52,7 +52,7 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     assert profile is not None
     count = profile.count
     right = [lane.width for lane in profile.right[: count[0]]]
-    oncoming: list[Width] = [lane.width for lane in profile.left[: count[1]]]
+    oncoming = [profile.median, *(lane.width for lane in profile.left[: count[1]])]
     length = road.length
     offsets = [added([(1, profile.offset), *((-1, w) for w in right[:k])], length) for k in lanes]
     stations = {
@@ -60,16 +60,16 @@ def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     }
     offset = _through(offsets, length, stations)
     width = _through([right[k] for k in lanes], length, stations)
-    oncoming.append(profile.median)
     left = added([(1, profile.offset), *((1, w) for w in oncoming), (-1, offset)], length)
     outer = added([(1, offset), (-1, width), (-1, profile.offset), *((1, w) for w in right)], length)
-    shoulders = (_shoulder(side[n:], length) for side, n in _sides(profile, count))
-    left_shoulder, right_shoulder = shoulders
-    return LaneAlong(left_shoulder, left, offset, width, outer, right_shoulder)
-
-
-def _sides(profile: Profile, count: tuple[int, int]) -> tuple[tuple[Sequence[Lane], int], ...]:
-    return (profile.left, count[1]), (profile.right, count[0])
+    return LaneAlong(
+        _shoulder(profile.left[count[1] :], length),
+        left,
+        offset,
+        width,
+        outer,
+        _shoulder(profile.right[count[0] :], length),
+    )
 
 
 def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
@@ -102,9 +102,7 @@ def added(terms: Sequence[Term], length: float) -> Width:
 
 def cubics_at(width: Width, stations: Array) -> Array:
     """Returns the coefficients ``(n, 4)`` of a width as cubics that begin at ``stations``, ``(n,)``."""
-    if isinstance(width, CubicProfile):
-        return width.cubics(stations)
-    return np.tile([width, 0.0, 0.0, 0.0], (len(stations), 1))
+    return as_cubics(width).cubics(stations)
 
 
 def profile_of(stations: Array, table: Array) -> CubicProfile:
@@ -122,11 +120,11 @@ def _through(values: Sequence[Width], length: float, stations: Iterable[float]) 
     for (start, end), after in zip(change_windows(length, len(values) - 1), values[1:], strict=True):
         knots = np.linspace(start, end, PARTS + 1)
         own = [s for s in stations if start < s < end and np.abs(knots - s).min() > ROUNDING]
-        found = _blended(found, after, np.sort([*knots, *own]), length)
+        found = _blended(found, after, np.sort([*knots, *own]))
     return found
 
 
-def _blended(one: Width, other: Width, knots: Array, length: float) -> Width:
+def _blended(one: Width, other: Width, knots: Array) -> Width:
     """Returns a width that changes to another one: between the knots, cubics with its values and slopes.
 
     What lies beside the lane is then as wide as it is, and nowhere less than nothing.
@@ -134,10 +132,7 @@ def _blended(one: Width, other: Width, knots: Array, length: float) -> Width:
     if one == other:
         return one
     start, end = knots[0], knots[-1]
-    before = added([(1, one), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
-    after = added([(1, other), (1, CubicProfile((0.0,), ((0.0,) * 4,)))], length)
-    assert isinstance(before, CubicProfile)
-    assert isinstance(after, CubicProfile)
+    before, after = as_cubics(one), as_cubics(other)
     smooth = CubicProfile.smooth([(start, 0.0), (end, 1.0)])
     share, rise, step = smooth.height(knots), smooth.grade(knots), np.diff(knots)
     value = (1 - share) * before.height(knots) + share * after.height(knots)

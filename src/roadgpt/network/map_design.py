@@ -22,11 +22,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import BaseModel, Field, ValidationError
 
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.network.design import KERB
 from roadgpt.network.map_check import check_graph, check_route
-from roadgpt.network.network import JunctionKind
 from roadgpt.road.design import Finite, FrozenFields, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
 
@@ -37,7 +36,7 @@ MOST_PASSED = 1000
 """The largest number of nodes that a route may pass."""
 BEND = 20.0  # m, radius of a bend that has none
 
-NodeKind = Literal[JunctionKind, "bend", "end"]
+NodeKind = Literal[PlainKind, "bend", "end"]
 Model = TypeVar("Model", bound=BaseModel)
 
 

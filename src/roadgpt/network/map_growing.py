@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import cast
 
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import wrap_angle
@@ -17,7 +17,7 @@ from roadgpt.network.design import ISLAND, JunctionDesign
 from roadgpt.network.growing import contact_distances, roads_around
 from roadgpt.network.lane_legs import legs_along
 from roadgpt.network.map_design import BEND, MapDesign, MapLanes, MapNode
-from roadgpt.network.network import Junction, JunctionKind, Leg, Network, RoadEnd, Roundabout
+from roadgpt.network.network import Junction, Leg, Network, RoadEnd, Roundabout
 from roadgpt.network.ring import build_roundabout
 from roadgpt.network.route import Route
 from roadgpt.network.stretch import climb_between
@@ -223,5 +223,5 @@ def junction_of(node: MapNode) -> JunctionDesign:
     """Returns a junction of a route with the kind, kerb and island of a node."""
     radius = ISLAND if node.radius is None else node.radius
     return JunctionDesign.model_construct(
-        after=1, take=1, kind=cast(JunctionKind, node.kind), kerb=node.kerb, radius=radius
+        after=1, take=1, kind=cast(PlainKind, node.kind), kerb=node.kerb, radius=radius
     )

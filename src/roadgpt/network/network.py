@@ -12,15 +12,14 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from roadgpt.brief.junctions import Control
+from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import outline_of, paved_by
 from roadgpt.network.polygon import Area
 from roadgpt.road import Profile, Road
 
 Contact = Literal["start", "end"]
-JunctionKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
-Kind = Literal[JunctionKind, "merge", "diverge"]
+Kind = Literal[PlainKind, "merge", "diverge"]
 
 
 class RoadEnd(NamedTuple):

@@ -290,6 +290,16 @@ class Profile:
 NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0
 
 
+def as_cubics(width: Width) -> CubicProfile:
+    """Returns a width as cubics from station 0 on; before its first station, a width is constant."""
+    if not isinstance(width, CubicProfile):
+        return CubicProfile((0.0,), ((width, 0.0, 0.0, 0.0),))
+    if width.stations[0] <= 0:
+        return width
+    first = (width.coefficients[0][0], 0.0, 0.0, 0.0)
+    return CubicProfile((0.0, *width.stations), (first, *width.coefficients))
+
+
 def _driving(lanes: Sequence[Lane]) -> Sequence[Lane]:
     """Returns the driving lanes from the centre line up to the first shoulder."""
     count = next((n for n, lane in enumerate(lanes) if lane.kind != "driving"), len(lanes))

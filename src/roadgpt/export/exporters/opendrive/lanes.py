@@ -13,7 +13,7 @@ from roadgpt.export.exporters.opendrive.heights import elevations, level_height,
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
-from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, Lane, Marking, Profile, Width
+from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, Lane, Marking, Profile, as_cubics
 
 NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
@@ -74,7 +74,7 @@ class RoadParts:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))
         section.add("right").extended(*self._side(profile.right, -1, length, links, is_inside))
-        offset = rows("laneOffset", "s", _cubics(profile.offset), length) if profile.offset != 0 else []
+        offset = rows("laneOffset", "s", as_cubics(profile.offset), length) if profile.offset != 0 else []
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 
     def _side(
@@ -84,7 +84,7 @@ class RoadParts:
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
         for index, lane in enumerate(kept):
             number = first + index if first > 0 else first - index
-            widths = rows("width", "sOffset", _cubics(lane.width), length)
+            widths = rows("width", "sOffset", as_cubics(lane.width), length)
             made = _lane(number, lane.kind)
             before, after = links.get(number, (None, None))
             if before is not None or after is not None:
@@ -115,16 +115,6 @@ def lateral_profile(road: Road) -> list[XmlElement]:
     if angle is None:
         return []
     return [XmlElement("lateralProfile").extended(*rows("superelevation", "s", angle, road.length))]
-
-
-def _cubics(width: Width) -> CubicProfile:
-    """Returns a width as cubics from station 0 on; before its first station, a width is constant."""
-    if not isinstance(width, CubicProfile):
-        return CubicProfile((0.0,), ((width, 0.0, 0.0, 0.0),))
-    if width.stations[0] <= 0:
-        return width
-    first = (width.coefficients[0][0], 0.0, 0.0, 0.0)
-    return CubicProfile((0.0, *width.stations), (first, *width.coefficients))
 
 
 def _lane(number: int, kind: str) -> XmlElement:
