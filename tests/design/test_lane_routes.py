@@ -159,6 +159,13 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
     ("line", "said"),
     [
         ("merge ramp side=left // | motorway", "a ramp on the left cannot be built yet; leave it out"),
+        ("| lanes=2 // merge ramp", "a ramp with several lanes or oncoming traffic cannot be built yet; .*"),
+        ("diverge ramp // | against=1", "a ramp with several lanes or oncoming traffic cannot be .*"),
+        (
+            "| lanes=3 // roundabout",
+            "a roundabout with fewer lanes than the 3 of a road that it joins cannot .*",
+        ),
+        ("| lanes=2 // roundabout lanes=1", "a roundabout with fewer lanes than the 2 of a road .*"),
         (
             "merge ramp side=left // | motorway || left_hand",
             "traffic on the left and a ramp on the left cannot be built yet; leave them out",
@@ -185,11 +192,11 @@ def checked_draft(line: str) -> None:
         ("| oneway against=2 // crossroads", "against twice"),
         ("merge ramp lights // | motorway", "has no control"),
         ("| lanes=2 // lane_change left len=80", "leave side and len out"),
-        ("| lanes=2 // lane_drop // | lanes=2", "behind a lane_drop"),
+        ("| lanes=2 // lane_drop // | lanes=2", "behind a lane drop there is one lane fewer"),
         ("| lanes=4 // lane_gain", "5 lanes"),
         ("| lanes=1 // lane_drop", "0 lanes"),
         ("| lanes=1 // lane_change left", "change to the left"),
-        ("| lanes=2 against=1 // merge ramp", "comes or goes by the ramp"),
+        ("| lanes=2 against=1 // merge ramp", "a ramp with several lanes or oncoming traffic"),
     ],
 )
 def test_lanes_that_contradict_each_other_are_refused_in_one_sentence(line: str, word: str) -> None:

@@ -6,6 +6,7 @@ from math import inf
 from typing import NamedTuple
 
 from roadgpt.brief.junction_check import check_junction, check_lanes, check_map, check_turning_back
+from roadgpt.brief.lane_sequence import check_lane_sequence
 from roadgpt.brief.map_fit import ROAD_WIDTH, check_room
 from roadgpt.brief.minimum_length import least_length
 from roadgpt.brief.model import Amount, Brief, Clause, Slope, exactly, span
@@ -74,6 +75,7 @@ def check(
         for junction in brief.junctions:
             check_junction(junction)
         check_turning_back(brief)
+        check_lane_sequence(brief)
         for stretch in brief.stretches:
             check(stretch, None, min_radius, max_grade, road_width)
         return

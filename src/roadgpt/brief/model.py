@@ -170,6 +170,10 @@ class Brief(Frozen):
             )
         if any(stretch.junctions for stretch in self.stretches) or (self.stretches and not self.junctions):
             raise ValueError("only a route with junctions has stretches, which have no junctions themselves")
+        if any(stretch.map is not None for stretch in self.stretches):
+            raise ValueError("a map is no part of a route; ask for one of them")
+        if any(stretch.left_hand for stretch in self.stretches):
+            raise ValueError("traffic drives on one side on the whole route; write left_hand after ||")
         return self
 
     @property

@@ -204,7 +204,10 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
         _set(fields, word, True)
     elif word == ONE_WAY and keys is ROAD_KEYS:
         _set(fields, "against", NO_LANE)
-    elif word.startswith(CENTRE) and keys is ROAD_KEYS and value in get_args(CentreLine):
+    elif word.startswith(CENTRE) and keys is ROAD_KEYS:
+        if value not in get_args(CentreLine):
+            known = ", ".join(get_args(CentreLine))
+            raise BriefError(f"a plan has no centre line '{value[:40]}'; there are {known}")
         _set(fields, "centre", value)
     elif word in WORDS:
         _set(fields, WORDS[word], word)

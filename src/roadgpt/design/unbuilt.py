@@ -2,9 +2,11 @@
 
 from collections.abc import Iterator
 
+from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
+from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
 
 
 def check_built(brief: Brief) -> None:
@@ -23,12 +25,21 @@ def check_built(brief: Brief) -> None:
 def _unbuilt(brief: Brief) -> Iterator[str]:
     if brief.left_hand:
         yield "traffic on the left"
-    for junction in brief.junctions:
-        yield from _of_junction(junction)
+    for n, junction in enumerate(brief.junctions):
+        yield from _of_junction(junction, *brief.stretches[n : n + 2])
     if brief.divided:
         yield "a median of a single road"
 
 
-def _of_junction(junction: JunctionClause) -> Iterator[str]:
+def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
+    """Yields what cannot be built of a junction with the roads before and behind it."""
     if junction.kind in RAMPS and junction.side == "left":
         yield "a ramp on the left"
+    if junction.kind in RAMPS and junction.take != "main":
+        ramp = before if junction.kind == "merge" else after
+        if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:
+            yield "a ramp with several lanes or oncoming traffic"
+    if junction.kind == "roundabout":
+        lanes = [span(each).lo for road in (before, after) for each in (road.lanes, road.against)]
+        if max(lanes) > min(span(junction.lanes).hi, MOST_RING_LANES):
+            yield f"a roundabout with fewer lanes than the {max(lanes):g} of a road that it joins"

@@ -13,6 +13,7 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.network.building import width_at
 from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
 from roadgpt.network.lane_design import MEDIAN, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.plural import plural
 from roadgpt.road import Profile, World
 from roadgpt.road.world import OWN
 
@@ -115,17 +116,18 @@ def _behind(number: int, place: PlaceDesign, before: LanesDesign) -> LanesDesign
     """Returns the lanes of the road behind a place that the route passes."""
     if isinstance(place, LanesChangeDesign):
         step = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}[place.kind]
+        count = plural(before.forward + step, "lane")
         if not 1 <= before.forward + step <= MOST_LANES:
             raise UsageError(
-                f"junction {number}: a {place.kind} leaves {before.forward + step} lanes, and a road has 1 "
-                f"to {MOST_LANES}; give the road before it other lanes"
+                f"junction {number}: a {place.kind} leaves {count}, and a road has 1 to {MOST_LANES}; give "
+                "the road before it other lanes"
             )
         if place.lanes is None:
             return before.model_copy(update={"forward": before.forward + step})
         if place.lanes.forward != before.forward + step or place.lanes.width != before.width:
             raise UsageError(
-                f"junction {number}: behind a {place.kind} there are {before.forward + step} lanes of "
-                f"{before.width:g} m; give these, or leave its lanes out"
+                f"junction {number}: the road behind a {place.kind} has {count} here, {before.width:g} m "
+                "wide; give these, or leave its lanes out"
             )
         return place.lanes
     if isinstance(place, RampDesign) and place.take == "main":

@@ -5,13 +5,14 @@ Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4
 """
 
 from roadgpt.brief.junctions import RAMPS
+from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import length_beside_ramp
 from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Network, Route
 from roadgpt.road import World
 
-LEAST = 28.0  # m
+LEAST = LEAST_BESIDE_RAMP
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:

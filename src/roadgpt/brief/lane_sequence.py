@@ -1,0 +1,50 @@
+"""Finds contradictions between the lanes of the roads of a route and what the route passes between them."""
+
+from typing import TYPE_CHECKING
+
+from roadgpt.brief.amount import span
+from roadgpt.brief.junctions import RAMPS, JunctionClause
+from roadgpt.brief.words import Range, overlap
+from roadgpt.errors import BriefError
+
+if TYPE_CHECKING:
+    from roadgpt.brief.model import Brief
+
+STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
+"""By how many lanes the road behind a place where lanes change differs from the road before it."""
+LEAST_BESIDE_RAMP = 28.0  # m; the rule ``ramp_too_short`` gives the source
+
+
+def check_lane_sequence(brief: "Brief") -> None:
+    """Checks the lanes of the roads of a route, each with what stands before and behind it.
+
+    Raises:
+        BriefError: They contradict each other; the message says what to change.
+    """
+    for n, place in enumerate(brief.junctions):
+        before, after = brief.stretches[n : n + 2]
+        step = 0 if place.take == "main" else STEPS.get(place.kind)
+        if step is not None:
+            _check_step(place, before, after, step)
+        if place.kind in RAMPS and span(place.length).hi < LEAST_BESIDE_RAMP:
+            raise BriefError(
+                f"the additional lane of a {place.name} is {LEAST_BESIDE_RAMP:g} m long or longer, not "
+                f"{place.length} m; change it"
+            )
+
+
+def _check_step(place: JunctionClause, before: "Brief", after: "Brief", step: int) -> None:
+    if before.lanes is None or after.lanes is None:
+        return
+    own = span(before.lanes)
+    if not _meet(Range(own.lo + step, own.hi + step), span(after.lanes)):
+        what = {-1: "one lane fewer", 0: "as many lanes", 1: "one lane more"}[step]
+        raise BriefError(
+            f"behind a {place.name} there is {what}, but the road before it has {before.lanes} and the one "
+            f"behind it {after.lanes}; change one of them"
+        )
+
+
+def _meet(one: Range, other: Range) -> bool:
+    both = overlap(one, other)
+    return both is not None and both.lo <= both.hi
