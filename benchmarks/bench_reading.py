@@ -27,7 +27,7 @@ from roadgpt.brief.readers.model import ModelReader
 from roadgpt.design import draft
 from roadgpt.errors import BriefError, DesignError
 from roadgpt.learn.calibrate import normal_change
-from roadgpt.learn.data import is_outdated
+from roadgpt.learn.data import is_for_roads_only
 from roadgpt.learn.evaluate import HEAD, readings, score
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
@@ -86,7 +86,7 @@ def _scores() -> None:
     print(HEAD)
     for split in SPLITS:
         every, _ = read_pairs((HAND / split).glob("*.jsonl"))
-        pairs = [pair for pair in every if not is_outdated(pair)]
+        pairs = [pair for pair in every if not is_for_roads_only(pair)]
         for name in READERS:
             reader = reader_of(name)
 

@@ -17,7 +17,7 @@ from roadgpt.brief.readers.model.mirror import (
 )
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
-from roadgpt.learn.data import NETWORK, is_outdated
+from roadgpt.learn.data import NETWORK, is_for_roads_only
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.labels import read_pairs
 from roadgpt.learn.routes import route_of, routes
@@ -154,10 +154,10 @@ def test_nothing_follows_where_the_route_turns_back() -> None:
 
 
 def test_pairs_that_call_a_junction_unbuilt_are_outdated() -> None:
-    assert is_outdated(Pair("a roundabout", "| beside(roundabout)", "f", "en"))
-    assert is_outdated(Pair("a roundabout", "!impossible roundabout", "f", "en"))
-    assert not is_outdated(Pair("in the rain", "| beside(rain)", "f", "en"))
-    assert not is_outdated(Pair("make it a roundabout", "!impossible roundabout", "f", "en", True))
+    assert is_for_roads_only(Pair("a roundabout", "| beside(roundabout)", "f", "en"))
+    assert is_for_roads_only(Pair("a roundabout", "!impossible roundabout", "f", "en"))
+    assert not is_for_roads_only(Pair("in the rain", "| beside(rain)", "f", "en"))
+    assert not is_for_roads_only(Pair("make it a roundabout", "!impossible roundabout", "f", "en", True))
     assert all(map(is_of_junctions, ("crossroads", "| up // star", "map star")))
     assert not is_of_junctions("turn x2 | lanes=2")
 

@@ -9,8 +9,10 @@ import numpy.typing as npt
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader, UncalibratedReading
+from roadgpt.brief.readers.model.ensemble import Ensemble
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.learn.data import NETWORK
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
@@ -20,31 +22,56 @@ PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
 @dataclass(frozen=True, slots=True)
-class Calibration:
-    """The content of ``settings.json``: the lowest probability at which a refusal is accepted, and the
-    weights of the confidence models for descriptions and for change requests.
+class EnsembleCalibration:
+    """What is fitted to the readings of an ensemble: the lowest probability at which a refusal is accepted,
+    and the weights of the confidence model.
     """
 
     refuse_from: float
     confidence: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration(EnsembleCalibration):
+    """The content of ``settings.json``: the calibration for descriptions of roads, the weights of the
+    confidence model for change requests, and the calibration for descriptions of routes.
+    """
+
     changes: dict[str, float]
+    routes: EnsembleCalibration | None = None
 
 
 def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
     """Returns settings fitted to ``pairs``, on which the networks must not have been trained."""
     honest = [pair for pair in pairs if not pair.plan.startswith("!")]
     words = [pair for pair in honest if not pair.is_change]
-    changes = [pair for pair in honest if pair.is_change]
-    threshold = _threshold(reader, words)
-    read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in words]
+    roads = calibrated_ensemble(reader, reader.roads, [pair for pair in words if not _is_route(pair)])
     asked = [
-        (reader.uncalibrated_change(pair.text, normal_change), normal_change(pair.plan)) for pair in changes
+        (reader.uncalibrated_change(pair.text, normal_change), normal_change(pair.plan))
+        for pair in honest
+        if pair.is_change
     ]
     return Calibration(
-        threshold,
-        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks]),
+        roads.refuse_from,
+        roads.confidence,
         _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
+        calibrated_ensemble(reader, reader.routes, list(filter(_is_route, words))) if reader.routes else None,
     )
+
+
+def calibrated_ensemble(
+    reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair]
+) -> EnsembleCalibration:
+    """Returns what is fitted to valid descriptions that are meant for the ensemble."""
+    read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in pairs]
+    return EnsembleCalibration(
+        _threshold(ensemble, pairs),
+        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks]),
+    )
+
+
+def _is_route(pair: Pair) -> bool:
+    return pair.family.startswith(NETWORK)
 
 
 def normal_change(line: str) -> str:
@@ -52,9 +79,9 @@ def normal_change(line: str) -> str:
     return change_plan(read_change_plan(line))
 
 
-def _threshold(reader: ModelReader, honest: Sequence[Pair]) -> float:
+def _threshold(ensemble: Ensemble, honest: Sequence[Pair]) -> float:
     """Returns the lowest probability at which a refusal is accepted; few valid descriptions reach it."""
-    chances = [refusal(reader.networks, pair.text) for pair in honest]
+    chances = [refusal(ensemble.networks, pair.text) for pair in honest]
     most = float(np.quantile(chances, 1 - MOST_WRONGLY)) if chances else 0.5
     return round(min(max(most, 0.5), 0.95), 3)
 

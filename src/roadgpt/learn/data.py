@@ -1,7 +1,7 @@
 """Converts generated and hand-written pairs to batches of numbers for training."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
@@ -16,26 +17,35 @@ from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
 from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
 from roadgpt.learn.held_out import is_held_out
-from roadgpt.learn.mentions import READ, names_in, with_mention, with_talk
+from roadgpt.learn.mentions import names_in, with_mention, with_talk
 from roadgpt.learn.routes import routes
 from roadgpt.learn.shared_values import with_shared_values
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
-SHARES = {
-    "networks": 0.33,
-    "routes": 0.09,
-    "hand": 0.15,
-    "free": 0.10,
-    "contrasts": 0.06,
-    "changes": 0.06,
-    "generated": 0.02,
-    "generated contrasts": 0.06,
-    "generated changes": 0.07,
-    "generated specs": 0.06,
+SHARES: Mapping[str, float] = {
+    "hand": 0.26,
+    "free": 0.17,
+    "contrasts": 0.10,
+    "changes": 0.10,
+    "generated": 0.04,
+    "generated contrasts": 0.10,
+    "generated changes": 0.12,
+    "generated specs": 0.11,
 }
-"""The share of each series of pairs. ``networks`` are hand-written routes with junctions, ``routes`` are put
-together of those and of hand-written roads.
+"""The share of each series of pairs with which networks learn single roads and changes."""
+SHARES_OF_ROUTES: Mapping[str, float] = {
+    "networks": 0.52,
+    "routes": 0.16,
+    "hand": 0.12,
+    "free": 0.08,
+    "contrasts": 0.04,
+    "generated": 0.02,
+    "generated contrasts": 0.02,
+    "generated specs": 0.04,
+}
+"""The same for the network that learns routes and maps. ``networks`` are hand-written routes with junctions,
+``routes`` are put together of those and of hand-written roads.
 """
 NETWORK = "networks/"
 """How the families of the pairs of data/networks begin, once they are read."""
@@ -101,14 +111,23 @@ def _reslotted(
     return [names.get(word, word) for word in words], [written.get(token, token) for token in tokens]
 
 
-def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Example]:
+def examples(
+    seed: int, hand: Sequence[Pair], pieces: WordPieces, of_series: Mapping[str, float] = SHARES
+) -> Iterator[Example]:
     """Yields an endless series of examples: a fixed mixture of generated pairs and of variations of the
     hand-written pairs.
+
+    Args:
+        seed: seed of the series.
+        hand: the hand-written pairs.
+        pieces: the vocabulary of word pieces.
+        of_series: the share of each series of pairs.
     """
     streams = _streams(seed, hand)
-    names = [name for name in SHARES if name in streams]
+    names = [name for name in of_series if name in streams]
     rng = np.random.default_rng([seed, 7])
-    shares = np.cumsum([SHARES[name] for name in names])
+    shares = np.cumsum([of_series[name] for name in names])
+    is_of_routes = "networks" in of_series
     while True:
         at = int(np.searchsorted(shares, rng.random() * shares[-1], side="right"))
         pair = next(streams[names[at]])
@@ -117,19 +136,21 @@ def examples(seed: int, hand: Sequence[Pair], pieces: WordPieces) -> Iterator[Ex
             pair = replace(pair, text=more[0], plan=more[1]) if more else pair
         if rng.random() < TALK:
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
-        made = None if is_held_out(pair.text) or is_outdated(pair) else example(pair, pieces, rng)
+        is_left_out = is_held_out(pair.text) or (is_of_routes and is_for_roads_only(pair))
+        made = None if is_left_out else example(pair, pieces, rng)
         if made:
             yield made
 
 
-def is_outdated(pair: Pair) -> bool:
-    """Returns whether the plan says of something that it is not built, or stands beside the road, that plans
-    can now ask for.
+def is_for_roads_only(pair: Pair) -> bool:
+    """Returns whether the plan names something beside a single road, or refuses it, that routes consist of.
+
+    The networks for single roads learn such names, which hand a description on to the network for routes.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False
     named = pair.plan.split() if pair.plan.startswith("!") else names_in(pair.plan)
-    return not READ.isdisjoint(named)
+    return not TOLD_ON_ROUTES.isdisjoint(named)
 
 
 def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:

@@ -2,7 +2,7 @@
 
 import json
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import SECOND, ModelReader
+from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
@@ -21,6 +21,9 @@ from roadgpt.learn.piece_vocabulary import read_vocabulary
 from roadgpt.learn.pretrained import NOTICE
 
 OPSET = 17
+SHARED = "reader.pieces.weight_quantized"
+EMBEDDING = "embedding.bin"
+"""The file of the tensor ``SHARED``, to which all encoders refer."""
 
 
 class EncoderGraph(nn.Module):
@@ -115,13 +118,13 @@ def _graphs(
 
 
 def export_checkpoints(
-    checkpoints: Sequence[Path], folder: Path, held_back: Sequence[Pair], fillers: Sequence[str]
+    checkpoints: Mapping[str, Path], folder: Path, held_back: Sequence[Pair], fillers: Sequence[str]
 ) -> None:
-    """Writes all files that the reader needs, from the checkpoints of one or two training runs.
+    """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
     Args:
-        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``; the first network is used to find the
-            unused words.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``, by what follows "encoder" and
+            "decoder" in the names of the network's files: nothing, ``SECOND`` or ``ROUTES``.
         folder: where the graphs, the pieces, the function words and the settings are written.
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
         fillers: function words, which no plan depends on.
@@ -129,7 +132,7 @@ def export_checkpoints(
     Raises:
         LearnError: there is no checkpoint.
     """
-    for checkpoint, name in zip(checkpoints, ("", SECOND), strict=False):
+    for name, checkpoint in checkpoints.items():
         if not (checkpoint / "checkpoint.pt").exists():
             raise LearnError(f"there is no checkpoint.pt in {checkpoint}; train first")
         pieces = read_vocabulary(checkpoint / "pieces.txt")
@@ -140,11 +143,42 @@ def export_checkpoints(
         export(reader, folder, name)
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
+    share_embedding([folder / f"encoder{name}.onnx" for name in checkpoints])
     settings = calibrated(ModelReader(folder), held_back)
     (folder / "settings.json").write_text(json.dumps(asdict(settings), indent=2) + "\n", encoding="utf-8")
     (folder / "NOTICE").write_text(NOTICE, encoding="utf-8")
-    files = sorted(
-        path for path in folder.iterdir() if path.suffix in (".onnx", ".txt") or path.name == "settings.json"
-    )
+    write_sums(folder)
+
+
+def share_embedding(encoders: Sequence[Path]) -> None:
+    """Moves the embedding of the word pieces out of several encoders into one file, ``EMBEDDING``, that all
+    of them read; it is not trained, so all have the same.
+
+    Raises:
+        LearnError: the embeddings differ.
+    """
+    from onnx import load, save
+    from onnx.external_data_helper import set_external_data
+    from onnx.numpy_helper import to_array
+
+    kept = b""
+    for path in encoders:
+        model = load(str(path))
+        tensor = next(each for each in model.graph.initializer if each.name == SHARED)
+        values = to_array(tensor).tobytes()
+        if kept and values != kept:
+            raise LearnError(f"{path.name} has another embedding of the word pieces than {encoders[0].name}")
+        kept = values
+        tensor.raw_data = values
+        set_external_data(tensor, EMBEDDING, offset=0, length=len(values))
+        tensor.ClearField("raw_data")
+        save(model, str(path))
+        (path.parent / EMBEDDING).write_bytes(kept)
+
+
+def write_sums(folder: Path) -> None:
+    """Writes the check sums of a reader's files to ``sums.json``."""
+    kinds = (".onnx", ".txt", ".bin")
+    files = sorted(path for path in folder.iterdir() if path.suffix in kinds or path.name == "settings.json")
     sums = {path.name: sha256(path.read_bytes()).hexdigest() for path in files if path.name != "training.txt"}
     (folder / "sums.json").write_text(json.dumps(sums, indent=2) + "\n", encoding="utf-8")

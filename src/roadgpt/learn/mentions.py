@@ -10,20 +10,17 @@ from importlib.resources import files
 import numpy as np
 
 from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.learn.noise import tidy
 
 Phrases = Mapping[str, Mapping[str, Mapping[str, Sequence[str]]]]
 WORDS = json.loads((files("roadgpt.learn") / "words" / "beside.json").read_text(encoding="utf-8"))
-READ = frozenset({
-    "junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes",
-})  # fmt: skip
-"""Names that plans once listed for words that are now read as parts of a route."""
 SAID: Phrases = WORDS["said"]
 """Phrases that can stand "before" or "after" a description, by language and then by the names that plans list
 for them."""
 DENIED: Phrases = WORDS["denied"]
 DENIED_ON_ROUTES: Phrases = {
-    language: {names: ways for names, ways in its.items() if READ.isdisjoint(re.split(", *", names))}
+    language: {names: ways for names, ways in its.items() if TOLD_ON_ROUTES.isdisjoint(names.split(", "))}
     for language, its in DENIED.items()
 }
 """The phrases of ``DENIED`` that do not deny what a route consists of."""

@@ -14,7 +14,7 @@ from torch.nn import functional
 
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
-from roadgpt.learn.data import Numbers, batches, examples
+from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, batches, examples
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.growing import decoder_layers, grown
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork, load_minilm
@@ -52,6 +52,8 @@ class TrainingSettings:
     workers: int = 1
     """Number of processes that train in parallel and average their weights at each checkpoint (local SGD)."""
     rank: int = 0
+    is_of_routes: bool = False
+    """True for the network that reads routes and maps, which learns from other pairs."""
     is_pretrained: bool = True
     """True if the encoder starts from MiniLM; its embeddings are then not trained."""
 
@@ -94,7 +96,8 @@ def train(
     first = int(state.get("step", 0))
     # each start has its own stream, so that a resumed training does not see the same pairs again
     seed = (plan.seed * 1_000_003 + first) * 16 + plan.rank
-    stream = batches(examples(seed, hand, WordPieces(pieces)), plan.size, POOL, seed)
+    shares = SHARES_OF_ROUTES if plan.is_of_routes else SHARES
+    stream = batches(examples(seed, hand, WordPieces(pieces), shares), plan.size, POOL, seed)
     began, losses = time.monotonic(), []
     reader.train()
     for step in range(first, plan.steps):

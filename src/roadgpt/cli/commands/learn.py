@@ -56,6 +56,7 @@ OF_TRAIN = (
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
     Option("--second", "Start from the second network of the installed reader.", bool),
+    Option("--routes", "Train the network that reads routes and maps instead.", bool),
     Option("--decoder-layers", "Number of decoder layers, a multiple of the number in the weights.",
            whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
@@ -68,6 +69,7 @@ OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND, CHANGES, NETWORKS),
     Option("--second", "Folder of another training run; its network becomes the reader's second network.",
            folder),
+    Option("--routes", "Folder of a training run with --routes; its network reads routes and maps.", folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -137,6 +139,7 @@ def train(
     weights: Path | None,
     installed: bool,
     second: bool,
+    routes: bool,
     own: Path | None,
     seed: int,
     **rest: Any,
@@ -154,7 +157,7 @@ def train(
         from roadgpt.learn.train import TrainingSettings
     except ImportError as error:
         raise LearnError(EXTRA) from error
-    from roadgpt.brief.readers.model import SECOND, WEIGHTS
+    from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS
     from roadgpt.learn.back_labelling import measured_pairs
     from roadgpt.learn.pretrained import begin
 
@@ -165,14 +168,9 @@ def train(
     pairs += islice(measured_pairs(seed), MEASURED)
     pieces = begin(out, weights, WEIGHTS if installed else None)
     start = weights / "model.safetensors" if weights else WEIGHTS if installed else None
-    train_together(
-        out,
-        pieces,
-        start,
-        pairs,
-        TrainingSettings(seed=seed, ending=SECOND if second else "", **rest),
-        click.echo,
-    )
+    ending = SECOND if second else ROUTES if routes else ""
+    plan = TrainingSettings(seed=seed, ending=ending, is_of_routes=routes, **rest)
+    train_together(out, pieces, start, pairs, plan, click.echo)
 
 
 @command.command(params=[*OF_EXPORT])
@@ -183,6 +181,7 @@ def export(
     changes: Path,
     networks: Path,
     second: Path | None,
+    routes: Path | None,
     chats: int | None,
     seed: int,
 ) -> None:
@@ -191,14 +190,17 @@ def export(
         from roadgpt.learn.export import export_checkpoints
     except ImportError as error:
         raise LearnError(EXTRA) from error
-    from roadgpt.learn.data import is_outdated
+    from roadgpt.brief.readers.model import ROUTES, SECOND
+    from roadgpt.learn.data import is_for_roads_only
     from roadgpt.learn.filler_words import filler_words
 
-    held_back = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder) if not is_outdated(pair)]
+    told = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
+    held_back = [pair for pair in told if not is_for_roads_only(pair)]
     held_back += _network_pairs_of(networks / "validation")
     held_back += _pairs_of(changes / "validation", is_change=True)
     fillers = filler_words(_trained_on(hand, changes, networks))
-    export_checkpoints([checkpoint, *([second] if second else [])], out, held_back, fillers)
+    found = {"": checkpoint, SECOND: second, ROUTES: routes}
+    export_checkpoints({name: run for name, run in found.items() if run}, out, held_back, fillers)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)

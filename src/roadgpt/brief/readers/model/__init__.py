@@ -3,11 +3,12 @@ milliseconds.
 
 Rules take the numbers out of the text before the network reads it, and insert them into the plan that the
 network writes. The decoding is constrained, so that the network can only write valid plans. A second network,
-trained separately, reads the same words; a plan that both networks write is likely to be right. The weights
-and their documentation are in ``weights/``.
+trained separately, reads the same words; a plan that both networks write is likely to be right. A third one
+reads descriptions that tell of junctions, ramps, lanes or maps. The weights and their documentation are in
+``weights/``.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -21,11 +22,13 @@ from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
+from roadgpt.brief.readers.model.ensemble import Ensemble
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
+from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
@@ -43,6 +46,8 @@ ALMOST = 2.0  # difference of score
 NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
+ROUTES = "_routes"
+"""The same for the network that reads routes and maps."""
 TOO_MUCH = (
     "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
 )
@@ -106,10 +111,10 @@ class ModelReader:
 
     def _read(self, words: str) -> Brief:
         text = _text(words)
-        found = scored_plans(self.networks, words, self._settings["refuse_from"])
+        ensemble, found = self.scored(words)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
-        brief = self._brief(words, text, _as_listed(found, text) or found[0])
+        brief = self._brief(words, text, _as_listed(found, text) or found[0], ensemble)
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
@@ -124,7 +129,7 @@ class ModelReader:
             BriefError: the network wrote no plan that can be read.
         """
         text = slotted(words, is_change=True)
-        found = scored_plans(self.networks, words, self._settings["refuse_from"], key=key)
+        found = scored_plans(self.roads.networks, words, self.roads.refuse_from, key=key)
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
@@ -133,7 +138,7 @@ class ModelReader:
         if draft.is_refusal:
             return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, ()), ())
         lost = _lost_numbers(draft, text)
-        unused = unused_words(self._network, text, draft.tokens, self._fillers)
+        unused = unused_words(self.roads.first, text, draft.tokens, self._fillers)
         sure = confidence(self._settings["changes"], found_in, unused)
         sure = min(sure, DOUBT) if is_denial(words) else sure
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
@@ -143,7 +148,7 @@ class ModelReader:
         read.
         """
         text = slotted(words)
-        found = scored_plans(self.networks, words, refuse_from)
+        _, found = self.scored(words, refuse_from)
         draft = (_as_listed(found, text) or found[0]) if found else None
         if draft is None:
             return None
@@ -164,7 +169,7 @@ class ModelReader:
             key: function that returns the normal form of a plan of changes, or raises an error for an invalid
                 plan.
         """
-        found = scored_plans(self.networks, words, NEVER, key=key)
+        found = scored_plans(self.roads.networks, words, NEVER, key=key)
         if not found:
             return None
         return UncalibratedReading(key(found[0].line), features(found[0], slotted(words, is_change=True)))
@@ -191,49 +196,69 @@ class ModelReader:
             return tuple(brief.model_copy(update=update) for brief in rest) or (self.read(words),)
         first = self.read(words)
         text = _text(words)
-        across = self._network.encode(text)
+        ensemble, _ = self.scored(words)
+        across = ensemble.first.encode(text)
         rng = np.random.default_rng(seed)
         found: dict[str, Brief] = {}
         for _ in range(4 * number):
-            written = self._network.drawn(across, text, rng, temperature)
+            written = ensemble.first.drawn(across, text, rng, temperature)
             line = plan_of(written.tokens, text.slots)
             draft = ScoredPlan(written.tokens, line, written.score, written.log_chances, agreement=0.0)
-            found.setdefault(line, self._brief(words, text, draft))
+            found.setdefault(line, self._brief(words, text, draft, ensemble))
         others = sorted(found.values(), key=lambda brief: -brief.confidence)
         same = first.model_copy(update={"confidence": 1.0})
         return (first, *(b for b in others if b.model_copy(update={"confidence": 1.0}) != same))[:number]
 
-    def _brief(self, words: str, text: SlottedText, draft: ScoredPlan) -> Brief:
-        if draft.is_refusal:
-            raise self._refusal(words, text, draft.line)
-        return self._as_brief(words, text, draft)
+    def scored(self, words: str, refuse_from: float | None = None) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
+        """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
 
-    def _refusal(self, words: str, text: SlottedText, why: str) -> BriefError:
+        What the networks for routes read counts if the networks for single roads could not write that plan,
+        or if they name a junction or the like beside the road or as the cause of a refusal.
+
+        Args:
+            words: the description.
+            refuse_from: smallest probability of a refusal at which a refusal is allowed as a plan; None takes
+                what was fitted to the networks.
+        """
+        routes = self.routes.scored(words, refuse_from) if self.routes and may_tell_a_route(words) else ()
+        if self.routes and routes and not self.roads.knows(routes[0].tokens):
+            return self.routes, routes
+        roads = self.roads.scored(words, refuse_from)
+        if self.routes and roads and not TOLD_ON_ROUTES.isdisjoint(roads[0].tokens):
+            return self.routes, routes or self.routes.scored(words, refuse_from)
+        return self.roads, roads
+
+    def _brief(self, words: str, text: SlottedText, draft: ScoredPlan, ensemble: Ensemble) -> Brief:
+        if draft.is_refusal:
+            raise self._refusal(words, text, draft.line, ensemble)
+        return self._as_brief(words, text, draft, ensemble)
+
+    def _refusal(self, words: str, text: SlottedText, why: str, ensemble: Ensemble) -> BriefError:
         """Returns the error for a refusal.
 
         It contains a Brief if only the size of the map may be the reason, or if a plan that does not
         contradict itself could be meant.
         """
         if why.startswith("!impossible"):
-            brief = self._for_the_usual_map(words, text)
+            brief = self._for_the_usual_map(words, text, ensemble)
             return TooMuchError(TOO_MUCH, brief) if brief else refused(why)
         if why.startswith("!contradiction"):
-            brief = self._without_refusal(words, text)
+            brief = self._without_refusal(words, text, ensemble)
             if brief:
                 return ContradictionError(f"{refused(why)}; or is this meant", plan(brief), brief)
         return refused(why)
 
-    def _without_refusal(self, words: str, text: SlottedText) -> Brief | None:
+    def _without_refusal(self, words: str, text: SlottedText, ensemble: Ensemble) -> Brief | None:
         """Returns the Brief of the likeliest plan that is no refusal; None if it contradicts itself."""
-        found = scored_plans(self.networks, words, NEVER)
+        found = ensemble.scored(words, NEVER)
         if not found or not _can_be_kept(found[0].line):
             return None
         try:
-            return self._as_brief(words, text, found[0])
+            return self._as_brief(words, text, found[0], ensemble)
         except BriefError:
             return None
 
-    def _for_the_usual_map(self, words: str, text: SlottedText) -> Brief | None:
+    def _for_the_usual_map(self, words: str, text: SlottedText, ensemble: Ensemble) -> Brief | None:
         """Returns the Brief that the network reads if large numbers are replaced by ordinary ones first.
 
         The Brief has the original numbers. None if the numbers are ordinary already, or if the description is
@@ -242,15 +267,13 @@ class ModelReader:
         as_usual = with_ordinary_numbers(text)
         if as_usual.text == text:
             return None
-        found = scored_plans(
-            self.networks, words, self._settings["refuse_from"], lambda seen: with_ordinary_numbers(seen).text
-        )
+        found = ensemble.scored(words, shown=lambda seen: with_ordinary_numbers(seen).text)
         if not found or found[0].is_refusal:
             return None
         tokens = as_usual.restored(found[0].tokens)
         draft = replace(found[0], tokens=tokens, line=plan_of(tokens, text.slots))
         try:
-            return self._as_brief(words, text, draft, seen=(as_usual.text, found[0].tokens))
+            return self._as_brief(words, text, draft, ensemble, seen=(as_usual.text, found[0].tokens))
         except BriefError:
             return None
 
@@ -259,6 +282,7 @@ class ModelReader:
         words: str,
         text: SlottedText,
         draft: ScoredPlan,
+        ensemble: Ensemble,
         seen: tuple[SlottedText, Sequence[str]] | None = None,
     ) -> Brief:
         """Returns the Brief of a plan; ``seen`` is the text that the network read and the tokens that it
@@ -268,22 +292,28 @@ class ModelReader:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
-        unused = unused_words(self._network, *(seen or (text, draft.tokens)), self._fillers)
-        sure = confidence(self._settings["confidence"], features(draft, text), unused)
+        unused = unused_words(ensemble.first, *(seen or (text, draft.tokens)), self._fillers)
+        sure = ensemble.confidence(draft, text, unused)
         found = {"words": words, "unused": unused, "confidence": sure}
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
 
     @cached_property
-    def networks(self) -> tuple[NeuralNetwork, ...]:
-        """The one or two networks that read every text."""
-        names = ["", *([SECOND] if (self.folder / f"encoder{SECOND}.onnx").is_file() else [])]
-        return tuple(NeuralNetwork(self.folder, name) for name in names)
+    def roads(self) -> Ensemble:
+        """The one or two networks that read every change request, and descriptions of single roads."""
+        return self._ensemble(("", SECOND), self._settings)
 
-    @property
-    def _network(self) -> NeuralNetwork:
-        return self.networks[0]
+    @cached_property
+    def routes(self) -> Ensemble | None:
+        """The network that reads descriptions of routes and maps; None if the folder has none."""
+        found = self._ensemble((ROUTES,), self._settings.get("routes", {}))
+        return found if found.networks else None
+
+    def _ensemble(self, names: Sequence[str], settings: Mapping[str, Any]) -> Ensemble:
+        there = [name for name in names if (self.folder / f"encoder{name}.onnx").is_file()]
+        networks = tuple(NeuralNetwork(self.folder, name) for name in there)
+        return Ensemble(networks, settings.get("refuse_from", 0.5), settings.get("confidence", {"bias": 0.0}))
 
     @cached_property
     def _fillers(self) -> frozenset[str]:

@@ -72,6 +72,11 @@ class NeuralNetwork:
             )
         return session
 
+    def knows(self, tokens: Sequence[str]) -> bool:
+        """Returns whether the weights are as new as all these tokens of plans."""
+        known = self._decoder.get_outputs()[0].shape[1]
+        return all(NUMBER_OF[token] < known for token in tokens)
+
     def encode(self, text: SlottedText) -> Array:
         """Returns the keys and values of a description, of shape (layers, 2, 1, heads, pieces, head size)."""
         numbers, _ = self.pieces.encode(word.text for word in text.words)

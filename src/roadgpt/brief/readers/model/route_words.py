@@ -1,0 +1,69 @@
+"""Finds the words that tell of junctions, ramps, lanes and maps, in five languages.
+
+A text without any of them is a single road, and the network for routes is not asked. A text with one of them
+may still be a single road ("no junctions, please"): the networks decide.
+"""
+
+import re
+
+TOLD_ON_ROUTES = frozenset(
+    ["junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes"]
+)
+"""What the networks for single roads name beside a road, or refuse, and what routes consist of."""
+
+ENGLISH = (
+    r"junction|intersect|cro+s+ro|cros+r[do]|\bx-?(?:ing|roads)|cross(?:ing|es|walk|-?street)?s?\b|"
+    r"round-?about|roundabuot|\brbt|\brab\b|rotary|gyratory|(?:traffic|turning) circle|fork|\btees?\b|"
+    r"(?<!['’])\bt(?:s|-junction)?\b|\b(?:an?|the) y\b|\by-|\bstar\b|"
+    r"\b(?:three|four|five|six|\d)[- ](?:way|arm|leg)|all-?way|"
+    r"(?:side|second|third|next|first|main|village) (?:street|road)|streets?\b|turn-?off|turning on|"
+    r"(?:five|six|two|three|four) (?:roads|arms|legs)|"
+    r"(?:end of the|road (?:[\w\']+ ){0,3}(?:comes to an|ends|end|forks|splits|divides|is finished|"
+    r"joins|branches|meets?))|until it ends|road split|\b(?:first|second|third|next) (?:left|right|exit)|"
+    r"\bexits?|slip|\bramps?\b|merg|\blanes?\b|one[- ]way|carriageway|divided|median|"
+    r"cent(?:re|er) ?-?line|unmarked|\blines?\b|overtak|markings?|\bgrid|\bblocks?\b|\blights?\b|robots|"
+    r"\btl\b|signal|\bstop\b|\byield|give way|giving way|priority|right of way|zebra|pedestrian crossing|"
+    r"left-hand (?:traffic|drive)|(?:side of the|on british) road|"
+    r"(?:drive|driving|keep|traffic) on the left|change (?:to the )?(?:left|right)|freeway|motorway|"
+    r"interstate|highway|branch"
+)
+GERMAN = (
+    r"kreuz|einmünd|einmuend|mündet|gabl?el|gablung|verzweig|\bstern|fünfarm|kreisverk|kreisel|\bkvp|"
+    r"abzweig|zweigt|abbieg|\bbieg|abfahrt|ausfahrt|auffahrt|einfahrt|einfädel|rampe|spur|streifen|\bfs\b|"
+    r"einbahn|fahrbahn|mittellinie|linie|raster|gitter|schachbrett|blöck|blocks|ampel|lichtsignal|\blsa\b|"
+    r"stopp|vorfahrt|vorrang|rechts vor links|fußgängerüber|schutzweg|linksverkehr|seitenstra|querstra|"
+    r"straßen? (?:links|rechts|endet|hört|teilt)|(?:weg|straße) (?:sich )?teilt|ende der straße|"
+    r"(?:straße|weg) endet|(?:fünf|sechs) straßen|"
+    r"\b(?:erste|zweite|dritte|nächste)n? (?:links|rechts|straße)|autobahn|\bbab\b|\bknoten|überhol|"
+    r"markierung"
+)
+FRENCH = (
+    r"carrefour|croisement|intersection|rond-?s?[- ]?points?\b|giratoire|fourche|bifurc|embranch|étoile|"
+    r"bretelle|sortie|insertion|voies?\b|sens unique|chaussée|terre-plein|lignes? (?!droite)|lignes?$|"
+    r"jonction|patte d|quadrillage|grille|damier|pâtés?|feux?\b|priorit|cédez|passage (?:piéton|pour)|"
+    r"autoroute|marquage|\brues?\b|\bfiles?\b|route (?:se termine|finit|se sépare|se divise)|bout de la r|"
+    r"conduite à gauche|insère|déboît|dépass|toutes-directions|la route bute|"
+    r"(?:première|2e|deuxième|troisième) à (?:droite|gauche)"
+)
+SPANISH = (
+    r"cruce|cruza|intersecci|glorieta|rotonda|óvalo|isleta|bifurca|horqueta|estrella|ramal|salida|"
+    r"incorpor|carril|trenzado|(?:sentido|dirección) única?o?|calzada|mediana|línea|linea|cuadrícula|"
+    r"manzana|semáforo|semaforo|prioridad|\bceda|\bpare\b|paso de|\bcalle|bocacalle|autopista|autov|"
+    r"desv[ií]o|\bnudo|adelanta|marcas|malla|cuadra|damero|\bdos y\b|una y\b|\balto me|primer alto|"
+    r"vía lateral|camino a la|(?:carretera|camino) (?:[^.,;]{0,20}(?:se parte|se divid|termina))"
+)
+ITALIAN = (
+    r"in?c?rocc?i|crocevia|quadrivio|rotatori|rotond|biforc|reticolo|\bnod[oi]\b|piazza|laterale|innest|"
+    r"\besc[eo]\b|sorpass|segnaletica|\bbii?vi|rampa|stella|svincol|uscit|immission|immett|corsi[ae]|"
+    r"senso unico|carreggiat|spartitraffico|linee|strisci[ae]|intersezion|griglia|isolat|semafor|"
+    r"precedenza|attraversament|strisce|autostrad|superstrad|travers|"
+    r"(?:strada|via) (?:finisce|termina|si divide|laterale)|finisce su|(?:fine|fondo) alla (?:via|strada)|"
+    r"fine della strada|prossima strada|cinque strade|sei strade|"
+    r"(?:prima|seconda|terza) (?:via )?a (?:destra|sinistra)|guida a sinistra"
+)
+TELLING = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)), re.IGNORECASE)
+
+
+def may_tell_a_route(words: str) -> bool:
+    """Returns whether a description has a word that junctions, ramps, lanes or maps are told with."""
+    return TELLING.search(words) is not None
