@@ -22,17 +22,17 @@ from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
-from roadgpt.brief.readers.model.ensemble import Ensemble
+from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
+from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
-from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
+from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
-from roadgpt.brief.readers.model.used_words import unused_words
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
@@ -138,7 +138,7 @@ class ModelReader:
         if draft.is_refusal:
             return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, ()), ())
         lost = _lost_numbers(draft, text)
-        unused = unused_words(self.roads.first, text, draft.tokens, self._fillers)
+        unused = self.roads.unused(text, draft.tokens)
         sure = confidence(self._settings["changes"], found_in, unused)
         sure = min(sure, DOUBT) if is_denial(words) else sure
         return ChangeReading(draft.line, sure, tuple(dict.fromkeys([*lost, *unused])))
@@ -210,23 +210,8 @@ class ModelReader:
         return (first, *(b for b in others if b.model_copy(update={"confidence": 1.0}) != same))[:number]
 
     def scored(self, words: str, refuse_from: float | None = None) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
-        """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
-
-        What the networks for routes read counts if the networks for single roads could not write that plan,
-        or if they name a junction or the like beside the road or as the cause of a refusal.
-
-        Args:
-            words: the description.
-            refuse_from: smallest probability of a refusal at which a refusal is allowed as a plan; None takes
-                what was fitted to the networks.
-        """
-        routes = self.routes.scored(words, refuse_from) if self.routes and may_tell_a_route(words) else ()
-        if self.routes and routes and not self.roads.knows(routes[0].tokens):
-            return self.routes, routes
-        roads = self.roads.scored(words, refuse_from)
-        if self.routes and roads and not TOLD_ON_ROUTES.isdisjoint(roads[0].tokens):
-            return self.routes, routes or self.routes.scored(words, refuse_from)
-        return self.roads, roads
+        """Returns the networks that read a description, and the plans that they wrote; see ``scored_by``."""
+        return scored_by(self.roads, self.routes, words, refuse_from)
 
     def _brief(self, words: str, text: SlottedText, draft: ScoredPlan, ensemble: Ensemble) -> Brief:
         if draft.is_refusal:
@@ -292,7 +277,7 @@ class ModelReader:
             brief = with_checked_counts(read_plan(draft.line), text)
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
-        unused = unused_words(ensemble.first, *(seen or (text, draft.tokens)), self._fillers)
+        unused = ensemble.unused(*(seen or (text, draft.tokens)))
         sure = ensemble.confidence(draft, text, unused)
         found = {"words": words, "unused": unused, "confidence": sure}
         # brief.read decides by the words whether a road without junctions is a motorway
@@ -302,18 +287,22 @@ class ModelReader:
     @cached_property
     def roads(self) -> Ensemble:
         """The one or two networks that read every change request, and descriptions of single roads."""
-        return self._ensemble(("", SECOND), self._settings)
+        return self._ensemble(("", SECOND), self._settings, self._fillers)
 
     @cached_property
     def routes(self) -> Ensemble | None:
         """The network that reads descriptions of routes and maps; None if the folder has none."""
-        found = self._ensemble((ROUTES,), self._settings.get("routes", {}))
+        fillers = self._fillers | set(map(plain, COMPANIONS))
+        found = self._ensemble((ROUTES,), self._settings.get("routes", {}), fillers)
         return found if found.networks else None
 
-    def _ensemble(self, names: Sequence[str], settings: Mapping[str, Any]) -> Ensemble:
+    def _ensemble(
+        self, names: Sequence[str], settings: Mapping[str, Any], fillers: frozenset[str]
+    ) -> Ensemble:
         there = [name for name in names if (self.folder / f"encoder{name}.onnx").is_file()]
         networks = tuple(NeuralNetwork(self.folder, name) for name in there)
-        return Ensemble(networks, settings.get("refuse_from", 0.5), settings.get("confidence", {"bias": 0.0}))
+        weights = settings.get("confidence", {"bias": 0.0})
+        return Ensemble(networks, settings.get("refuse_from", 0.5), weights, fillers)
 
     @cached_property
     def _fillers(self) -> frozenset[str]:

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 
 from roadgpt.brief.readers.model.confidence import confidence, features
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
+from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
+from roadgpt.brief.readers.model.used_words import unused_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,10 +20,12 @@ class Ensemble:
     """The smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a plan."""
     weights: Mapping[str, float]
     """The weights of the confidence model, and its bias."""
+    fillers: frozenset[str]
+    """Words that are never reported as unused."""
 
     @property
     def first(self) -> NeuralNetwork:
-        """The network that finds the unused words and draws other readings."""
+        """The network that draws other readings."""
         return self.networks[0]
 
     def scored(
@@ -38,6 +42,34 @@ class Ensemble:
         """Returns whether all networks were trained with all these tokens."""
         return all(network.knows(tokens) for network in self.networks)
 
+    def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
+        """Returns the words that a plan does not depend on, each once, in the order of the text."""
+        return unused_words(self.networks[0], text, tokens, self.fillers)
+
     def confidence(self, draft: ScoredPlan, text: SlottedText, unused: Sequence[str]) -> float:
         """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts."""
         return confidence(self.weights, features(draft, text), unused)
+
+
+def scored_by(
+    roads: Ensemble, routes: Ensemble | None, words: str, refuse_from: float | None = None
+) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
+    """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
+
+    What the network for routes reads counts if those for single roads could not write that plan, or if they
+    name a junction or the like beside the road or as the cause of a refusal.
+
+    Args:
+        roads: the networks for single roads.
+        routes: the network for routes; None if there is none.
+        words: the description.
+        refuse_from: smallest probability of a refusal at which a refusal is allowed as a plan; None takes
+            what was fitted to the networks.
+    """
+    read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
+    if routes and read and not roads.knows(read[0].tokens):
+        return routes, read
+    found = roads.scored(words, refuse_from)
+    if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
+        return routes, read or routes.scored(words, refuse_from)
+    return roads, found

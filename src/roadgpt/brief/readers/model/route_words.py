@@ -6,6 +6,8 @@ may still be a single road ("no junctions, please"): the networks decide.
 
 import re
 
+from roadgpt.brief.readers.model.word_set import word_set
+
 TOLD_ON_ROUTES = frozenset(
     ["junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes"]
 )
@@ -62,6 +64,17 @@ ITALIAN = (
     r"(?:prima|seconda|terza) (?:via )?a (?:destra|sinistra)|guida a sinistra"
 )
 TELLING = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)), re.IGNORECASE)
+
+COMPANIONS = word_set(
+    "junction junctions intersection intersections arm arms leg legs branches exits block blocks traffic",
+    "ramp road roads street streets sign signs arrangement markings",
+    "knoten knotenpunkt arme armen ausfahrten blöcke häuserblöcke rampe straße straßen schild spuren",
+    "branches sorties pâtés maisons bretelle route routes rue rues panneau voies",
+    "brazos ramas salidas manzanas ramal carretera calle calles señal carriles intersección",
+    "bracci rami uscite isolati strada strade via vie cartello corsie intersezione",
+)
+"""Words that go with another one, which says what part of a route is meant ("T-junction", "four arms"): the
+plan stays the same without them."""
 
 
 def may_tell_a_route(words: str) -> bool:
