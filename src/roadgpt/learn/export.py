@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from hashlib import sha256
 from pathlib import Path
+from typing import Literal
 
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.readers.model import ROUTES, ModelReader
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
@@ -69,13 +70,14 @@ class DecoderGraph(nn.Module):
         return reader.scores(x)[:, 0], torch.stack(kept)
 
 
-def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
+def export(reader: ReaderNetwork, folder: Path, ending: str = "", bits: Literal[7, 8] = 8) -> None:
     """Writes the network to ``encoder.onnx`` and ``decoder.onnx``, with weights in int8.
 
     Args:
         reader: the network.
         folder: where the files are written.
         ending: what follows "encoder" and "decoder" in the names of the files.
+        bits: number of bits that the weights use; with 7, files are an eighth smaller when compressed.
     """
     from onnxruntime.quantization import QuantType, quantize_dynamic
     from onnxruntime.quantization.shape_inference import quant_pre_process
@@ -92,7 +94,7 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "") -> None:
             quant_pre_process(str(raw), str(ready), skip_symbolic_shape=True)
             quantize_dynamic(
                 str(ready), str(folder / f"{name}{ending}.onnx"), weight_type=QuantType.QInt8,
-                per_channel=True, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
+                per_channel=True, reduce_range=bits == 7, op_types_to_quantize=["MatMul", "Gather", "Gemm"],
             )  # fmt: skip
 
 
@@ -140,7 +142,7 @@ def export_checkpoints(
         layers = decoder_layers(state["reader"])
         reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
         reader.load_state_dict(state["reader"])
-        export(reader, folder, name)
+        export(reader, folder, name, 7 if name == ROUTES else 8)
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
     share_embedding([folder / f"encoder{name}.onnx" for name in checkpoints])
