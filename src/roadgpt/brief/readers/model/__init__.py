@@ -17,6 +17,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roadgpt.brief.feasible import check
+from roadgpt.brief.left_hand import says_left_hand
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
@@ -280,6 +281,8 @@ class ModelReader:
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
         sure = ensemble.confidence(draft, text, unused)
         found = {"words": words, "unused": unused, "confidence": sure}
+        if brief.junctions or brief.map is not None:
+            found["left_hand"] = brief.left_hand or says_left_hand(words)
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
@@ -347,7 +350,10 @@ def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
     for draft in found:
         if draft.is_refusal or not _can_be_kept(draft.line):
             continue
-        line = plan(normal(read_plan(draft.line)).model_copy(update={"beside": ()}))
+        other = read_plan(draft.line)
+        is_route = bool(other.junctions) or other.map is not None
+        same = {"beside": (), "left_hand": is_route and (brief.left_hand or other.left_hand)}
+        line = plan(normal(other.model_copy(update=same)))
         if line != plan(said):
             return line
     return ""

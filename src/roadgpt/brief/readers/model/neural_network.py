@@ -264,7 +264,13 @@ def _session(path: Path) -> onnxruntime.InferenceSession:
     options.intra_op_num_threads = 1
     options.inter_op_num_threads = 1
     options.log_severity_level = 3
-    return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    try:
+        return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # onnxruntime has 15 kinds, with no other base in common
+        raise PartError(
+            f"'{path}' cannot be loaded: it is damaged, or a file beside it is missing; copy the "
+            "whole folder again, or make it with: roadgpt learn export"
+        ) from error
 
 
 def _log_chances(scores: Array, allowed: Sequence[int]) -> Array:

@@ -1,0 +1,36 @@
+"""Left-hand traffic: the words in five languages that ask for it."""
+
+import re
+import unicodedata
+
+COUNTRIES = (
+    r"(?:great )?britain|the uk|england|scotland|wales|ireland|dublin|london|bristol|japan|australia|"
+    r"india|kenya|new zealand|south africa|malta|cyprus|schottland|irland|grossbritannien|"
+    r"großbritannien|australien|angleterre|ecosse|irlande|londres|japon|australie|royaume-uni|jersey|"
+    r"inglaterra|escocia|irlanda|reino unido|inghilterra|scozia|londra|giappone|regno unito|cipro"
+)
+SAYS = re.compile(
+    r"left[- ]?hand traffic|\blht\b|traffic (?:(?:is|keeps|drives|goes) )?(?:on the )?left\b(?! lane)|"
+    r"\bdriv(?:e|es|ing) (?:on|to) the left\b(?! lane)|so on the left|"
+    r"on the left(?:-hand)? side of the road like|wrong side,? ie the left|"
+    r"linksverkehr|\bfahr(?:en|t) (?:sie |wir |man )?(?:links,|auf der linken (?:strassen)?seite)|"
+    r"\b(?:conduite|circulation) a gauche|\b(?:roul|condui|circul)\w* a gauche|\btient la gauche|"
+    r"\b(?:circul|conduc|condu[cz]|manej|transit|trafico)\w*(?: siempre)? por la izquierda|"
+    r"\bguida\w* a sinistra|\b(?:si|che) (?:viaggia|guida|circola|tiene) (?:a |la |sulla )?sinistra|"
+    rf"\b(?:as|like|wie|comme|como|come)(?: we| man)?(?: drive| roads?)? (?:in|en|a|au) (?:{COUNTRIES})\b|"
+    rf"\b(?:in|en|a|au|siamo a|this is) (?:{COUNTRIES})\b[^.;]{{0,24}}"
+    r"\b(?:left|links|gauche|izquierda|sinistra)(?=\b(?!.{0,8}(?:bend|turn|kurve|virage|curva)))|"
+    rf"\bthis is (?:{COUNTRIES})\b|^(?:in|en|a|au) (?:{COUNTRIES})\b[:,]|"
+    r"\bbritish (?:rules|roads|traffic)|like the (?:british|uk)\b|ponmelo britanico"
+)
+NEGATED = re.compile(
+    r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
+)
+
+
+def says_left_hand(words: str) -> bool:
+    """Returns True if a description in English, German, French, Spanish or Italian asks for traffic that
+    drives on the left side of the road.
+    """
+    said = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
+    return any(not NEGATED.search(said[: found.start()]) for found in SAYS.finditer(said))
