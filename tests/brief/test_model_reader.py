@@ -1,6 +1,7 @@
 """The trained reader as it is shipped: what it promises to everybody who calls it."""
 
 import json
+import shutil
 import zlib
 from hashlib import sha256
 from pathlib import Path
@@ -101,8 +102,8 @@ def test_the_weights_are_small_and_come_with_their_notice() -> None:
     assert sum(len(zlib.compress(path.read_bytes(), 1)) for path in files) < MOST_MEGABYTES * 1e6
     assert "Apache-2.0" in (WEIGHTS / "NOTICE").read_text(encoding="utf-8")
     sums = json.loads((WEIGHTS / "sums.json").read_text(encoding="utf-8"))
-    graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_2")}
-    assert {*sums} == {*graphs, "pieces.txt", "words.txt", "settings.json"}
+    graphs = {f"{part}{name}.onnx" for part in ("encoder", "decoder") for name in ("", "_2", "_routes")}
+    assert {*sums} == {*graphs, "embedding.bin", "pieces.txt", "words.txt", "settings.json"}
     for name, digest in sums.items():
         assert sha256((WEIGHTS / name).read_bytes()).hexdigest() == digest
 
@@ -114,3 +115,13 @@ def test_weights_of_ones_own_are_named_with_their_folder(tmp_path: Path) -> None
         reader_of(f"model:{tmp_path}")
     with pytest.raises(PartError, match="takes no folder"):
         reader_of(f"plan:{tmp_path}")
+
+
+@pytest.mark.parametrize("name", ["encoder.onnx", "decoder_2.onnx", "embedding.bin"])
+def test_damaged_weights_are_refused_in_a_sentence(tmp_path: Path, name: str) -> None:
+    for path in WEIGHTS.iterdir():
+        shutil.copy(path, tmp_path)
+    whole = (tmp_path / name).read_bytes()
+    (tmp_path / name).write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(PartError, match=r"coder\w*\.onnx' cannot be loaded: it is damaged"):
+        reader_of(f"model:{tmp_path}").read("three turns")

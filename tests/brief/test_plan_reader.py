@@ -62,10 +62,7 @@ def test_a_plan_becomes_the_road_that_it_describes() -> None:
         ("turn | beside(moon)", "'moon' is none of the things beside a road"),
         ("turn | beside()", "'' is none of the things beside a road"),
         ("!contradiction turns sides", "contradicts itself about the number of turns and left and right"),
-        (
-            "!impossible roundabout",
-            "can be asked for only in a plan so far, such as --plan 'roundabout exit=2'",
-        ),
+        ("!impossible roundabout", "say it in driving order, such as 'a roundabout, second exit'"),
         ("!impossible turns roundabouts", "a plan has no refusal '!impossible turns roundabouts'"),
         ("!nonsense turns", "a plan has no refusal"),
         ("!perhaps", "a plan has no refusal '!perhaps'"),
@@ -86,8 +83,8 @@ def test_things_beside_the_road_are_kept_and_told_by_name() -> None:
     assert brief.beside == ("roundabout", "wet")
     assert read_plan(plan(brief)) == brief
     assert remarks(brief, 250) == (
-        "a roundabout can be asked for only in a plan so far, such as --plan 'roundabout exit=2'; the road is"
-        " made without it",
+        "a roundabout is built as a part of a route, such as 'a roundabout, second exit'; the road is made"
+        " without it",
         "the words say 'wet': friction is 0.6; --friction gives another",
     )
     assert Brief.model_validate_json(brief.model_dump_json()) == brief
@@ -105,8 +102,8 @@ def test_what_is_no_single_road_is_asked_about(monkeypatch: pytest.MonkeyPatch) 
     with pytest.raises(NotBuiltError) as refusal:
         read("a turn, then a roundabout, in the rain", "model")
     assert str(refusal.value).startswith(
-        "a roundabout can be asked for only in a plan so far, such as --plan 'roundabout exit=2'; the road "
-        "without it: --plan"
+        "it is not clear where a roundabout should be; say it in driving order, such as 'a roundabout, "
+        "second exit'; the road without it: --plan"
     )
     assert refusal.value.plan == "turn | beside(rain)"
     assert read(refusal.value.plan, "plan").beside == ("roundabout", "rain")  # a plan is built as it stands

@@ -55,15 +55,15 @@ NOT_BUILT = {
 }
 """The things that RoadGPT does not build, by name, with their wording in the remark."""
 ON_ROUTES = {
-    "junction": "t_junction left",
-    "crossroads": "crossroads straight",
-    "roundabout": "roundabout exit=2",
-    "merge": "merge ramp",
-    "exit": "diverge ramp",
-    "lane_change": "lane_change left",
+    "junction": "a T-junction, turn left",
+    "crossroads": "a crossroads, straight on",
+    "roundabout": "a roundabout, second exit",
+    "merge": "from the ramp onto the motorway",
+    "exit": "take the exit on the right",
+    "lane_change": "change to the left lane",
 }
-"""The things that are built as parts of a route, with plans that ask for them. The installed reader of words
-does not know routes yet, and names them here."""
+"""The things that are built as parts of a route, with words that ask for them. Here they are named only by
+plans, and by readers that do not know routes."""
 NETWORKS = (*ON_ROUTES, "loop")
 """Names of the things that are not a single road. If a reader names one of them beside a road, ``brief.read``
 raises NotBuiltError, which proposes the road without it."""
@@ -94,7 +94,10 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
     """
     for name in names:
         if name in ON_ROUTES:
-            yield f"{networks_in([name])}; the road is made without it"
+            yield (
+                f"{NOT_BUILT[name]} is built as a part of a route, such as '{ON_ROUTES[name]}'; the road is"
+                " made without it"
+            )
         elif name in NOT_BUILT:
             yield f"{NOT_BUILT[name]} is not built yet; the road is made without it"
         elif name not in SURFACES:
@@ -106,8 +109,8 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 def networks_in(names: Iterable[str]) -> str:
     """Returns why those things that are not a single road are not built beside one; empty if there are none.
 
-    The sentence has no full stop, such as "a roundabout can be asked for only in a plan so far, such as
-    --plan 'roundabout exit=2'".
+    The sentence has no full stop, such as "it is not clear where a roundabout should be; say it in driving
+    order, such as 'a roundabout, second exit'".
     """
     named = [name for name in names if name in NETWORKS]
     if not named:
@@ -116,7 +119,7 @@ def networks_in(names: Iterable[str]) -> str:
     example = next((ON_ROUTES[name] for name in named if name in ON_ROUTES), "")
     if not example:
         return f"{said} cannot be built yet"
-    return f"{said} can be asked for only in a plan so far, such as --plan '{example}'"
+    return f"it is not clear where {said} should be; say it in driving order, such as '{example}'"
 
 
 def friction_of(names: Iterable[str]) -> float | None:

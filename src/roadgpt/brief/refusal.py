@@ -18,7 +18,7 @@ ADVICE = {
     "!contradiction": "the description contradicts itself; leave something out, or say which part of"
     " the road is meant",
     "!impossible": "no such road can be built: loops, radii below 15 m and grades above 15 percent are not"
-    " possible, and junctions are so far only in plans; leave that out",
+    " possible; leave that out",
     "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
 }
 """The refusals of the plan language, with the message of each if no cause is named."""

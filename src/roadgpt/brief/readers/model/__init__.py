@@ -17,7 +17,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.left_hand import says_left_hand
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
@@ -35,6 +34,7 @@ from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
+from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
@@ -156,7 +156,7 @@ class ModelReader:
         if draft.is_refusal:
             return UncalibratedReading(draft.line, {})
         try:
-            brief = with_checked_counts(read_plan(draft.line), text)
+            brief = with_whole_drive(with_checked_counts(read_plan(draft.line), text), words)
         except BriefError:
             return None
         return UncalibratedReading(plan(normal(brief)), features(draft, text))
@@ -275,14 +275,12 @@ class ModelReader:
         wrote, if they differ from ``text`` and from the tokens of ``draft``.
         """
         try:
-            brief = with_checked_counts(read_plan(draft.line), text)
+            brief = with_whole_drive(with_checked_counts(read_plan(draft.line), text), words)
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
         sure = ensemble.confidence(draft, text, unused)
         found = {"words": words, "unused": unused, "confidence": sure}
-        if brief.junctions or brief.map is not None:
-            found["left_hand"] = brief.left_hand or says_left_hand(words)
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False
         return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
@@ -350,10 +348,8 @@ def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
     for draft in found:
         if draft.is_refusal or not _can_be_kept(draft.line):
             continue
-        other = read_plan(draft.line)
-        is_route = bool(other.junctions) or other.map is not None
-        same = {"beside": (), "left_hand": is_route and (brief.left_hand or other.left_hand)}
-        line = plan(normal(other.model_copy(update=same)))
+        other = with_whole_drive(read_plan(draft.line), brief.words)
+        line = plan(normal(other).model_copy(update={"beside": ()}))
         if line != plan(said):
             return line
     return ""
