@@ -167,8 +167,8 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
         ),
         ("| lanes=2 // roundabout lanes=1", "a roundabout with fewer lanes than the 2 of a road .*"),
         (
-            "merge ramp side=left // | motorway || left_hand",
-            "traffic on the left and a ramp on the left cannot be built yet; leave them out",
+            "merge ramp side=right // | motorway || left_hand",
+            "a ramp on the right with traffic on the left cannot be built yet; leave it out",
         ),
     ],
 )

@@ -23,6 +23,7 @@ from roadgpt.road import World
 SEEDS = range(6)
 LANES = range(6)
 MAPS = range(100, 104)
+LEFT = range(40, 43)
 CHECK = """
 import logging, sys
 from qc_opendrive import main
@@ -78,9 +79,9 @@ Drawing = Callable[[int], dict[str, Any]]
 """Draws a design from a seed."""
 
 
-def drawn(seed: int, draw: Drawing = random_design) -> tuple[dict[str, Any], Route]:
+def drawn(seed: int, draw: Drawing = random_design, left_hand: bool = False) -> tuple[dict[str, Any], Route]:
     """A design whose roads are straight near junctions, so that arms have the directions of the design."""
-    data = draw(seed)
+    data = draw(seed) | ({"left_hand": True} if left_hand else {})
     before = {each["after"] for key, each in data.items() if key.startswith("junction")}
     for number in sorted(before | {each + 1 for each in before}):
         data[f"road_segment{number}"] |= {"direction": "straight", "turn_degrees": 0.0}
@@ -94,6 +95,8 @@ def saved(folder: Path, format_: str = "opendrive") -> dict[str, Network]:
         (f"network{seed}", map_route(seed) if seed in MAPS else drawn(seed)[1]) for seed in (*SEEDS, *MAPS)
     ]
     routes += [(f"lanes{seed}", drawn(seed, random_lanes_design)[1]) for seed in LANES]
+    routes += [(f"left{seed}", drawn(seed, left_hand=True)[1]) for seed in LEFT]
+    routes += [(f"left_lanes{seed}", drawn(seed, random_lanes_design, left_hand=True)[1]) for seed in LEFT]
     for name, route in routes:
         written = save(route, folder, [format_], World(), name)
         (file,) = (path for path in written if path.suffix == ".xodr")
@@ -174,8 +177,10 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
             for c in junction.connections
         }
         for each in network.continuations:
-            ours |= {(f"-{each.before.road}", f"-{each.after.road}") for lane, _ in each.lanes if lane < 0}
-            ours |= {(f"{each.after.road}", f"{each.before.road}") for lane, _ in each.lanes if lane > 0}
+            for lane, _ in each.lanes:
+                is_along = network.road(each.before.road).profile.leads_along(lane)
+                pair = each.before.road, each.after.road
+                ours.add((f"-{pair[0]}", f"-{pair[1]}") if is_along else (f"{pair[1]}", f"{pair[0]}"))
         assert theirs == ours
         lit = [j for j in network.junctions if any(arm.control == "lights" for arm in j.arms)]
         assert len(list(root.iter("tlLogic"))) == len(lit)

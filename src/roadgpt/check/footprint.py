@@ -133,15 +133,15 @@ class Footprint:
         s = _before(self._pieces.length, np.searchsorted(self._pieces.owner, self._pieces.owner))[index] + u
         left, right = np.empty(len(s)), np.empty(len(s))
         for n, member in enumerate(self.network.roads):
-            here = slice(first[n], first[n + 1])
+            here, begin = slice(first[n], first[n + 1]), member.profile.begins
             if _varies(member):
                 centre = member.profile.centre(s[here])
-                left[here] = centre + member.profile.median + _widths(member.profile.left, s[here])
-                right[here] = centre - _widths(member.profile.right, s[here])
+                left[here] = centre + begin[0] + _widths(member.profile.left, s[here])
+                right[here] = centre - begin[1] - _widths(member.profile.right, s[here])
             else:
                 middle = member.profile.offset_range[0]
-                left[here] = middle + member.profile.median + _width(member.profile.left)
-                right[here] = middle - _width(member.profile.right)
+                left[here] = middle + begin[0] + _width(member.profile.left)
+                right[here] = middle - begin[1] - _width(member.profile.right)
         sin, cos = np.sin(heading), np.cos(heading)
         return (
             np.stack((x - right * sin, y + right * cos), axis=1),
@@ -281,9 +281,9 @@ def _widths(lanes: tuple[Lane, ...], s: Array) -> Array:
 
 
 def _reach(member: NetworkRoad) -> float:
-    low, high = member.profile.offset_range
-    left = _width(member.profile.left) + member.profile.median
-    return max(left + high, _width(member.profile.right) - low)
+    (low, high), begin = member.profile.offset_range, member.profile.begins
+    left = _width(member.profile.left) + begin[0]
+    return max(left + high, _width(member.profile.right) + begin[1] - low)
 
 
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -34,13 +34,14 @@ class MeasuredJunction:
     kinds: tuple[JunctionKind, ...]
     """The kinds that it may be called; empty for none."""
     gaps: tuple[float, ...]
-    """Angles between neighbouring arms, counter-clockwise from the arm of arrival."""
+    """Angles between neighbouring arms, counter-clockwise from the arm of arrival; clockwise with traffic on
+    the left."""
     turn: float
     """Change of direction of the route, left positive; 180 for a way back."""
     exit: int
-    """Number of the arm on which the route leaves, counted counter-clockwise from the arm of arrival."""
+    """Number of the arm on which the route leaves, counted in the same order as ``gaps``."""
     ways: tuple[float, ...]
-    """Changes of direction to all arms but the one of arrival, counter-clockwise."""
+    """Changes of direction to all arms but the one of arrival, in the same order as ``gaps``."""
     control: Control
     outer: float | None
     """Outer diameter of a roundabout; None for other junctions."""
@@ -97,10 +98,13 @@ def _lane_places(route: Route) -> Iterator[MeasuredLanes]:
         lanes = [leg.lane for leg in route.legs if leg.road == two.id]
         if after != before:
             pairs = network.continued_at[RoadEnd(two.id, "start")].lanes
-            side: Side = "right" if (-1, -1) in pairs else "left"
+            own = two.profile.side
+            is_left = (own > 0) == ((own, own) in pairs)
+            side: Side = "left" if is_left else "right"
             yield MeasuredLanes(start, "lane_drop" if after < before else "lane_gain", side)
         elif len(lanes) > 1:
-            yield MeasuredLanes(start, "lane_change", "left" if abs(lanes[1]) < abs(lanes[0]) else "right")
+            is_left = (lanes[1] > lanes[0]) == two.profile.leads_along(lanes[0])
+            yield MeasuredLanes(start, "lane_change", "left" if is_left else "right")
 
 
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
@@ -140,7 +144,7 @@ def length_beside_ramp(network: Network, junction: Junction) -> float:
     """
     ends = [each.outgoing if junction.kind == "merge" else each.incoming for each in junction.connections]
     beside = network.road(max(ends, key=ends.count).road)
-    width = beside.profile.right[beside.profile.count[0] - 1].width
+    width = beside.profile.along[beside.profile.count[0] - 1].width
     if not isinstance(width, CubicProfile):
         return 0.0
     s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
@@ -151,7 +155,8 @@ def _measured(network: Network, passage: Passage) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
     directions = [direction_of(network, end) for end in passage.arms]
     ramp = _ramp_of(network, passage)
-    gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+    around = 1 if not network.left_hand else -1
+    gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
     return MeasuredJunction(
         passage.start,

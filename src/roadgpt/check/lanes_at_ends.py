@@ -44,10 +44,9 @@ def _lanes(network: Network) -> dict[RoadEnd, tuple[tuple[int, ...], tuple[int, 
     """Returns, for each end of each road, the ids of the lanes towards it and of those away from it."""
     found = {}
     for member in network.roads:
-        forward = member.profile.count[0]
-        right, left = tuple(range(-1, -forward - 1, -1)), tuple(member.profile.left_ids)
-        found[RoadEnd(member.id, "end")] = (right, left)
-        found[RoadEnd(member.id, "start")] = (left, right)
+        along, against = tuple(member.profile.along_ids), tuple(member.profile.against_ids)
+        found[RoadEnd(member.id, "end")] = (along, against)
+        found[RoadEnd(member.id, "start")] = (against, along)
     return found
 
 
@@ -58,11 +57,11 @@ def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
     for end, (into, out_of) in _lanes(network).items():
         pose, member = footprint(network).ends[end], network.road(end.road)
         s = 0.0 if end.contact == "start" else member.road.length
+        profile = member.profile
         for lanes in (into, out_of):
-            begin, profile = width_at(member.profile.offset, s), member.profile
-            t = begin + profile.median if lanes and lanes[0] > 0 else begin
-            for lane in lanes:
-                own = profile.right[-lane - 1] if lane < 0 else profile.left[lane - profile.left_ids[0]]
+            begin, is_along = width_at(profile.offset, s), bool(lanes) and profile.leads_along(lanes[0])
+            t = begin if is_along else begin - profile.side * profile.median
+            for lane, own in zip(lanes, profile.along if is_along else profile.against, strict=False):
                 width = width_at(own.width, s)
                 inner, t = t, t - width if lane < 0 else t + width
                 found[(end, lane)] = (pose.beside(inner), pose.beside(t))

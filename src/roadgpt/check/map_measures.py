@@ -21,7 +21,7 @@ class MeasuredNode:
     kinds: tuple[JunctionKind, ...]
     """The kinds that it may be called; empty for none."""
     gaps: tuple[float, ...]
-    """Angles in degrees between neighbouring arms, counter-clockwise."""
+    """Angles in degrees between neighbouring arms, one after another."""
     controls: frozenset[Control]
     """The signs and lights of its arms."""
 
@@ -74,7 +74,8 @@ def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:
     # the first arm of each junction of a roundabout is the one that is no part of the ring
     arms = [each.arms[0] for each in junctions] if is_ring else list(junctions[0].arms)
     directions = [direction_of(network, arm.end) for arm in arms]
-    gaps = [(b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
+    around = -1 if is_ring and network.left_hand else 1
+    gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     kinds: tuple[JunctionKind, ...] = ("roundabout",) if is_ring else kinds_of(gaps)
     x, y, _ = junctions[0].node
     return MeasuredNode((x, y), kinds, tuple(gaps), frozenset(arm.control for arm in arms))

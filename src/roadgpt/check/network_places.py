@@ -43,7 +43,7 @@ def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | No
         return None
     for start, leg in zip(route.starts, route.legs, strict=False):
         if leg.road == member.id:
-            return start + (s if leg.lane < 0 else member.road.length - s)
+            return start + (s if member.profile.leads_along(leg.lane) else member.road.length - s)
     return None
 
 

@@ -23,18 +23,18 @@ def check_built(brief: Brief) -> None:
 
 
 def _unbuilt(brief: Brief) -> Iterator[str]:
-    if brief.left_hand:
-        yield "traffic on the left"
+    if brief.left_hand and not brief.junctions and brief.map is None:
+        yield "traffic on the left of a road without junctions"
     for n, junction in enumerate(brief.junctions):
-        yield from _of_junction(junction, *brief.stretches[n : n + 2])
+        yield from _of_junction(junction, brief.left_hand, *brief.stretches[n : n + 2])
     if brief.divided:
         yield "a median of a single road"
 
 
-def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
+def _of_junction(junction: JunctionClause, left_hand: bool, before: Brief, after: Brief) -> Iterator[str]:
     """Yields what cannot be built of a junction with the roads before and behind it."""
-    if junction.kind in RAMPS and junction.side == "left":
-        yield "a ramp on the left"
+    if junction.kind in RAMPS and junction.side == ("right" if left_hand else "left"):
+        yield "a ramp on the right with traffic on the left" if left_hand else "a ramp on the left"
     if junction.kind in RAMPS and junction.take != "main":
         ramp = before if junction.kind == "merge" else after
         if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:

@@ -8,7 +8,7 @@ from roadgpt.geometry import wrap_angle
 from roadgpt.network import Leg, Passage, Route
 
 if TYPE_CHECKING:
-    from roadgpt.road import Road, World
+    from roadgpt.road import Profile, Road, World
 
 
 def route_of(road: "Road") -> Route | None:
@@ -62,13 +62,21 @@ def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:
     """Returns the number of driving lanes to the left and to the right of the driven lane."""
     profile = world.profile_of(road)
     forward, backward = profile.count
-    return profile.driven + backward, forward - 1 - profile.driven
+    return _left_and_right(profile, profile.driven + backward, forward - 1 - profile.driven)
 
 
 def _beside_on_leg(route: Route, leg: Leg) -> tuple[int, int]:
     profile = route.network.road(leg.road).profile
     forward, backward = profile.count
-    if leg.lane < 0:
-        return -leg.lane - 1 + backward, forward + leg.lane
-    index = profile.left_ids.index(leg.lane)
-    return index + forward, backward - 1 - index
+    if profile.leads_along(leg.lane):
+        index = profile.along_ids.index(leg.lane)
+        return _left_and_right(profile, index + backward, forward - 1 - index)
+    index = profile.against_ids.index(leg.lane)
+    return _left_and_right(profile, index + forward, backward - 1 - index)
+
+
+def _left_and_right(profile: "Profile", inside: int, outside: int) -> tuple[int, int]:
+    """Returns the numbers of lanes to the left and to the right, from those on the side of oncoming traffic
+    and those on the other side.
+    """
+    return (outside, inside) if profile.left_hand else (inside, outside)

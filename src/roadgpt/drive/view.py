@@ -18,8 +18,8 @@ class JunctionAhead(NamedTuple):
     """Change of direction in radians from the road of arrival to the road of departure, left positive, in
     (-pi, pi]."""
     exit: int
-    """Number of the road on which the route leaves, counted counter-clockwise from the road of arrival. At a
-    roundabout it is the number of the exit."""
+    """Number of the road on which the route leaves, counted counter-clockwise from the road of arrival, or
+    clockwise with traffic on the left. At a roundabout it is the number of the exit."""
     control: str
     """What applies to the car: "priority", "yield", "stop", "lights" or "none". Lights are always green."""
     length: float

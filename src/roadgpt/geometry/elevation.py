@@ -120,6 +120,12 @@ class CubicProfile:
         index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
         return s - start[index], np.moveaxis(table[index], -1, 0)
 
+    @cached_property
+    def negative(self) -> "CubicProfile":
+        """The profile with the sign of all heights changed."""
+        rows = tuple((0.0 - a, 0.0 - b, 0.0 - c, 0.0 - d) for a, b, c, d in self.coefficients)
+        return CubicProfile(self.stations, rows)
+
     def cubics(self, s: ArrayLike) -> Array:
         """Returns the coefficients ``(n, 4)`` of the cubics at stations ``s`` ``(n,)``.
 

@@ -61,6 +61,12 @@ class PieceCurve:
         return start, x, y, heading, k0, dk
 
     @cached_property
+    def mirrored(self) -> "PieceCurve":
+        """The curve with the sign of y changed: left becomes right."""
+        pieces = tuple(Piece(piece.length, 0.0 - piece.k0, 0.0 - piece.k1) for piece in self.pieces)
+        return PieceCurve(self.x, 0.0 - self.y, 0.0 - self.heading0, pieces)
+
+    @cached_property
     def length(self) -> float:
         """The arc length of the whole curve in metres."""
         return float(np.sum([piece.length for piece in self.pieces]))

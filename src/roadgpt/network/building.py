@@ -60,11 +60,11 @@ class Stub:
 
     def id_into(self, index: int) -> int:
         """Returns the id of a lane that leads into the junction; lanes count from 0 at the centre line."""
-        return -(index + 1) if self.end.contact == "end" else self.profile.left_ids[index]
+        return -(index + 1) if self.end.contact == "end" else self.profile.against_ids[index]
 
     def id_out_of(self, index: int) -> int:
         """Returns the id of a lane that leads out of the junction; lanes count from 0 at the centre line."""
-        return self.profile.left_ids[index] if self.end.contact == "end" else -(index + 1)
+        return self.profile.against_ids[index] if self.end.contact == "end" else -(index + 1)
 
     def width_of(self, lane: Lane) -> float:
         """Returns the width in metres of a lane at the junction."""

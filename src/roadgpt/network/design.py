@@ -11,7 +11,8 @@ It is written in RoadGPT's JSON format, with two additions:
 arrives, positive to the left. ``take`` names the arm on which the route goes on: "left", "right" or
 "straight", or the number of the exit, counted counter-clockwise from the road on which one arrives. ``lanes``
 of a junction are those of the road on which the route goes on. Merges, exits and places where lanes change
-are described in ``network.lane_design``.
+are described in ``network.lane_design``. With ``"left_hand": true``, traffic drives on the left: exits are
+counted clockwise, and ramps lie on the left.
 """
 
 import re
@@ -24,11 +25,22 @@ from pydantic import BaseModel, Field, StrictBool, ValidationError
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
 from roadgpt.errors import UsageError
 from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.pose import mirrored_point
 from roadgpt.road import Design, Segment, read_design
-from roadgpt.road.design import Finite, FrozenFields, Length, as_written, first_error, no_truths
+from roadgpt.road.design import (
+    OTHER_DIRECTION,
+    Finite,
+    FrozenFields,
+    Length,
+    as_written,
+    first_error,
+    no_truths,
+)
 from roadgpt.road.road import FARTHEST
 
 KEY = re.compile(r"junction(\d{1,4})")
+OWN = ("lanes", "left_hand")
+"""The fields of a design with junctions that other designs do not have, besides the junctions."""
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
 ISLAND = 16.0  # m, radius of the central island
 STUB = 25.0  # m, of an arm whose length is not given
@@ -66,6 +78,10 @@ class ArmDesign(FrozenFields):
     control: Control | None = None
     """The sign or the light on this arm; None for what the junction's ``control`` implies."""
 
+    def mirrored(self) -> "ArmDesign":
+        """Returns the arm with left and right exchanged."""
+        return self.model_copy(update={"angle": 0.0 - self.angle})
+
 
 class JunctionDesign(FrozenFields):
     """A junction on the route."""
@@ -95,9 +111,30 @@ class JunctionDesign(FrozenFields):
         arms = self.arms or tuple(ArmDesign(angle=angle) for angle in USUAL_ARMS[self.kind])
         return tuple(sorted(arms, key=lambda arm: arm.angle))
 
+    def mirrored(self) -> "JunctionDesign":
+        """Returns the junction with left and right exchanged; the number of an exit stays, because it is
+        counted in the direction in which traffic drives around a roundabout.
+        """
+        take = self.take if isinstance(self.take, int) else OTHER_DIRECTION[self.take]
+        return self.model_copy(
+            update={"take": take, "arms": tuple(arm.mirrored() for arm in reversed(self.arms))}
+        )
+
+    def arm_taken(self, left_hand: bool) -> ArmDesign | None:
+        """Returns the arm that the route takes; None for the road on which it arrived.
+
+        Raises:
+            UsageError: No arm, or more than one, fits ``take``.
+        """
+        arms, taken = self.all_arms, self.taken
+        if taken is None:
+            return None
+        return arms[::-1][taken] if left_hand and isinstance(self.take, int) else arms[taken]
+
     @property
     def taken(self) -> int | None:
-        """Index in ``all_arms`` of the arm that the route takes; None for the road on which it arrived.
+        """Index in ``all_arms`` of the arm that the route takes if traffic drives on the right; None for the
+        road on which it arrived.
 
         Raises:
             UsageError: No arm, or more than one, fits ``take``.
@@ -143,6 +180,8 @@ class NetworkDesign(FrozenFields):
     """The junctions, and what stands in one order with them."""
     lanes: LanesDesign | None = None
     """The lanes of the first road; None for those of the World."""
+    left_hand: StrictBool = False
+    """Whether traffic drives on the left."""
 
     def __repr__(self) -> str:
         kinds = ", ".join(junction.kind.replace("_", "-") for junction in self.junctions)
@@ -155,12 +194,30 @@ class NetworkDesign(FrozenFields):
         ends = [0, *(junction.after for junction in self.junctions), len(self.segments)]
         return tuple(self.segments[a:b] for a, b in pairwise(ends))
 
+    def mirrored(self, middle: float = 0.0) -> "NetworkDesign":
+        """Returns the design with left and right exchanged, and traffic on the other side.
+
+        Args:
+            middle: The y in metres of the line about which it is mirrored.
+        """
+        return self.model_copy(
+            update={
+                "starting_point": mirrored_point(self.starting_point, middle),
+                "theta": 0.0 - self.theta,
+                "segments": tuple(segment.mirrored() for segment in self.segments),
+                "junctions": tuple(place.mirrored() for place in self.junctions),
+                "left_hand": not self.left_hand,
+            }
+        )
+
     def to_json(self) -> dict[str, Any]:
         """Returns the design as a dictionary in RoadGPT's JSON format."""
         out: dict[str, Any] = {
             "starting_point": [as_written(v) for v in self.starting_point],
             "theta": as_written(self.theta),
         }
+        if self.left_hand:
+            out["left_hand"] = True
         if self.lanes is not None:
             out["lanes"] = _plain_lanes(self.lanes)
         for number, segment in enumerate(self.segments, 1):
@@ -199,12 +256,13 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     Raises:
         UsageError: A field is missing, misnamed, of the wrong type or out of range.
     """
-    rest = {key: value for key, value in data.items() if key != "lanes" and not KEY.fullmatch(str(key))}
+    rest = {key: each for key, each in data.items() if key not in OWN and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
     numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
     if not 1 <= len(numbered) <= MOST_JUNCTIONS:
         raise UsageError(f"the design has {len(numbered)} junctions; give 1 to {MOST_JUNCTIONS}")
-    junctions = [_place(number, raw) for number, raw in numbered]
+    left_hand = is_left_hand(data)
+    junctions = [_place(number, raw, left_hand) for number, raw in numbered]
     junctions.sort(key=lambda each: each.after)
     lanes = None if data.get("lanes") is None else _lanes(data["lanes"])
     _check_order(junctions, len(design.segments))
@@ -215,8 +273,20 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
         segments=design.segments,
         junctions=tuple(junctions),
         lanes=lanes,
+        left_hand=left_hand,
     )
     return made, remarks
+
+
+def is_left_hand(data: Mapping[str, Any]) -> bool:
+    """Returns whether traffic drives on the left, as the field ``left_hand`` of a design says.
+
+    Raises:
+        UsageError: The field is neither true nor false.
+    """
+    if not isinstance(found := data.get("left_hand", False), bool):
+        raise UsageError("left_hand cannot be read: give true for traffic on the left, or leave it out")
+    return found
 
 
 def _check_start(design: Design) -> None:
@@ -269,21 +339,21 @@ OF_LANES: dict[str, type[RampDesign] | type[LanesChangeDesign]] = {
 }
 
 
-def _place(number: int, raw: Any) -> PlaceDesign:
+def _place(number: int, raw: Any, left_hand: bool) -> PlaceDesign:
     what = f"junction {number}"
     _check_object(what, raw, "after, kind and take")
     if raw.get("lanes") is not None:
         _check_object(f"the lanes of {what}", raw["lanes"], "forward, backward and width")
     made = OF_LANES.get(str(raw.get("kind")))
     if made is None:
-        return _junction(what, raw)
+        return _junction(what, raw, left_hand)
     try:
         return made.model_validate(raw)
     except ValidationError as error:
         raise UsageError(f"{what} cannot be read: {first_error(error)}") from error
 
 
-def _junction(what: str, raw: Mapping[str, Any]) -> JunctionDesign:
+def _junction(what: str, raw: Mapping[str, Any], left_hand: bool) -> JunctionDesign:
     arms = raw.get("arms", ())
     if not isinstance(arms, (list, tuple)) or len(arms) > MOST_ARMS:
         raise UsageError(f"{what} cannot be read: arms: give a list of at most {MOST_ARMS} arms")
@@ -298,12 +368,12 @@ def _junction(what: str, raw: Mapping[str, Any]) -> JunctionDesign:
         raise UsageError(f"{what} cannot be read: {said}") from error
     try:
         _check_arms(made)
-        taken = made.taken
+        taken = made.arm_taken(left_hand)
     except UsageError as error:
         raise UsageError(f"{what}: {error}") from error
-    if taken is not None and made.all_arms[taken].length is not None:
+    if taken is not None and taken.length is not None:
         raise UsageError(
-            f"{what}: the arm at {made.all_arms[taken].angle:g} degrees is the one that the route takes; its "
+            f"{what}: the arm at {taken.angle:g} degrees is the one that the route takes; its "
             "length is that of the segments behind the junction, so leave out length"
         )
     return made

@@ -38,14 +38,20 @@ def build_route(design: NetworkDesign, world: World) -> Route:
             roundabout is too small for its arms, a lane that the route needs cannot be reached, or a road is
             longer than 50 km.
     """
-    grown = _RouteGrowth(design, stretch_profiles(design, world))
-    for number, place in enumerate(design.junctions, 1):
+    # traffic on the left is the mirror image of traffic on the right
+    seen = design.mirrored() if design.left_hand else design
+    grown = _RouteGrowth(seen, stretch_profiles(seen, world))
+    for number, (own, place) in enumerate(zip(design.junctions, seen.junctions, strict=True), 1):
         try:
+            if isinstance(own, JunctionDesign):
+                own.arm_taken(design.left_hand)  # says left and right as the design does
             grown.pass_place(number, place)
         except UsageError as error:
             raise UsageError(f"junction {number}: {error}") from error
-    network = grown.builder.network()
-    return Route.along(network, legs_along(network, grown.passed, grown.shifts))
+    network, shifts = grown.builder.network(), grown.shifts
+    if design.left_hand:
+        network, shifts = network.mirrored, {road: -shift for road, shift in shifts.items()}
+    return Route.along(network, legs_along(network, grown.passed, shifts))
 
 
 @dataclass
@@ -194,7 +200,7 @@ def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -
     drop, gain = place.kind == "lane_drop" and is_left, place.kind == "lane_gain" and is_left
     count = min(before.count[0], after.count[0])
     right = [(-1 - n - drop, -1 - n - gain) for n in range(count)]
-    return (*right, *zip(before.left_ids, after.left_ids, strict=False))
+    return (*right, *zip(before.against_ids, after.against_ids, strict=False))
 
 
 def contact_distances(

@@ -14,7 +14,7 @@ from pydantic import Field, StrictBool
 
 from roadgpt.brief.junctions import LaneKind, Side
 from roadgpt.brief.words import MOST_LANES
-from roadgpt.road.design import FrozenFields
+from roadgpt.road.design import OTHER_DIRECTION, FrozenFields
 from roadgpt.road.profile import Marking
 
 ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
@@ -41,7 +41,7 @@ class LanesDesign(FrozenFields):
 
 
 class RampDesign(FrozenFields):
-    """A place where a ramp joins a road, or leaves it, on the right."""
+    """A place where a ramp joins a road, or leaves it: on the right, or on the left with traffic there."""
 
     after: After
     """Number of segments of the route before it."""
@@ -52,6 +52,10 @@ class RampDesign(FrozenFields):
     """Length in metres of the lane for acceleration or deceleration, without its taper."""
     lanes: LanesDesign | None = None
     """The lanes of the road behind it; None for the usual ones."""
+
+    def mirrored(self) -> "RampDesign":
+        """Returns the same: a ramp lies on the side on which traffic drives."""
+        return self
 
 
 class LanesChangeDesign(FrozenFields):
@@ -66,3 +70,7 @@ class LanesChangeDesign(FrozenFields):
     """Length in metres in which the width of the lane changes."""
     lanes: LanesDesign | None = None
     """The lanes of the road behind it; None for those before it, with the lane that ends or begins."""
+
+    def mirrored(self) -> "LanesChangeDesign":
+        """Returns the place with left and right exchanged."""
+        return self.model_copy(update={"side": OTHER_DIRECTION[self.side]})

@@ -13,8 +13,8 @@ Ways = dict[int, int]
 def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
     """Returns the legs of a route that follows roads in this order.
 
-    A route keeps to the rightmost lane from which it can go on, and changes lanes as late as possible: on the
-    last road before the lane is needed.
+    A route keeps to the outermost lane from which it can go on (the rightmost one, with traffic on the
+    right), and changes lanes as late as possible: on the last road before the lane is needed.
 
     Args:
         network: The network.
@@ -30,7 +30,7 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
         each if shifts.get(roads[n]) else _kept(each, lanes)
         for n, (each, lanes) in enumerate(zip(ways, fit[1:], strict=True))
     ]
-    lane = _first(ways[0] if ways else {-1: -1}, shifts.get(roads[0], 0))
+    lane = _first(network, roads[0], ways[0] if ways else None, shifts.get(roads[0], 0))
     found: list[Leg] = []
     for n, road in enumerate(roads):
         own = [lane]
@@ -48,11 +48,11 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
     return found
 
 
-def _first(ways: Ways, shift: int) -> int:
-    """Returns the lane in which a route begins: the rightmost from which it can go on after its change."""
-    target = max(ways, key=abs)
-    side = 1 if target > 0 else -1
-    return target + side * shift
+def _first(network: Network, road: int, ways: Ways | None, shift: int) -> int:
+    """Returns the lane in which a route begins: the outermost from which it can go on after its change."""
+    profile = network.road(road).profile
+    target = profile.side if ways is None else max(ways, key=abs)
+    return target - shift if profile.leads_along(target) else target + shift
 
 
 def _fit(
@@ -63,7 +63,7 @@ def _fit(
     """
     found: list[set[int]] = [set()] * len(roads)
     for n, road in reversed(list(enumerate(roads))):
-        lanes, shift = range(-network.road(road).profile.count[0], 0), shifts.get(road, 0)
+        lanes, shift = network.road(road).profile.along_ids, shifts.get(road, 0)
         found[n] = {lane for lane in lanes if lane + shift in lanes}
         if shift and n < len(ways):
             found[n] = {lane for lane in found[n] if ways[n].get(lane + shift) in found[n + 1]} or found[n]
@@ -78,12 +78,12 @@ def _kept(ways: Ways, lanes: set[int]) -> Ways:
 def _beside(network: Network, road: int, lane: int, left: int) -> int:
     """Returns the lane to the left (1) or to the right (-1) of a lane."""
     profile = network.road(road).profile
-    ids = range(1, profile.count[0] + 1) if lane < 0 else profile.left_ids
-    beside = abs(lane) - left
-    if beside not in ids:
+    is_along = profile.leads_along(lane)
+    beside = lane + left if is_along else lane - left
+    if beside not in (profile.along_ids if is_along else profile.against_ids):
         word = "left" if left > 0 else "right"
         raise UsageError(f"the route cannot change to the {word} on road {road}: there is no lane")
-    return beside if lane > 0 else -beside
+    return beside
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
@@ -94,5 +94,6 @@ def _ways(network: Network, one: int, two: int) -> Ways:
         return {way.own: way.outgoing for way in found[1].lanes}
     for each in network.continuations:
         if (each.before.road, each.after.road) == (one, two):
-            return {lane: after for lane, after in each.lanes if lane < 0}
+            profile = network.road(one).profile
+            return {lane: after for lane, after in each.lanes if profile.leads_along(lane)}
     raise UsageError(f"no way leads from road {one} to road {two}")

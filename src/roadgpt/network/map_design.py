@@ -11,7 +11,8 @@ It is written in JSON as a graph. Nodes are junctions, bends and ends of roads; 
 
 ``at`` is x, y and the height in metres. A road is straight from one node to the other; at a bend it leads
 around the node in a curve, so that two junctions may be joined by several straights and bends. ``route``
-names the nodes that the tested car passes, one after another.
+names the nodes that the tested car passes, one after another. With ``"left_hand": true``, traffic drives on
+the left.
 """
 
 import math
@@ -20,12 +21,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BaseModel, Field, ValidationError
+from pydantic import BaseModel, Field, StrictBool, ValidationError
 
 from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
-from roadgpt.network.design import KERB
+from roadgpt.network.design import KERB, is_left_hand
 from roadgpt.network.map_check import check_graph, check_route
+from roadgpt.network.pose import mirrored_point
 from roadgpt.road.design import Finite, FrozenFields, as_written, first_error, no_truths
 from roadgpt.road.road import FARTHEST
 
@@ -79,12 +81,23 @@ class MapDesign(FrozenFields):
     route: Annotated[tuple[int, ...], Field(min_length=2, max_length=MOST_PASSED)]
     lanes: MapLanes | None = None
     """None for the lanes of the World."""
+    left_hand: StrictBool = False
+    """Whether traffic drives on the left."""
 
     def __repr__(self) -> str:
         kinds = [node.kind.replace("_", "-") for node in self.nodes if node.is_junction]
         count = {kind: kinds.count(kind) for kind in dict.fromkeys(kinds)}
         said = ", ".join(f"{number} {kind}" for kind, number in count.items())
         return f"MapDesign({len(self.roads)} roads, junctions: {said or 'none'})"
+
+    def mirrored(self, middle: float = 0.0) -> "MapDesign":
+        """Returns the map with left and right exchanged, and traffic on the other side.
+
+        Args:
+            middle: The y in metres of the line about which it is mirrored.
+        """
+        nodes = tuple(node.model_copy(update={"at": mirrored_point(node.at, middle)}) for node in self.nodes)
+        return self.model_copy(update={"nodes": nodes, "left_hand": not self.left_hand})
 
     def node(self, number: int) -> MapNode:
         """Returns a node by its number, which counts from 1."""
@@ -132,6 +145,8 @@ class MapDesign(FrozenFields):
     def to_json(self) -> dict[str, Any]:
         """Returns the design as a dictionary in RoadGPT's JSON format."""
         out: dict[str, Any] = {}
+        if self.left_hand:
+            out["left_hand"] = True
         if self.lanes is not None:
             out["lanes"] = self.lanes.model_dump()
         for number, node in enumerate(self.nodes, 1):
@@ -157,10 +172,10 @@ def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]
     """
     numbered = {int(found[1]): raw for key, raw in data.items() if (found := KEY.fullmatch(str(key)))}
     for key in data:
-        if not KEY.fullmatch(str(key)) and key not in ("lanes", "roads", "route"):
+        if not KEY.fullmatch(str(key)) and key not in ("lanes", "left_hand", "roads", "route"):
             raise UsageError(
-                f"the map has a field '{str(key)[:40]}' that is unknown; the fields are lanes, node1, node2, "
-                "..., roads and route"
+                f"the map has a field '{str(key)[:40]}' that is unknown; the fields are lanes, left_hand, "
+                "node1, node2, ..., roads and route"
             )
     if sorted(numbered) != [*range(1, len(numbered) + 1)] or not 2 <= len(numbered) <= MOST_NODES:
         raise UsageError(f"the nodes of a map are numbered node1, node2 and so on, 2 to {MOST_NODES} of them")
@@ -172,6 +187,7 @@ def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]
         roads=roads,
         route=tuple(_numbers(data.get("route"), "the route", MOST_PASSED)),
         lanes=None if lanes is None else _value(MapLanes, "the lanes of the map", lanes, "width"),
+        left_hand=is_left_hand(data),
     )
     check_graph([node.kind for node in nodes], [node.at for node in nodes], made.roads)
     check_route([node.kind for node in nodes], made.roads, made.route)

@@ -41,6 +41,8 @@ def build_map(design: MapDesign, world: World) -> Route:
         UsageError: Junctions, roundabouts or bends have no room on a road, a road is longer than 50 km, or
             the World asks for lanes or banked bends that networks do not have.
     """
+    if design.left_hand:  # traffic on the left is the mirror image of traffic on the right
+        return build_map(design.mirrored(), world).mirrored
     grown = _MapGrowth(design, profile_of_map(design.lanes, world))
     for nodes in design.chains:
         grown.add_road(nodes)

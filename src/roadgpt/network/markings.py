@@ -47,7 +47,7 @@ class JunctionSign(NamedTuple):
 
     control: Control
     place: tuple[float, float, float]
-    """The foot of its post in metres, on the right of the arm."""
+    """The foot of its post in metres, beside traffic that sees its front."""
     heading: float
     """The heading in radians of traffic that sees its front."""
 
@@ -157,9 +157,9 @@ def _across(network: Network, arm: Arm) -> Array:
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
     half = min(line_before(arm) + STOP_LINE / 2, member.road.length)
     s = member.road.length - half if at_end else half
-    edges = member.profile.edges(s)
-    outer = float(edges.right) + LINE if at_end else float(edges.left) - LINE
-    inner = float(member.profile.sides(s)[1 if at_end else 0])
+    edges, inner = member.profile.edges(s), member.begin_towards(arm.end.contact, s)
+    is_left = member.side_towards(arm.end.contact) > 0
+    outer = float(edges.left) - LINE if is_left else float(edges.right) + LINE
     return member.road.at(np.full(2, s), np.array([inner, outer]))
 
 
@@ -187,7 +187,7 @@ def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) ->
         return None
     x, y, z = ring.centre
     circle = shapely.Point(x, y).buffer(ring.radius + ring.width + STOP_LINE / 2, quad_segs=CIRCLE).exterior
-    # traffic keeps to the right: only the part on the right of the arm is crossed by entering traffic
+    # traffic keeps to its side of the arm: only the part there is crossed by entering traffic
     lane = ribbon(network.road(onto[0].road).road)
     for each in off:
         lane = shapely.difference(lane, ribbon(network.road(each.road).road))
@@ -215,11 +215,10 @@ def _sign(network: Network, arm: Arm) -> JunctionSign:
 
 
 def place_of_sign(member: NetworkRoad, contact: Contact) -> tuple[float, float]:
-    """Returns the station and the offset in metres of the sign at one end of a road, on the right of traffic
-    that drives towards this end.
+    """Returns the station and the offset in metres of the sign at one end of a road, beside traffic that
+    drives towards this end.
     """
     before = min(BEFORE, member.road.length)
     s = member.road.length - before if contact == "end" else before
-    side, lanes = (-1, member.profile.right) if contact == "end" else (1, member.profile.left)
-    aside = sum(width_at(lane.width, s) for lane in lanes) + BESIDE
-    return s, float(member.profile.sides(s)[1 if contact == "end" else 0]) + side * aside
+    aside = sum(width_at(lane.width, s) for lane in member.lanes_towards(contact)) + BESIDE
+    return s, member.begin_towards(contact, s) + member.side_towards(contact) * aside

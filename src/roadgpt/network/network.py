@@ -2,11 +2,12 @@
 
 Ids of roads, junctions and lanes are those of OpenDRIVE. Lanes on the right of a road's reference line have
 negative ids and are driven along the road; lanes on its left have positive ids and are driven against it.
-Every junction has its own connecting roads, one for each way from one arm to another.
+With traffic on the left, lanes with positive ids are driven along the road. Every junction has its own
+connecting roads, one for each way from one arm to another.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -16,7 +17,9 @@ from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.geometry.curve import Array
 from roadgpt.network.paved import outline_of, paved_by
 from roadgpt.network.polygon import Area
+from roadgpt.network.pose import Point, mirrored_point
 from roadgpt.road import Profile, Road
+from roadgpt.road.profile import Lane
 
 Contact = Literal["start", "end"]
 Kind = Literal[PlainKind, "merge", "diverge"]
@@ -36,7 +39,7 @@ class Leg(NamedTuple):
     road: int
     """The id of the road."""
     lane: int
-    """The id of the lane that the route follows; positive if the route leads against the road."""
+    """The id of the lane that the route follows; ``Profile.leads_along`` says in which direction."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +62,27 @@ class NetworkRoad:
     def shoulder(self) -> float:
         """The width of its wider shoulder in metres, at most."""
         return self.profile.reach - self.profile.paved_reach
+
+    def ids_towards(self, contact: Contact) -> range:
+        """Returns the ids of the driving lanes that lead towards one of its ends, from the centre line
+        outwards.
+        """
+        return self.profile.along_ids if contact == "end" else self.profile.against_ids
+
+    def lanes_towards(self, contact: Contact) -> tuple[Lane, ...]:
+        """Returns the lanes that lead towards one of its ends and their shoulder, from the centre line
+        outwards.
+        """
+        return self.profile.along if contact == "end" else self.profile.against
+
+    def side_towards(self, contact: Contact) -> int:
+        """Returns 1 if traffic towards this end is on the left of the reference line, -1 if on the right."""
+        return self.profile.side if contact == "end" else -self.profile.side
+
+    def begin_towards(self, contact: Contact, s: float) -> float:
+        """Returns the offset in metres at station ``s`` at which the lanes towards an end begin."""
+        left, right = self.profile.sides(s)
+        return float(left if self.side_towards(contact) > 0 else right)
 
 
 class LaneLink(NamedTuple):
@@ -118,7 +142,7 @@ class Junction:
     arms: tuple[Arm, ...]
     """The arms in counter-clockwise order."""
     connections: tuple[Connection, ...]
-    node: tuple[float, float, float]
+    node: Point
     """The point in metres at which the reference lines of the arms meet; the centre of a roundabout."""
     kerb: float
     """The radius in metres that was asked for where the kerbs of two neighbouring arms meet."""
@@ -130,7 +154,7 @@ class Roundabout:
 
     junctions: tuple[int, ...]
     ring: tuple[int, ...]
-    centre: tuple[float, float, float]
+    centre: Point
     radius: float
     """The radius of the central island in metres."""
     width: float
@@ -142,8 +166,8 @@ class Network:
     """Roads, the junctions that join them, and the roundabouts among these.
 
     Raises:
-        ValueError: Two roads or two junctions have the same id, or an arm or a connection names a road that
-            does not exist.
+        ValueError: Two roads or two junctions have the same id, an arm or a connection names a road that does
+            not exist, or traffic drives on the left on some roads only.
     """
 
     roads: tuple[NetworkRoad, ...]
@@ -160,6 +184,8 @@ class Network:
                 named |= {connection.road, connection.incoming.road, connection.outgoing.road}
             if unknown := named - set(self._by_id):
                 raise ValueError(f"junction {junction.id} names road {min(unknown)}, which does not exist")
+        if len({each.profile.left_hand for each in self.roads}) > 1:
+            raise ValueError("traffic drives on the left on some roads only")
         for each in self.continuations:
             if unknown := {each.before.road, each.after.road} - set(self._by_id):
                 raise ValueError(f"a continuation names road {min(unknown)}, which does not exist")
@@ -192,6 +218,46 @@ class Network:
             KeyError: There is no such junction.
         """
         return self._junction_by_id[number]
+
+    @property
+    def left_hand(self) -> bool:
+        """Whether traffic drives on the left."""
+        return bool(self.roads) and self.roads[0].profile.left_hand
+
+    @cached_property
+    def mirrored(self) -> "Network":
+        """The network with the sign of y changed, with traffic on the other side of its roads. Roads,
+        junctions and roundabouts keep their ids and their order.
+        """
+        made = Network(
+            tuple(replace(each, road=each.road.mirrored) for each in self.roads),
+            tuple(map(_mirrored_junction, self.junctions)),
+            tuple(replace(each, centre=mirrored_point(each.centre)) for each in self.roundabouts),
+            tuple(
+                replace(each, lanes=tuple((-one, -two) for one, two in each.lanes))
+                for each in self.continuations
+            ),
+        )
+        made.__dict__["mirrored"] = self
+        return made
+
+    @property
+    def right_hand(self) -> "Network":
+        """The network itself, or its mirror image if traffic drives on the left.
+
+        What is defined for traffic on the right is computed there, once for both.
+        """
+        return self.mirrored if self.left_hand else self
+
+    def leaves_by(self, leg: Leg) -> RoadEnd:
+        """Returns the end of a road towards which a lane leads."""
+        is_along = self.road(leg.road).profile.leads_along(leg.lane)
+        return RoadEnd(leg.road, "end" if is_along else "start")
+
+    def enters_by(self, leg: Leg) -> RoadEnd:
+        """Returns the end of a road from which a lane leads."""
+        is_along = self.road(leg.road).profile.leads_along(leg.lane)
+        return RoadEnd(leg.road, "start" if is_along else "end")
 
     @cached_property
     def plain_roads(self) -> tuple[NetworkRoad, ...]:
@@ -255,3 +321,14 @@ class Network:
     def bounds(self) -> Array:
         """Returns the smallest and the largest x and y of the paved area, ``(2, 2)``, in metres."""
         return np.array(self.paved.bounds, float).reshape(2, 2)
+
+
+def _mirrored_junction(junction: Junction) -> Junction:
+    """Returns the mirror image of a junction; its first arm stays the first one."""
+    arms = tuple(replace(arm, direction=0.0 - arm.direction) for arm in junction.arms)
+    connections = tuple(
+        replace(each, lanes=tuple(LaneLink(*(-lane for lane in lanes)) for lanes in each.lanes))
+        for each in junction.connections
+    )
+    node = mirrored_point(junction.node)
+    return replace(junction, arms=(*arms[:1], *arms[:0:-1]), connections=connections, node=node)

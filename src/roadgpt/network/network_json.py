@@ -86,7 +86,7 @@ def _with_lane_links(junctions: Any) -> Any:
 
 def _road(row: Mapping[str, Any]) -> NetworkRoad:
     stored = strictly(_StoredRoad, {key: row.get(key) for key in ("id", "junction")})
-    road = Road.from_json(row)
+    road = Road.from_json(row, in_network=True)
     if road.profile is None:
         raise ValueError(f"road {stored.id} has no lanes")
     return NetworkRoad(stored.id, road, stored.junction)

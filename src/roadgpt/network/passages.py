@@ -28,11 +28,12 @@ class Passage(NamedTuple):
     departure: RoadEnd
     """The end of the road on which it goes on."""
     arms: tuple[RoadEnd, ...]
-    """The ends of all roads that meet there, counter-clockwise from the road of arrival."""
+    """The ends of all roads that meet there, counter-clockwise from the road of arrival; clockwise with
+    traffic on the left."""
 
     @property
     def exit(self) -> int:
-        """Number of the road of departure, counted counter-clockwise from the road of arrival."""
+        """Number of the road of departure, counted from the road of arrival in the order of ``arms``."""
         return self.arms.index(self.departure) or len(self.arms)
 
     @property
@@ -80,6 +81,8 @@ def _passage(route: "Route", inside: list[int]) -> Passage:
     ring = network.roundabout_of.get(entered.id)
     # the first arm of each junction of a roundabout is the one that is no part of the ring
     arms = entered.arms if ring is None else [network.junction(each).arms[0] for each in ring.junctions]
+    if ring is None and network.left_hand:
+        arms = arms[::-1]
     ends = [arm.end for arm in arms]
     at = ends.index(first.incoming)
     return Passage(

@@ -3,11 +3,21 @@
 import math
 from typing import NamedTuple
 
+Point = tuple[float, float, float]
+"""x, y and z in metres."""
+DIGITS = 9  # of a coordinate that is mirrored about another line than y = 0, so that decimals stay decimals
+
+
+def mirrored_point(point: Point, middle: float = 0.0) -> Point:
+    """Returns a point mirrored about the line on which y is ``middle``, in metres."""
+    x, y, z = point
+    return x, round(2 * middle - y, DIGITS) if middle else 0.0 - y, z
+
 
 class NetworkPose(NamedTuple):
     """A point in metres and a heading in radians."""
 
-    point: tuple[float, float, float]
+    point: Point
     heading: float
 
     def ahead(self, metres: float, turn: float = 0.0) -> "NetworkPose":

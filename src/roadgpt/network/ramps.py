@@ -162,7 +162,7 @@ class RampBuilder:
         """Lets the lanes that two roads have in common continue each other."""
         profiles = [self._profile(each) for each in (before, after)]
         forward = min(each.count[0] for each in profiles)
-        left = zip(*(each.left_ids for each in profiles), strict=False)
+        left = zip(*(each.against_ids for each in profiles), strict=False)
         lanes = (*((-n, -n) for n in range(1, forward + 1)), *((a, b) for a, b in left))
         self.builder.continuations.append(
             Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)

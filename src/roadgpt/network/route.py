@@ -16,7 +16,7 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
 from roadgpt.network.ground import shoulders_on_ground
 from roadgpt.network.lane_along import added, change_windows, cubics_at, lane_along, profile_of
-from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad, RoadEnd
+from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad
 from roadgpt.network.network_json import network_to_json
 from roadgpt.network.passages import Passage, passages_of
 from roadgpt.network.stretch import joined_grades
@@ -50,6 +50,8 @@ class Route(Road):
             _check_leg(network, leg)
         for one, two in pairwise(legs):
             _check_joint(network, one, two)
+        if network.left_hand:
+            return cls.along(network.mirrored, _mirrored_legs(legs)).mirrored
         if any(network.road(legs[n].road).junction is not None for n in (0, -1)):
             raise UsageError("a route begins and ends on a road outside junctions")
         parts = _parts(network, legs)
@@ -101,6 +103,11 @@ class Route(Road):
         """The ways through the junctions, in driving order; each roundabout is one."""
         return passages_of(self)
 
+    @property
+    def mirrored(self) -> Self:
+        """The route with the sign of y changed, in the mirror image of its network."""
+        return replace(super().mirrored, network=self.network.mirrored, legs=_mirrored_legs(self.legs))
+
     def on_ground(self) -> Self:
         """Returns the route with shoulders that reach to the edge of the ground.
 
@@ -124,12 +131,16 @@ class Route(Road):
         return {"route": [list(leg) for leg in self.legs]}
 
 
+def _mirrored_legs(legs: Sequence[Leg]) -> tuple[Leg, ...]:
+    return tuple(Leg(leg.road, -leg.lane) for leg in legs)
+
+
 def _check_leg(network: Network, leg: Leg) -> None:
     try:
         profile = network.road(leg.road).profile
     except KeyError as error:
         raise UsageError(f"the route names road {leg.road}, which is not in the network") from error
-    if not -profile.count[0] <= leg.lane < 0 and leg.lane not in profile.left_ids:
+    if leg.lane not in (*profile.along_ids, *profile.against_ids):
         raise UsageError(f"the route names lane {leg.lane} of road {leg.road}, which has no such lane")
 
 
@@ -143,16 +154,15 @@ def _check_joint(network: Network, one: Leg, two: Leg) -> None:
                 "to the next lane of the same direction"
             )
         return
-    if (
-        continued := network.continued_at.get(RoadEnd(one.road, "end" if one.lane < 0 else "start"))
-    ) is not None:
+    left, entered = network.leaves_by(one), network.enters_by(two)
+    if (continued := network.continued_at.get(left)) is not None:
         is_joined = _continues(continued, one, two)
     elif (found := network.connection_of.get(two.road)) is not None:
-        end = RoadEnd(one.road, "end" if one.lane < 0 else "start")
-        is_joined = found[1].incoming == end and (one.lane, two.lane) in [way[:2] for way in found[1].lanes]
+        is_joined = found[1].incoming == left and (one.lane, two.lane) in [way[:2] for way in found[1].lanes]
     elif (found := network.connection_of.get(one.road)) is not None:
-        end = RoadEnd(two.road, "start" if two.lane < 0 else "end")
-        is_joined = found[1].outgoing == end and (one.lane, two.lane) in [way[1:] for way in found[1].lanes]
+        is_joined = found[1].outgoing == entered and (one.lane, two.lane) in [
+            way[1:] for way in found[1].lanes
+        ]
     else:
         is_joined = False
     if not is_joined:
@@ -166,14 +176,14 @@ def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
 
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
-    """Returns the road in the direction in which the route follows it."""
-    if leg.lane < 0:
-        return member.road
+    """Returns the road in the direction in which the route follows it; traffic drives on the right."""
     profile = member.profile
+    if profile.leads_along(leg.lane):
+        return member.road
     turned = Profile(
         tuple(_turned(lane, member.road.length) for lane in profile.right),
         tuple(_turned(lane, member.road.length) for lane in profile.left),
-        profile.left_ids.index(leg.lane),
+        profile.against_ids.index(leg.lane),
         profile.centre_marking,
         offset=_turned_offset(profile, member.road.length),
         median=profile.median,
@@ -214,7 +224,8 @@ def _parts(network: Network, legs: Sequence[Leg]) -> list[_Part]:
     for _, group in groupby(legs, key=lambda leg: leg.road):
         own = list(group)
         profile = network.road(own[0].road).profile
-        lanes = tuple(-leg.lane - 1 if leg.lane < 0 else profile.left_ids.index(leg.lane) for leg in own)
+        ids = profile.along_ids if profile.leads_along(own[0].lane) else profile.against_ids
+        lanes = tuple(ids.index(leg.lane) for leg in own)
         found.append(_Part(_directed(network.road(own[0].road), own[0]), lanes))
     return found
 

@@ -17,6 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
 from roadgpt.road.elevation import vertical_curves_of
+from roadgpt.road.profile_json import ONLY_NETWORKS
 
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
@@ -26,6 +27,7 @@ FITS = 0.99  # a remark is made if less than this share of a given vertical radi
 KEY = re.compile(r"road_segment(\d{1,6})")
 
 Direction = Literal["left", "right", "straight"]
+OTHER_DIRECTION: dict[Direction, Direction] = {"left": "right", "right": "left", "straight": "straight"}
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
 
@@ -54,6 +56,11 @@ class Segment(FrozenFields):
     """Radius in metres of the vertical curve at the start of the segment. This curve joins the grade of the
     previous segment to the grade of this one.
     """
+
+    def mirrored(self) -> "Segment":
+        """Returns the segment with left and right exchanged."""
+        turn = {"direction": OTHER_DIRECTION[self.direction], "turn_degrees": 0.0 - self.turn_degrees}
+        return self.model_copy(update=turn)
 
 
 class Design(FrozenFields):
@@ -104,6 +111,8 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     """
     if not isinstance(data, Mapping):
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
+    if data.get("left_hand", False) is not False:
+        raise UsageError(f"{ONLY_NETWORKS}; leave left_hand out")
     segments, remarks = [], []
     numbered = _numbered(data)
     numbers = [number for number, _ in numbered]

@@ -7,11 +7,12 @@
                  carriageway
 
 Traffic on the right of the centre line drives along the road, towards larger stations; traffic on the left
-drives against it. A road with one lane in each direction is the default.
+drives against it. With traffic on the left, it is the other way round. A road with one lane in each direction
+is the default.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -69,14 +70,16 @@ class Profile:
 
     Args:
         left: Lanes on the left, from the centre line outwards, driving lanes first.
-        right: Lanes on the right in the same order; at least one is a driving lane.
-        driven: Index in ``right`` of the lane that the tested car keeps to.
+        right: Lanes on the right in the same order.
+        driven: Index in ``along`` of the lane that the tested car keeps to; there is one at least.
         centre_marking: The marking on the centre line.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
         offset: Offset in metres of the line between the lanes on the left and those on the right, where it
             is not the centre line of the road itself: the element ``laneOffset`` of OpenDRIVE.
-        median: Width in metres of a median: the lanes on the left begin that far to the left of this line.
+        median: Width in metres of a median: oncoming lanes begin that far beside this line.
+        left_hand: Whether traffic drives on the left: the lanes on the left then lead along the road, and
+            those on the right against it.
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
@@ -90,11 +93,13 @@ class Profile:
     superelevation_angle: CubicProfile | None = None
     offset: Width = 0.0
     median: float = 0.0
+    left_hand: bool = False
 
     def __post_init__(self) -> None:
         lanes = [*self.left, *self.right]
-        if not 0 <= self.driven < len(_driving(self.right)):
-            raise ValueError("the driven lane must be one of the driving lanes on the right")
+        if not 0 <= self.driven < len(_driving(self.along)):
+            own = "left" if self.left_hand else "right"
+            raise ValueError(f"the driven lane must be one of the driving lanes on the {own}")
         for side in (self.left, self.right):
             if any(lane.kind == "driving" for lane in side[len(_driving(side)) :]):
                 raise ValueError("a driving lane cannot be outside a shoulder")
@@ -132,23 +137,68 @@ class Profile:
         centre: Marking = "broken" if (forward, backward) == (1, 1) else "solid"
         return cls(side(backward), side(forward), forward - 1, centre, superelevation_angle)
 
+    @cached_property
+    def mirrored(self) -> "Profile":
+        """The cross-section with left and right exchanged: that of traffic on the other side."""
+        angle = self.superelevation_angle
+        return replace(
+            self,
+            left=self.right,
+            right=self.left,
+            superelevation_angle=None if angle is None else angle.negative,
+            offset=self.offset.negative if isinstance(self.offset, CubicProfile) else 0.0 - self.offset,
+            left_hand=not self.left_hand,
+        )
+
+    @property
+    def side(self) -> Literal[1, -1]:
+        """The sign of the ids of the lanes that lead along the road: 1 on its left, -1 on its right."""
+        return 1 if self.left_hand else -1
+
+    @property
+    def along(self) -> tuple[Lane, ...]:
+        """The lanes in the direction of the road and their shoulder, from the centre line outwards."""
+        return self.left if self.left_hand else self.right
+
+    @property
+    def against(self) -> tuple[Lane, ...]:
+        """The oncoming lanes and their shoulder, from the centre line outwards."""
+        return self.right if self.left_hand else self.left
+
     @property
     def count(self) -> tuple[int, int]:
         """The number of driving lanes in the direction of the road, and the number of oncoming lanes."""
-        return len(_driving(self.right)), len(_driving(self.left))
+        return len(_driving(self.along)), len(_driving(self.against))
 
     @property
-    def left_ids(self) -> range:
-        """The ids in OpenDRIVE of the driving lanes on the left, from the centre line outwards.
+    def along_ids(self) -> range:
+        """The ids in OpenDRIVE of the driving lanes along the road, from the centre line outwards."""
+        return range(self.side, self.side * (1 + self.count[0]), self.side)
 
-        A median has the id 1.
+    @property
+    def against_ids(self) -> range:
+        """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards.
+
+        A median has the id before the first of them.
         """
         first = 2 if self.median else 1
-        return range(first, first + self.count[1])
+        return range(-self.side * first, -self.side * (first + self.count[1]), -self.side)
+
+    def leads_along(self, lane: int) -> bool:
+        """Returns whether the lane with this id leads along the road, and not against it."""
+        return lane * self.side > 0
+
+    @property
+    def boundaries_to_left(self) -> int:
+        """The index in ``boundaries`` of the left edge of the driven lane."""
+        along, against = self.count
+        return along - 1 - self.driven if self.left_hand else against + (self.median > 0) + self.driven
 
     @property
     def shoulder_width(self) -> float:
-        """The width in metres of the shoulder on the right, at the start of the road; 0 if there is none."""
+        """The width in metres of the shoulder beside the lanes along the road, at its start; 0 if there is
+        none.
+        """
         return float(self.shoulder(0.0))
 
     @property
@@ -178,8 +228,15 @@ class Profile:
         return _extremes(self.offset)
 
     def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
-        low, high = self.offset_range
-        return max(_reach(left) + self.median + high, _reach(right) - low)
+        (low, high), begin = self.offset_range, self.begins
+        return max(_reach(left) + begin[0] + high, _reach(right) + begin[1] - low)
+
+    @property
+    def begins(self) -> tuple[float, float]:
+        """The distances in metres from the line between the directions to where the lanes on the left and
+        those on the right begin: a median lies on the side of oncoming lanes.
+        """
+        return (0.0, self.median) if self.left_hand else (self.median, 0.0)
 
     def centre(self, s: ArrayLike) -> Array:
         """Returns the offset of the line between the lanes on the left and those on the right."""
@@ -187,20 +244,21 @@ class Profile:
 
     def width(self, s: ArrayLike) -> Array:
         """Returns the width of the driven lane."""
-        return _at(self.right[self.driven].width, s)
+        return _at(self.along[self.driven].width, s)
 
     def shoulder(self, s: ArrayLike) -> Array:
-        """Returns the width of the shoulder on the right."""
-        return _sum(self.right[len(_driving(self.right)) :], s)
+        """Returns the width of the shoulder beside the lanes along the road."""
+        return _sum(self.along[len(_driving(self.along)) :], s)
 
     def middle(self, s: ArrayLike) -> Array:
         """Returns the offset of the middle of the driven lane."""
-        return self.centre(s) - (_sum(self.right[: self.driven], s) + self.width(s) / 2)
+        return self.centre(s) + self.side * (_sum(self.along[: self.driven], s) + self.width(s) / 2)
 
     def lane(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the driven lane."""
-        inner, centre = _sum(self.right[: self.driven], s), self.centre(s)
-        return Edges(centre - inner, centre - (inner + self.width(s)))
+        inside, centre = _sum(self.along[: self.driven], s), self.centre(s)
+        inner, outer = centre + self.side * inside, centre + self.side * (inside + self.width(s))
+        return Edges(outer, inner) if self.left_hand else Edges(inner, outer)
 
     def edges(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the edges of the carriageway."""
@@ -211,8 +269,8 @@ class Profile:
         """Returns the offsets at which the lanes on the left and those on the right begin: the edges of the
         median, or twice the line between the directions.
         """
-        centre = self.centre(s)
-        return Edges(centre + self.median, centre)
+        centre, begin = self.centre(s), self.begins
+        return Edges(centre + begin[0], centre - begin[1])
 
     def rims(self, s: ArrayLike) -> Edges:
         """Returns the offsets of the outer edges of the shoulders."""
@@ -235,8 +293,8 @@ class Profile:
         The first and the last one are the edges of the carriageway; a median has a boundary on either side.
         """
         left, right = self.lane_edges(s)
-        lanes = [*zip(self.left, left, strict=True)][: self.count[1]][::-1]
-        lanes_right = [*zip(self.right, right, strict=True)][: self.count[0]]
+        lanes = [*zip(self.left, left, strict=True)][: len(_driving(self.left))][::-1]
+        lanes_right = [*zip(self.right, right, strict=True)][: len(_driving(self.right))]
         begin = self.sides(s)
         return [
             *((lane.marking, t) for lane, t in lanes),
@@ -276,7 +334,7 @@ class Profile:
 
         If a boundary of the lane has no marking, the offset of the boundary is returned.
         """
-        at = self.count[1] + (self.median > 0) + self.driven  # index of the left boundary of the driven lane
+        at = self.boundaries_to_left
         (_, left), (_, right) = self._painted_boundaries(s)[at : at + 2]
         return Edges(left.left, right.right)
 

@@ -11,6 +11,8 @@ from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile
 from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
 
+KNOWN = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median", "left_hand"}
+ONLY_NETWORKS = "traffic drives on the left on routes with junctions and on maps only"
 MOST_LANES = 20  # on one side
 MOST_ROWS = 20_000
 WIDEST = 100.0  # m, of a lane or shoulder
@@ -30,6 +32,8 @@ def profile_to_json(profile: Profile) -> dict[str, Any]:
         out["median"] = profile.median
     if profile.offset != 0:
         out["offset"] = _written(profile.offset)
+    if profile.left_hand:
+        out["left_hand"] = True
     angle = profile.superelevation_angle
     return out if angle is None else {**out, "superelevation": _rows(angle)}
 
@@ -41,12 +45,13 @@ def profile_from_json(data: Any) -> Profile:
         UsageError: A field is missing, unknown, of the wrong type or out of range.
     """
     try:
-        known = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median"}
-        _only(data, known)
+        _only(data, KNOWN)
         angle = data.get("superelevation")
         driven = data["driven"]
         if not isinstance(driven, int) or isinstance(driven, bool):
-            raise ValueError("driven is the index of a lane on the right")
+            raise ValueError("driven is the index of a lane along the road")
+        if not isinstance(left_hand := data.get("left_hand", False), bool):
+            raise ValueError("left_hand is true or false")
         return Profile(
             _lanes(data["left"]),
             _lanes(data["right"]),
@@ -55,6 +60,7 @@ def profile_from_json(data: Any) -> Profile:
             None if angle is None else _cubics(angle, STEEPEST),
             _width(data.get("offset", 0.0), -WIDEST),
             _median(data.get("median", 0.0)),
+            left_hand,
         )
     except KeyError as error:
         raise UsageError(f"the profile of the road cannot be read: {error} is missing; add it") from error

@@ -21,7 +21,7 @@ from roadgpt.geometry import (
 )
 from roadgpt.geometry.curve import Array
 from roadgpt.road.profile import Profile
-from roadgpt.road.profile_json import profile_from_json, profile_to_json
+from roadgpt.road.profile_json import ONLY_NETWORKS, profile_from_json, profile_to_json
 
 CONTROL_SPACING = 2.0  # m, so that SBFT's spline keeps the designed radii (14.8 m nominal is accepted)
 MOST_CONTROL_POINTS = 500  # SBFT rule
@@ -160,6 +160,18 @@ class Road:
         """
         return replace(self, profile=profile, _sampled={})
 
+    @property
+    def mirrored(self) -> Self:
+        """The road with the sign of y changed: left becomes right, and traffic changes sides.
+
+        Raises:
+            TypeError: The road is a spline.
+        """
+        if not isinstance(self.plan, PieceCurve):
+            raise TypeError("only roads of lines, arcs and clothoids are mirrored")
+        profile = None if self.profile is None else self.profile.mirrored
+        return replace(self, plan=self.plan.mirrored, profile=profile, _sampled={})
+
     def heading(self, s: ArrayLike) -> Array:
         """Returns headings in radians."""
         return self.plan.heading(s)
@@ -238,14 +250,20 @@ class Road:
         }
 
     @classmethod
-    def from_json(cls, data: Mapping[str, Any]) -> Self:
+    def from_json(cls, data: Mapping[str, Any], in_network: bool = False) -> Self:
         """Restores a road from JSON data as returned by ``to_json``.
 
+        Args:
+            data: The JSON data.
+            in_network: Whether it is a road of a network, on which traffic may drive on the left.
+
         Raises:
-            UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
-                steep.
+            UsageError: A field is missing, is not a number or is not finite, the road is too long or too
+                steep, or traffic drives on the left of a single road.
         """
         own = profile_from_json(data["profile"]) if data.get("profile") is not None else None
+        if own is not None and own.left_hand and not in_network:
+            raise UsageError(f"{ONLY_NETWORKS}; leave left_hand out of the profile")
         if "nodes" in data:
             return cls.through(data["nodes"], data.get("road_points")).with_profile(own)
         try:

@@ -41,7 +41,7 @@ class LaneBoundaries(NamedTuple):
         rows = profile.boundaries(s)
         marks = np.array([PAINT[mark] for mark, _ in rows])
         offsets = np.ascontiguousarray(np.stack([t for _, t in rows], axis=1))
-        return cls(offsets, marks, profile.count[1] + profile.driven, float(s[1]), length)
+        return cls(offsets, marks, profile.boundaries_to_left, float(s[1]), length)
 
 
 # Wider than the judged line (road.profile.LINE), and not at the very edge of the lane: the network of

@@ -178,7 +178,8 @@ def _failed(road: "Road", drive: "Drive", world: "World", step: int, cause: Caus
     if cause == "out of lane":
         crossed = has_departed(road, drive, world)[step]
         how = ": a front tyre passed the marking" if crossed else ""
-        is_beside = side == "left" and world.profile_of(road).driven > 0
+        profile = world.profile_of(road)
+        is_beside = side == ("right" if profile.left_hand else "left") and profile.driven > 0
         where = ", into the next lane of its direction," if is_beside else ""
         return f"left its lane to the {side}{where} {reached} {fast}{how}"
     if cause == "fell":

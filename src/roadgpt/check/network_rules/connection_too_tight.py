@@ -20,7 +20,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     for _, junctions in network.nodes:
         ways = [each.road for junction in junctions for each in junction.connections]
-        bends = [tightest_bend(network.road(way), MIDDLE) for way in ways]
+        bends = [tightest_bend(network.right_hand.road(way), MIDDLE) for way in ways]
         least = min((bend.radius for bend in bends if bend is not None), default=LEAST)
         if least < LEAST - ROUNDING:
             what = (

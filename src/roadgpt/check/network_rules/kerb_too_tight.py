@@ -1,6 +1,7 @@
 """Requires the kerb between two neighbouring arms of a junction to have a radius of at least 3 m.
 
-The kerb is the right edge of the connecting road by which traffic turns right from one arm to the next. Its
+The kerb is the right edge of the connecting road by which traffic turns right from one arm to the next (with
+traffic on the left, the left edge of that by which traffic turns left). Its
 smallest radius is measured, which is less than that of an arc with the same ends, because of the clothoids.
 Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb radii are 10 to 15 ft.
 """
@@ -8,7 +9,7 @@ Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb rad
 from roadgpt.check.finding import Finding
 from roadgpt.check.lane_bends import tightest_bend
 from roadgpt.check.network_places import junction_finding, more_room
-from roadgpt.network import Junction, Network, Route
+from roadgpt.network import Network, Route
 from roadgpt.road import World
 
 LEAST = 3.0  # m
@@ -20,7 +21,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     """Reports each junction with a kerb that is too tight, and the smallest radius there."""
     found = []
     for _, junctions in network.nodes:
-        radii = [radius for junction in junctions for radius in _kerbs(network, junction)]
+        radii = [radius for junction in junctions for radius in _kerbs(network.right_hand, junction.id)]
         least = min(radii, default=LEAST)
         if least < LEAST - ROUNDING:
             what = (
@@ -31,8 +32,11 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     return tuple(found)
 
 
-def _kerbs(network: Network, junction: Junction) -> list[float]:
-    """Returns the smallest radius in metres of each kerb that bends to the right."""
+def _kerbs(network: Network, number: int) -> list[float]:
+    """Returns the smallest radius in metres of each kerb of a junction that bends to the right, in a network
+    with traffic on the right.
+    """
+    junction = network.junction(number)
     ends = [arm.end for arm in junction.arms]
     following = dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
     found = []

@@ -25,21 +25,23 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     found = []
     for ring in network.roundabouts:
         first = network.junction(ring.junctions[0])
-        diameter = min(_diameter(network.road(each)) for each in ring.ring)
+        diameter = min(_diameter(network.right_hand.road(each)) for each in ring.ring)
         if diameter < LEAST - ROUNDING:
             what = (
                 f"the roundabout has an outer diameter of {diameter:.1f} m, smaller than {LEAST:g} m; give "
                 "its island a larger radius"
             )
             found.append(junction_finding("ring_too_small", route, first, what))
-        if abs(_turning(network, ring) - 2 * math.pi) > ONCE or _overlaps(network, ring):
+        if abs(_turning(network.right_hand, ring) - 2 * math.pi) > ONCE or _overlaps(network, ring):
             what = "the mouths of two arms overlap; turn the arms apart or give the island a larger radius"
             found.append(junction_finding("ring_too_small", route, first, what))
     return tuple(found)
 
 
 def _diameter(member: NetworkRoad) -> float:
-    """Returns the outer diameter in metres of the tightest bend of a piece of a ring."""
+    """Returns the outer diameter in metres of the tightest bend of a piece of a ring that is driven
+    counter-clockwise.
+    """
     plan = member.road.plan
     assert isinstance(plan, PieceCurve)
     bend = max(max(piece.k0, piece.k1) for piece in plan.pieces)

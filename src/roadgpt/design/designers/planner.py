@@ -8,13 +8,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from roadgpt.brief.mirror import mirrored
 from roadgpt.brief.model import Brief
 from roadgpt.design.map_search import MapSearch
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
+from roadgpt.errors import DesignError
 from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
+from roadgpt.road.profile_json import ONLY_NETWORKS
 
 
 class Planner:
@@ -40,6 +43,11 @@ class Planner:
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.
         """
+        if brief.left_hand:  # traffic on the left is the mirror image of traffic on the right
+            found = self.draft(mirrored(brief), world, notes, earlier, seed)
+            if isinstance(found, Design):
+                raise DesignError(ONLY_NETWORKS)
+            return found.mirrored(world.site.map_size / 2)
         rng = np.random.default_rng([seed, len(notes)])
         if brief.map is not None:
             return MapSearch(brief, world, rng).run()

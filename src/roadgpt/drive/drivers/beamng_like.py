@@ -48,7 +48,8 @@ class BeamngLike:
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
         sharpness: curvature in 1/m at which the shift is 76 % of ``cut``.
-        aside: constant shift of the line to the right of the lane's middle, in metres.
+        aside: constant shift of the line to the right of the lane's middle, in metres; to the left with
+            traffic on the left.
         joining: distance from the road's start, in metres, over which the driver moves from the lane's middle
             to its line.
         eagerness: exponent with which ``cut`` grows with the speed limit; 0 makes it constant.
@@ -119,7 +120,8 @@ class BeamngLike:
         s, bend, profile = stations(road), self.bend(road, world), world.profile_of(road)
         middle = profile.middle(s)
         cut = self.cut * (world.limits.speed_limit / USUAL) ** self.eagerness
-        offset: FloatArray = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) - self.aside)
+        aside = profile.side * self.aside
+        offset: FloatArray = middle + self._joined(s) * (cut * np.tanh(bend / self.sharpness) + aside)
         kept = offset if self.edge_room is None else self._kept_on(profile, s, bend, offset)
         return kept_in_lane(road, world, s, kept, PURSUIT_CUTS * bend)
 
@@ -127,12 +129,14 @@ class BeamngLike:
         """Returns the offsets, moved away from edges of the carriageway that have no shoulder."""
         assert self.edge_room is not None
         room, edges, rims = HALF_TRACK + self.edge_room, profile.edges(s), profile.rims(s)
-        most = np.maximum(offset, room + np.maximum(-bend, 0.0) * PURSUIT_CUTS + edges.right)
-        kept = np.where(rims.right < edges.right, offset, most)
-        if profile.count[1]:
-            return kept
-        least = np.minimum(kept, edges.left - room - np.maximum(bend, 0.0) * PURSUIT_CUTS)
-        return np.where(rims.left > edges.left, kept, least)
+        kept, has_oncoming = offset, profile.count[1] > 0
+        if not (has_oncoming and profile.left_hand):
+            most = np.maximum(kept, room + np.maximum(-bend, 0.0) * PURSUIT_CUTS + edges.right)
+            kept = np.where(rims.right < edges.right, kept, most)
+        if not has_oncoming or profile.left_hand:
+            least = np.minimum(kept, edges.left - room - np.maximum(bend, 0.0) * PURSUIT_CUTS)
+            kept = np.where(rims.left > edges.left, kept, least)
+        return kept
 
     def _joined(self, s: FloatArray) -> FloatArray:
         """Returns, for each station, which share (0..1) of the lateral move from the lane's middle, where the

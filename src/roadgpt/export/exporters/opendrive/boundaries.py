@@ -4,9 +4,13 @@ Source: ASAM OpenDRIVE 1.8.1, junction boundary. The segments are in counter-clo
 boundary. A segment of type "joint" leads across an arm from one lane to another, from outer edge to outer
 edge; a segment of type "lane" leads along the outer edge of a lane. Lane 0 has no width, so its edge is the
 line between the lanes of both directions, at which a connecting road begins.
+
+With traffic on the left, the boundary is that of the mirror image, mirrored: followed backwards, with left
+and right exchanged.
 """
 
 from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.export.exporters.opendrive.kerbs import outermost
@@ -21,10 +25,39 @@ ROUNDABOUT_WAYS = 3  # of a junction of a roundabout at a road with both directi
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
     """Returns the element ``boundary`` of a junction."""
-    return XmlElement("boundary").extended(*_segments(network, junction))
+    found = list(_segments(network.right_hand, network.right_hand.junction(junction.id)))
+    if network.left_hand:
+        found = [segment.mirrored() for segment in reversed(found)]
+    return XmlElement("boundary").extended(*(segment.element() for segment in found))
 
 
-def _segments(network: Network, junction: Junction) -> Iterator[XmlElement]:
+class BoundarySegment(NamedTuple):
+    """A segment across the lanes of an arm, or along the outer edge of a lane of a connecting road."""
+
+    road: int
+    first: tuple[int, Value]
+    """The id of the lane at whose outer edge it begins, and the contact or the station there."""
+    last: tuple[int, Value]
+    """The id of the lane at whose outer edge it ends, and the contact or the station there."""
+    is_across: bool
+
+    def mirrored(self) -> "BoundarySegment":
+        """Returns its mirror image, in the other direction."""
+        (lane, start), (other, end) = self.first, self.last
+        return self._replace(first=(-other, end), last=(-lane, start))
+
+    def element(self) -> XmlElement:
+        """Returns the element ``segment``."""
+        (lane, start), (other, end) = self.first, self.last
+        own: dict[str, Value] = {"boundaryLane": lane, "sStart": start, "sEnd": end}
+        if self.is_across:
+            own = {"contactPoint": start, "jointLaneStart": lane, "jointLaneEnd": other}
+        kind = "joint" if self.is_across else "lane"
+        return XmlElement("segment", {"type": kind, "roadId": str(self.road), **own})
+
+
+def _segments(network: Network, junction: Junction) -> Iterator[BoundarySegment]:
+    """Yields the segments of a boundary in a network with traffic on the right."""
     arms = [arm.end for arm in junction.arms]
     ways = {(each.incoming, each.outgoing): each for each in junction.connections}
     if _needs_outline(junction):
@@ -54,7 +87,7 @@ def _needs_outline(junction: Junction) -> bool:
     return len(junction.connections) < usual or any(len(each.lanes) > 1 for each in junction.connections)
 
 
-def _by_outline(network: Network, junction: Junction) -> Iterator[XmlElement]:
+def _by_outline(network: Network, junction: Junction) -> Iterator[BoundarySegment]:
     """Yields the segments of a boundary that follows the outline of the paved area."""
     outline, ends = PavedOutline.of(network, junction), [arm.end for arm in junction.arms]
     for n, end in enumerate(ends):
@@ -75,7 +108,8 @@ def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> A
         if lane > 0
         else (member.profile.right, member.profile.sides(s).right)
     )
-    count = member.profile.left_ids.index(lane) + 1 if lane in member.profile.left_ids else -min(lane, 0)
+    oncoming = member.profile.against_ids
+    count = oncoming.index(lane) + 1 if lane in oncoming else -min(lane, 0)
     width = sum(width_at(each.width, s) for each in side[:count])
     t = float(first) + (width if lane > 0 else -width)
     return member.road.at(s, t)[:2]
@@ -83,7 +117,7 @@ def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> A
 
 def _between(
     network: Network, ways: Mapping[tuple[RoadEnd, RoadEnd], Connection], end: RoadEnd, after: RoadEnd
-) -> Iterator[XmlElement]:
+) -> Iterator[BoundarySegment]:
     """Yields the segments between two neighbouring arms which no way joins, as at a merge or an exit.
 
     They lead along the ways from both arms to a third one, or from a third arm to both, to where these meet.
@@ -99,27 +133,18 @@ def _between(
             return
 
 
-def _right(network: Network, way: Connection) -> XmlElement:
+def _right(network: Network, way: Connection) -> BoundarySegment:
     return _along(way.road, -len(network.road(way.road).profile.right), "start", "end")
 
 
-def _across(junction: Junction, end: RoadEnd) -> XmlElement:
+def _across(junction: Junction, end: RoadEnd) -> BoundarySegment:
     """Returns the segment across those lanes of an arm which lead on in the junction.
 
     Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
     to those that lead into it. Shoulders end at the junction.
     """
     first, last = _lanes_across(junction, end)
-    return XmlElement(
-        "segment",
-        {
-            "type": "joint",
-            "roadId": str(end.road),
-            "contactPoint": end.contact,
-            "jointLaneStart": first,
-            "jointLaneEnd": last,
-        },
-    )
+    return BoundarySegment(end.road, (first, end.contact), (last, end.contact), is_across=True)
 
 
 def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
@@ -131,9 +156,6 @@ def _lanes_across(junction: Junction, end: RoadEnd) -> tuple[int, int]:
     return (right, left) if end.contact == "start" else (left, right)
 
 
-def _along(road: int, lane: int, start: Value, end: Value) -> XmlElement:
+def _along(road: int, lane: int, start: Value, end: Value) -> BoundarySegment:
     """Returns the segment along the outer edge of a lane of a connecting road, between two stations."""
-    return XmlElement(
-        "segment",
-        {"type": "lane", "roadId": str(road), "boundaryLane": lane, "sStart": start, "sEnd": end},
-    )
+    return BoundarySegment(road, (lane, start), (lane, end), is_across=False)

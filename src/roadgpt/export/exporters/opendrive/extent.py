@@ -53,8 +53,8 @@ def reaches(profile: Profile) -> tuple[float, float]:
     Where widths vary, they are upper bounds.
     """
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
-    low, high = profile.offset_range
-    return left + profile.median + high, right - low
+    (low, high), begin = profile.offset_range, profile.begins
+    return left + begin[0] + high, right + begin[1] - low
 
 
 def _widest(width: Width) -> float:

@@ -3,6 +3,7 @@
 id     2     |    1    |    -1    |    -2          a road with one lane in each direction
     shoulder | against |  along   | shoulder
                        0
+With traffic on the left, lanes with positive ids lead along the road.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +59,7 @@ class RoadParts:
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
-        own = (profile.left, profile.right, profile.centre_marking, profile.offset, profile.median)
+        own = (profile.left, profile.right, profile.centre_marking, profile.offset, profile.begins)
         key = (*own, length, tuple((links or {}).items()), is_inside)
         if key not in self._made:
             self._made[key] = self._lanes(profile, road.length, links or {}, is_inside)
@@ -66,14 +67,18 @@ class RoadParts:
 
     def _lanes(self, profile: Profile, length: float, links: LaneLinks, is_inside: bool) -> XmlElement:
         section = XmlElement("laneSection", {"s": 0})
-        left = list(self._side(profile.left, profile.left_ids.start, length, links, is_inside))
+        ids = profile.along_ids.start, profile.against_ids.start
+        left = list(self._side(profile.left, max(ids), length, links, is_inside))
+        right = list(self._side(profile.right, min(ids), length, links, is_inside))
         if profile.median:
             width = XmlElement("width", {"sOffset": 0, "a": profile.median, "b": 0, "c": 0, "d": 0})
-            left.insert(0, _lane(1, "median").extended(width, *_mark(profile.centre_marking, is_inside)))
+            made = _lane(-profile.side, "median").extended(width, *_mark(profile.centre_marking, is_inside))
+            (right if profile.left_hand else left).insert(0, made)
         if left:
             section.add("left").extended(*reversed(left))
         section.add("center").extended(_lane(0, "none").extended(*_mark(profile.centre_marking, is_inside)))
-        section.add("right").extended(*self._side(profile.right, -1, length, links, is_inside))
+        if right:
+            section.add("right").extended(*right)
         offset = rows("laneOffset", "s", as_cubics(profile.offset), length) if profile.offset != 0 else []
         return XmlElement("lanes", is_shared=True).extended(*offset, section)
 

@@ -75,7 +75,7 @@ def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | N
             "length": road.length,
             "id": str(number),
             "junction": "-1" if place is None else str(place.junction),
-            "rule": "RHT",
+            "rule": "LHT" if parts.world.profile_of(road).left_hand else "RHT",
         },
     )
     if place is not None:

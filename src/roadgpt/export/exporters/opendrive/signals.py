@@ -107,9 +107,8 @@ class Signals:
                 "value": "-1",
             },
         )
-        profile = member.profile
-        lanes = (-profile.count[0], -1) if at_end else (profile.left_ids[0], profile.left_ids[-1])
-        made.add("validity", {"fromLane": lanes[0], "toLane": lanes[1]})
+        lanes = member.ids_towards(end.contact)
+        made.add("validity", {"fromLane": min(lanes), "toLane": max(lanes)})
         return made
 
     def _crosswalks(self, road: int) -> Iterator[XmlElement]:
@@ -149,12 +148,10 @@ class Signals:
         at_end = end.contact == "end"
         half = min(line_before(signal.arm) + STOP_LINE / 2, member.road.length)
         s = member.road.length - half if at_end else half
-        forward, backward = member.profile.count
-        profile = member.profile
-        lanes = profile.right[:forward] if at_end else profile.left[:backward]
-        width_in = sum(width_at(lane.width, s) for lane in lanes)
-        inner = float(profile.sides(s)[1 if at_end else 0])
-        outer = inner - width_in if at_end else inner + width_in
+        lanes = zip(member.ids_towards(end.contact), member.lanes_towards(end.contact), strict=False)
+        width_in = sum(width_at(lane.width, s) for _, lane in lanes)
+        inner = member.begin_towards(end.contact, s)
+        outer = inner + member.side_towards(end.contact) * width_in
         yield XmlElement(
             "object",
             {

@@ -1,0 +1,55 @@
+"""With traffic on the left, a car drives the mirror image of the drive in the mirrored network."""
+
+import numpy as np
+import pytest
+
+from network.mirrored import in_mirror
+from roadgpt.drive import driver_of, simulate
+from roadgpt.drive.outlook import Outlook
+from roadgpt.network import Route, build_route, read_network_design
+from roadgpt.road import World
+from roadgpt.verdict import judge
+
+WORLD = World()
+NEAR = 0.02  # m, and a hundredth of it in seconds: the tyres of the simulator are not quite symmetric
+STRAIGHT = {"distance": 45, "direction": "straight", "incline": 0, "turn_degrees": 0}
+DESIGN = {
+    "starting_point": [20, 60, 0],
+    "theta": 10,
+    "lanes": {"width": 3.5, "forward": 2},
+    "road_segment1": STRAIGHT,
+    "junction1": {"after": 1, "kind": "crossroads", "take": "left", "control": "stop", "kerb": 9},
+    "road_segment2": {"distance": 40, "direction": "right", "incline": 3, "turn_degrees": -40},
+}
+
+
+def routes() -> tuple[Route, Route]:
+    left = build_route(read_network_design({**DESIGN, "left_hand": True})[0], WORLD)
+    return left.on_ground(), build_route(read_network_design(in_mirror(DESIGN))[0], WORLD).on_ground()
+
+
+@pytest.mark.parametrize("driver", ["reference", "beamng_like"])
+def test_a_drive_is_the_mirrored_drive(driver: str) -> None:
+    left, right = routes()
+    mine, theirs = (simulate(route, WORLD, driver_of(driver), seed=4) for route in (left, right))
+    assert abs(len(mine) - len(theirs)) <= 1
+    n = min(len(mine), len(theirs))
+    assert np.abs(mine["x"][:n] - theirs["x"][:n]).max() < NEAR
+    assert np.abs(mine["y"][:n] + theirs["y"][:n]).max() < NEAR
+    assert np.abs(mine["t"][:n] + theirs["t"][:n]).max() < NEAR
+    verdicts = judge(left, mine, WORLD), judge(right, theirs, WORLD)
+    assert verdicts[0].outcome == verdicts[1].outcome == "PASS"
+    assert verdicts[0].margin == pytest.approx(verdicts[1].margin, abs=NEAR)
+    assert [each.kind for each in verdicts[0].incidents or ()] == [
+        each.kind for each in verdicts[1].incidents or ()
+    ]
+
+
+def test_drivers_see_the_true_take_and_the_lanes_beside_them() -> None:
+    left, right = routes()
+    (_, (mine,), *beside), (_, (theirs,), *other) = (Outlook(each, WORLD).at(0.0) for each in (left, right))
+    assert mine.turn == pytest.approx(-theirs.turn)
+    assert mine.turn > 1
+    assert (mine.exit, mine.distance, mine.control) == (theirs.exit, pytest.approx(theirs.distance), "stop")
+    assert beside == other[::-1]
+    assert sum(beside) == 2
