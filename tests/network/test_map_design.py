@@ -95,7 +95,7 @@ def test_a_road_may_lead_back_to_its_junction_and_a_route_back_at_a_roundabout()
         ({"node5": {"at": [80, 101, 1]}}, "are 21.0 m apart, and their junctions or bends take"),
         ({"node8": GOOD["node1"]}, "the nodes of a map are numbered node1, node2 and so on, 2 to"),
         ({"node7": {"at": [0, 0, 0], "kind": "end"}}, "node 7 is an end, which has 1 road, and here it"),
-        ({"nodex": 5}, "the map has a field 'nodex' that is unknown; the fields are lanes, node1"),
+        ({"nodex": 5}, "the map has a field 'nodex' that is unknown; the fields are lanes, left_hand, node1"),
         ({"node1": None}, "the nodes of a map are numbered"),
         ({"node01": GOOD["node1"]}, "the map has a field 'node01' that is unknown"),
         ({"node999999": GOOD["node1"]}, "the nodes of a map are numbered node1, node2 and so on, 2 to 400"),

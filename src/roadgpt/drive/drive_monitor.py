@@ -46,9 +46,10 @@ class DriveMonitor:
         self._tolerance = math.inf if keep_driving else world.limits.oob_tolerance
         is_watched = world.limits.lane_departure and not keep_driving
         self._tyres = MarkingMonitor.for_tyres(road, world, box) if is_watched else None
-        # The end of the lane's left edge; with one lane in each direction it is that of the centre line.
-        edge = world.profile_of(road).lane(road.length).left
-        self._end = np.asarray(road.at(road.length, edge)).tolist()
+        # The end of the lane's inner edge; with one lane in each direction it is that of the centre line.
+        profile = world.profile_of(road)
+        left, right = profile.lane(road.length)
+        self._end = np.asarray(road.at(road.length, right if profile.left_hand else left)).tolist()
         self._since, self._from = 0.0, (math.nan, math.nan)
 
     def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:
