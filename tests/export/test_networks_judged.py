@@ -159,6 +159,8 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
         run = [netconvert, "--opendrive-files", file, "-o", str(target)]
         done = subprocess.run(run, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
+        if network.left_hand:
+            continue  # it takes no notice of the rule of roads: traffic on the right
         root = ET.parse(target).getroot()
         # its edges begin where a lane does: "-3#1" is part of road 3
         theirs = {
@@ -177,10 +179,8 @@ def test_sumo_counts_the_same_ways_lights_and_roundabouts(tmp_path: Path) -> Non
             for c in junction.connections
         }
         for each in network.continuations:
-            for lane, _ in each.lanes:
-                is_along = network.road(each.before.road).profile.leads_along(lane)
-                pair = each.before.road, each.after.road
-                ours.add((f"-{pair[0]}", f"-{pair[1]}") if is_along else (f"{pair[1]}", f"{pair[0]}"))
+            ours |= {(f"-{each.before.road}", f"-{each.after.road}") for lane, _ in each.lanes if lane < 0}
+            ours |= {(f"{each.after.road}", f"{each.before.road}") for lane, _ in each.lanes if lane > 0}
         assert theirs == ours
         lit = [j for j in network.junctions if any(arm.control == "lights" for arm in j.arms)]
         assert len(list(root.iter("tlLogic"))) == len(lit)
