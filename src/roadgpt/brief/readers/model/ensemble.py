@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadgpt.brief.readers.model.confidence import confidence, features
+from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
-from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.used_words import unused_words
 
@@ -56,8 +56,9 @@ def scored_by(
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
     """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
 
-    What the network for routes reads counts if those for single roads could not write that plan, or if they
-    name a junction or the like beside the road or as the cause of a refusal.
+    What the network for routes reads counts if those for single roads name a junction or the like beside the
+    road or as the cause of a refusal; also if they could not write that plan, unless it is doubtful and they
+    have one of which they are surer.
 
     Args:
         roads: the networks for single roads.
@@ -66,10 +67,21 @@ def scored_by(
         refuse_from: smallest probability of a refusal at which a refusal is allowed as a plan; None takes
             what was fitted to the networks.
     """
+    text = slotted(words)
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
-    if routes and read and not roads.knows(read[0].tokens):
+    is_route = routes is not None and bool(read) and not roads.knows(_without_motorway(read[0].tokens))
+    sure = routes.confidence(read[0], text, ()) if routes and is_route else 0.0
+    if routes and sure >= DOUBT:
         return routes, read
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
         return routes, read or routes.scored(words, refuse_from)
-    return roads, found
+    is_doubted = found and not found[0].is_refusal and roads.confidence(found[0], text, ()) > sure
+    return (routes, read) if routes and is_route and not is_doubted else (roads, found)
+
+
+def _without_motorway(tokens: Sequence[str]) -> list[str]:
+    """Returns the tokens of a plan without "motorway", which ``brief.read`` takes from the words if the plan
+    is one of a single road.
+    """
+    return [each for each in tokens if each != "motorway"]
