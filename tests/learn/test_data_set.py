@@ -1,6 +1,7 @@
 """The hand-written data set keeps what its card says."""
 
 import json
+import shutil
 from collections import Counter
 from pathlib import Path
 
@@ -52,10 +53,17 @@ def test_some_must_be_refused_for_each_reason(splits: dict[str, list[Pair]]) -> 
 
 
 def test_the_command_checks_and_generates(tmp_path: Path) -> None:
-    done = CliRunner().invoke(command, ["data", str(tmp_path / "made"), "--hand", str(HAND), "-n", "200"])
+    hand = tmp_path / "hand"
+    for split, name in (("train", "v_de.de"), ("validation", "v_it.it"), ("test", "test_tutti.it")):
+        (hand / split).mkdir(parents=True)
+        shutil.copy(next(HAND.glob(f"*/{name}.jsonl")), hand / split)
+    done = CliRunner().invoke(command, ["data", str(tmp_path / "made"), "--hand", str(hand), "-n", "60"])
     assert done.exit_code == 0, done.output
+    for split in ("train", "validation", "test"):
+        number = sum(len(path.read_text("utf-8").splitlines()) for path in (hand / split).iterdir())
+        assert f"{number} pairs by hand for {split}" in done.output
     lines = (tmp_path / "made" / "generated.jsonl").read_text(encoding="utf-8").splitlines()
-    assert len({json.loads(line)["text"].lower() for line in lines}) == 200
+    assert len({json.loads(line)["text"].lower() for line in lines}) == 60
 
 
 def test_a_reader_gets_its_row(tmp_path: Path) -> None:
