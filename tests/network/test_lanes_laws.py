@@ -23,8 +23,9 @@ from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route, read_netwo
 from roadgpt.network.lane_along import change_windows
 from roadgpt.road import World
 
-settled = settings(max_examples=20, deadline=None)
-seeds = st.integers(0, 10_000)
+settled = settings(max_examples=16, deadline=None)
+seeds = st.integers(0, 15)
+"""Few, so that all laws look at the same networks."""
 EXACT = 1e-9  # m and rad
 NEAR = 1e-6  # m
 

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -19,12 +20,14 @@ from roadgpt.network import Junction, Network, Route, build_route, read_network_
 from roadgpt.network.turning import SHARE, curve_between, tangent_length
 from roadgpt.road import World
 
-SEEDS = range(40)
-settled = settings(max_examples=30, deadline=None)
-seeds = st.integers(0, 10_000)
+SEEDS = range(20)
+settled = settings(max_examples=20, deadline=None)
+seeds = st.integers(0, 19)
+"""Few, so that all laws look at the same networks."""
 EXACT = 1e-9  # m and rad
 
 
+@cache
 def drawn(seed: int) -> Route:
     return build_route(read_network_design(random_design(seed))[0], World())
 

@@ -16,8 +16,9 @@ from roadgpt.design.map_search import MapSearch
 from roadgpt.network import read_map_design, road_from_json
 from roadgpt.network.map_growing import signs_at
 
-settled = settings(max_examples=25, deadline=None)
-seeds = st.integers(0, 10_000)
+settled = settings(max_examples=16, deadline=None)
+seeds = st.integers(0, 15)
+"""Few, so that all laws look at the same maps, two of each plan."""
 EXACT = 1e-6  # m and rad
 
 
