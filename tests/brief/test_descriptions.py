@@ -43,12 +43,18 @@ def spelled_out(said: dict[str, Any]) -> dict[str, Any]:
     return full
 
 
+def expected_of(case: dict[str, Any]) -> Brief:
+    expected = Brief.model_validate(spelled_out(case))
+    check(expected)
+    return expected
+
+
 def test_most_are_read_as_they_are_meant() -> None:
     """Their Briefs were written by hand for rules; where the guide of labels decides otherwise, they miss."""
     reader, missed = ModelReader(), []
-    for case in CASES:
-        expected = Brief.model_validate(spelled_out(case))
-        check(expected)
+    sample = CASES[::3]
+    for case in sample:
+        expected = expected_of(case)
         try:
             got = reader.read(case["words"])
         except BriefError as error:
@@ -57,11 +63,12 @@ def test_most_are_read_as_they_are_meant() -> None:
         assert got.words == case["words"]
         if normal(got).model_copy(update={"beside": ()}) != normal(expected):
             missed.append(f"{case['words']}: {plan(got)}")
-    assert len(missed) <= (1 - SHARE) * len(CASES), "\n".join(missed)
+    assert len(missed) <= (1 - SHARE) * len(sample), "\n".join(missed)
 
 
 def test_there_are_many_cases() -> None:
     assert len({case["words"] for case in CASES}) >= 150
+    assert all(expected_of(case).words for case in CASES)
 
 
 def test_the_short_form_means_what_it_says() -> None:
