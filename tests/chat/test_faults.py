@@ -4,6 +4,8 @@ The first road is answered well and must still be there, byte for byte, whatever
 """
 
 import json
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,7 @@ from chat.stub_server import (
     only,
     refuses,
     says,
+    serving,
 )
 from roadgpt.cli import app
 from roadgpt.run import read_run
@@ -113,6 +116,35 @@ OF_READERS = (
 )  # fmt: skip
 
 
+@pytest.fixture(scope="module")
+def server() -> Iterator[Stub]:
+    with serving(says("{}")) as found:
+        yield found
+
+
+@pytest.fixture
+def stub(server: Stub) -> Stub:
+    """One server for all faults, so that the campaign of the first road can be copied."""
+    server.requests.clear()
+    return server
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the campaign of the first road is kept, once it was made."""
+    return tmp_path_factory.mktemp("kept") / "c"
+
+
+def begin(stub: Stub, kept: Path) -> None:
+    """The campaign with the first road, in the folder c."""
+    if kept.exists():
+        shutil.copytree(kept, "c")
+        return
+    stub.play(says(other(1)))
+    assert run(stub, roads=1).exit_code == 0
+    shutil.copytree("c", kept)
+
+
 def run(stub: Stub, *more: str, roads: int = 3) -> Result:
     words = ["run", "turn left", "--reader", "plan", "--designer", "chat", "-n", str(roads)]
     server = [
@@ -147,9 +179,10 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.usefixtures("waits")
-def test_a_fault_ends_in_a_road_or_a_sentence_and_costs_no_road_before_it(stub: Stub, fault: str) -> None:
-    stub.play(says(other(1)))
-    assert run(stub, roads=1).exit_code == 0
+def test_a_fault_ends_in_a_road_or_a_sentence_and_costs_no_road_before_it(
+    stub: Stub, kept: Path, fault: str
+) -> None:
+    begin(stub, kept)
     before = contents(Path("c/runs"))
     assert before
     scene, ends = FAULTS[fault]
