@@ -11,14 +11,21 @@ import pytest
 from hypothesis import settings
 
 from roadgpt import provenance
+from roadgpt.campaign.workers.in_process import InProcess
 
-settings.register_profile("steady", derandomize=True, deadline=None)
+settings.register_profile("steady", derandomize=True, deadline=None, max_examples=50)
 settings.register_profile("hunt", deadline=None, print_blob=True)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "steady"))
 
 # Tests that a shell started in the background ignore Ctrl-C, and all that they start would inherit that.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.fixture
+def no_workers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Campaigns run their tests in this process; to start another one takes seconds."""
+    monkeypatch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
 
 
 @pytest.fixture(autouse=True)

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import shlex
 import subprocess
 import sys
@@ -10,8 +11,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from roadgpt.campaign import campaign
+from roadgpt.cli import app
 from roadgpt.cli.summary import show
 from roadgpt.report import drawing
 from roadgpt.run import Setup, perform, read_run
@@ -26,6 +29,18 @@ def roadgpt(cwd: Path, *arguments: str) -> list[dict[str, Any]]:
     command = [sys.executable, "-c", "from roadgpt.cli import main; main()", *arguments, "--json"]
     done = subprocess.run(command, cwd=cwd, capture_output=True, text=True, timeout=240)
     assert done.returncode == 0, done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def in_this_process(cwd: Path, *arguments: str) -> list[dict[str, Any]]:
+    """The same without another process, which takes seconds to start."""
+    before = Path.cwd()
+    os.chdir(cwd)
+    try:
+        done = CliRunner().invoke(app, [*arguments, "--json"], prog_name="roadgpt")
+    finally:
+        os.chdir(before)
+    assert done.exit_code == 0, done.stderr
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
@@ -112,14 +127,14 @@ def test_the_lines_that_show_prints_make_the_same_again(
     roadgpt(tmp_path, *arguments, "--no-plot")
     for name in ("brief.json", "design.json", "road.json", "drive.npz", "verdict.json", "run.json"):
         assert (folder_of(tmp_path) / "runs" / "0002" / name).read_bytes() == (run / name).read_bytes()
-    (redriven,) = roadgpt(home, *shlex.split(drive)[1:])
+    (redriven,) = in_this_process(home, *shlex.split(drive)[1:])
     for key in ("test_outcome", "max_oob", "margin_m", "length_m"):
         assert redriven[key] == lines[1][key]
 
 
 def test_a_test_file_can_be_driven_as_any_road(made: tuple[Path, list[dict[str, Any]]]) -> None:
     home, lines = made
-    (redriven,) = roadgpt(home, "drive", lines[0]["file"])
+    (redriven,) = in_this_process(home, "drive", lines[0]["file"])
     assert redriven["is_valid"]
     assert redriven["length_m"] == pytest.approx(lines[0]["length_m"], rel=2e-3)
 
@@ -127,18 +142,12 @@ def test_a_test_file_can_be_driven_as_any_road(made: tuple[Path, list[dict[str, 
 def test_a_campaign_that_was_interrupted_ends_as_if_it_had_not_been(tmp_path: Path) -> None:
     setup = Setup(drives=False)
     whole, parts = tmp_path / "whole", tmp_path / "parts"
-    assert len(list(campaign("a road", 12, 5, setup=setup, out=whole))) == 12
-    for run in campaign("a road", 12, 5, setup=setup, out=parts):
-        if run.index == 5:
+    assert len(list(campaign("a road", 6, 5, setup=setup, out=whole))) == 6
+    for run in campaign("a road", 6, 5, setup=setup, out=parts):
+        if run.index == 3:
             break
-    assert [run.index for run in campaign("a road", 12, 5, setup=setup, out=parts)] == list(range(6, 13))
+    assert [run.index for run in campaign("a road", 6, 5, setup=setup, out=parts)] == [4, 5, 6]
     assert contents(whole) == contents(parts)
-
-
-def test_a_description_from_a_broken_terminal_is_read(tmp_path: Path) -> None:
-    words = b"a road with 2 turns \x80".decode("utf-8", "surrogateescape")
-    (line,) = roadgpt(tmp_path, "run", words, "--seed", "1", "--no-drive", "--no-plot")
-    assert line["is_valid"]
 
 
 def test_a_run_can_be_had_without_a_folder() -> None:
@@ -158,7 +167,8 @@ def test_the_three_prompts_of_roadgpt_s_evaluation(tmp_path: Path) -> None:
     )
     for number, words in enumerate(prompts):
         out = tmp_path / str(number)
-        runs = list(campaign(words, 2, 1, out=out, draw=drawing("thesis")))
+        draw = drawing("thesis") if words == WORDS else None
+        runs = list(campaign(words, 2, 1, out=out, draw=draw))
         assert [run.is_valid for run in runs] == [True, True]
         assert {run.outcome for run in runs} <= {"PASS", "FAIL"}
         assert read_run(out / "test.0002.json").verdict == runs[1].verdict

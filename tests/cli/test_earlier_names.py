@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import click
@@ -79,12 +80,19 @@ def test_behind_two_dashes_a_word_is_no_option() -> None:
     assert context.params["words"] == ("a", "--verge")
 
 
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    made = tmp_path_factory.mktemp("campaign") / "c"
+    words = ("campaign", "turn x2", "-n", "2", "--seed", "3", "--reader", "plan")
+    assert invoke(*words, "--out", str(made), "--quiet").exit_code == 0
+    return made
+
+
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(campaign: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     Path("road.json").write_text(json.dumps([[60, 100], [100, 100], [130, 110], [150, 140]]))
-    words = ("campaign", "turn x2", "-n", "2", "--seed", "3", "--reader", "plan")
-    assert invoke(*words, "--out", "c", "--quiet").exit_code == 0
+    shutil.copytree(campaign, "c")
     return tmp_path
 
 

@@ -143,6 +143,7 @@ def test_drive_tells_invalid_roads_as_skipped_and_broken_files_as_errors(tmp_pat
     assert error.get("type") == "unreadable"
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_a_campaign_writes_a_suite_for_each_cell(tmp_path: Path) -> None:
     plan = tmp_path / "plan.toml"
     plan.write_text('prompts = ["turn x2", "straight | turns=0"]\nreader = "plan"\ntests = 2\n')
