@@ -36,7 +36,7 @@ try:
     work()
 except KeyboardInterrupt:
     print("told", flush=True)
-    time.sleep(0.5)  # cleaning up is left alone
+    time.sleep(0.3)  # cleaning up is left alone
     print("clean", flush=True)
     sys.exit(stopping.status())
 """
@@ -101,7 +101,7 @@ def test_signals_that_whoever_started_us_had_ignored_stay_so() -> None:
 @pytest.mark.parametrize("words", [["run"], ["campaign", "-j", "2"]])
 def test_a_command_is_stopped_by_one_at_any_moment(words: list[str], tmp_path: Path) -> None:
     clock = random.Random(len(words))
-    for number, sent in enumerate((signal.SIGINT, signal.SIGTERM, signal.SIGINT)):
+    for number, sent in enumerate((signal.SIGINT, signal.SIGTERM)):
         folder = tmp_path / str(number)
         command = [sys.executable, "-m", "roadgpt", words[0], "a winding road", *words[1:], "-n", "5000"]
         process = subprocess.Popen(
@@ -113,7 +113,7 @@ def test_a_command_is_stopped_by_one_at_any_moment(words: list[str], tmp_path: P
         due = time.monotonic() + 60
         while not folder.exists() and time.monotonic() < due:
             time.sleep(0.05)
-        time.sleep(clock.uniform(0.0, 3.0))
+        time.sleep(clock.uniform(0.0, 2.0))
         process.send_signal(sent)
         begins = time.monotonic()
         said, _ = process.communicate(timeout=60)

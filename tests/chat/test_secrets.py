@@ -111,7 +111,7 @@ def test_no_path_tells_the_key(
         "--record",
         "tape",
     ]
-    server = ["--base-url", stub.url, "--model", "m", "--retries", "1", "--timeout", "1", "--verbose"]
+    server = ["--base-url", stub.url, "--model", "m", "--retries", "1", "--timeout", "0.5", "--verbose"]
     result = CliRunner().invoke(app, [*words, *server], prog_name="roadgpt")
     assert f"Bearer {KEY}" in stub.requests[0].headers.values()
     nothing_told(result)

@@ -54,7 +54,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_a_run_is_changed_into_a_new_folder() -> None:
     old = made()
     before = contents(Path("old"))
-    result = invoke("edit", str(old), *CHANGE, "--out", "new")
+    result = invoke("edit", str(old), *CHANGE, "--out", "new", "--no-plot")
     assert result.exit_code == 0
     assert contents(Path("old")) == before
     assert "turn 2: " in result.stdout

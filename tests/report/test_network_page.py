@@ -1,6 +1,7 @@
 """The page of a route: its data hold the whole network, and a browser draws it without complaint."""
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ from roadgpt.road import CrossSection, Design, Segment, World
 from roadgpt.run import Run, Setup, prove
 
 
+@cache
 def run_of(shoulder: float = 3.0) -> Run:
     world = World(section=CrossSection(shoulder=shoulder))
     return prove(made_from(read_network_design(TWO)[0], world), setup=Setup(drives=False), world=world)

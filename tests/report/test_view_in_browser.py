@@ -255,34 +255,6 @@ def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: Page) -> None
     assert rows.min() > 0.25, "the black side of a slab that floats"
 
 
-@pytest.mark.parametrize("camera", ["behind", "free"])
-def test_plates_that_stand_close_together_do_not_cover_each_other(
-    tab: Page, driven: Run, tmp_path: Path, camera: str
-) -> None:
-    assert driven.road is not None
-    made = view.scene(driven)
-    place = driven.road.at(40.0)
-    texts = ["left its lane\nto the right", "too tight", "overlaps itself", "leaves the map"]
-    made["places"] = [
-        {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text, "time": None}
-        | {"colour": "#c04f00", "letters": "#c04f00"}
-        for n, text in enumerate(texts)
-    ]
-    path = tmp_path / "plates.html"
-    path.write_text(view.page_of([made]), encoding="utf-8")
-    tab.size(1000, 700)
-    tab.open(path, f"#camera={camera}")
-    tab.settle()
-    (plates,) = tab.run("roadgpt.plates")
-    assert len(plates) == len(texts)
-    for n, one in enumerate(plates):
-        for other in plates[n + 1 :]:
-            beside = one["right"] <= other["left"] or other["right"] <= one["left"]
-            over = one["bottom"] >= other["top"] - 1e-9 or other["bottom"] >= one["top"] - 1e-9
-            assert beside or over
-    assert tab.told == []
-
-
 def test_nothing_is_drawn_while_nothing_changes(page: Page) -> None:
     page.settle()
     before = page.run("roadgpt.frames")
@@ -299,12 +271,48 @@ def test_the_page_would_be_stopped_from_fetching(page: Page) -> None:
     page.asked[:] = [address for address in page.asked if address.startswith("file:")]
 
 
-def test_the_address_names_time_and_camera(tab: Page, pages: dict[str, Path]) -> None:
+def test_plates_that_stand_close_together_do_not_cover_each_other(
+    tab: Page, driven: Run, tmp_path: Path
+) -> None:
+    assert driven.road is not None
+    made = view.scene(driven)
+    place = driven.road.at(40.0)
+    texts = ["left its lane\nto the right", "too tight", "overlaps itself", "leaves the map"]
+    made["places"] = [
+        {"x": float(place[0]) + n, "y": float(place[1]), "s": 40.0 + n, "text": text, "time": None}
+        | {"colour": "#c04f00", "letters": "#c04f00"}
+        for n, text in enumerate(texts)
+    ]
+    path = tmp_path / "plates.html"
+    path.write_text(view.page_of([made]), encoding="utf-8")
+    tab.size(1000, 700)
+    tab.open(path)
+    for camera in ("behind", "free"):
+        tab.run(f"roadgpt.player.choose('{camera}'); 0")
+        tab.settle()
+        assert tab.run("roadgpt.player.camera") == camera
+        (plates,) = tab.run("roadgpt.plates")
+        assert len(plates) == len(texts)
+        for n, one in enumerate(plates):
+            for other in plates[n + 1 :]:
+                beside = one["right"] <= other["left"] or other["right"] <= one["left"]
+                over = one["bottom"] >= other["top"] - 1e-9 or other["bottom"] >= one["top"] - 1e-9
+                assert beside or over
+    assert tab.told == []
+
+
+def test_the_address_names_time_and_camera_and_a_road_without_a_verge_floats_above_the_ground(
+    tab: Page, pages: dict[str, Path]
+) -> None:
+    tab.size(820, 580)
     tab.open(pages["driven"], "#t=4.5&camera=bonnet")
     assert tab.run("[roadgpt.player.time, roadgpt.player.camera]") == [4.5, "bonnet"]
-    tab.open(pages["driven"], "#t=never&camera=<b>")
+    tab.open(pages["floats"], "#t=never&camera=<b>")
     assert tab.run("[roadgpt.player.time, roadgpt.player.camera]") == [0, "behind"]
-    assert_quiet(tab, pages["driven"])
+    assert is_drawn(tab.picture(".stage .scene"))
+    slide(tab, 4)
+    assert is_drawn(tab.picture(".stage .scene"))
+    assert_quiet(tab, pages["floats"])
 
 
 def test_two_roads_share_one_clock(tab: Page, pages: dict[str, Path]) -> None:
@@ -349,13 +357,6 @@ def test_a_road_that_nobody_drove_is_shown_alone(tab: Page, pages: dict[str, Pat
     slide(tab, tab.run("roadgpt.player.duration"))
     assert pose(tab)["s"] == pytest.approx(tab.run("JSON.parse(data.textContent)[0].road.length"), abs=0.01)
     assert_quiet(tab, pages["alone"])
-
-
-def test_a_road_without_a_verge_floats_above_the_ground(tab: Page, pages: dict[str, Path]) -> None:
-    tab.size(820, 580)
-    tab.open(pages["floats"], "#t=4")
-    assert is_drawn(tab.picture(".stage .scene"))
-    assert_quiet(tab, pages["floats"])
 
 
 @pytest.fixture

@@ -156,6 +156,7 @@ tests = 2
 """
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_each_cell_of_a_campaign_has_the_friction_of_its_words() -> None:
     Path("p.toml").write_text(FILE)
     said = roadgpt("campaign", "p.toml", "--out", "c").stdout
@@ -178,6 +179,7 @@ def test_each_cell_of_a_campaign_has_the_friction_of_its_words() -> None:
     other = CliRunner().invoke(app, ["campaign", "p.toml", "--out", "c"])
     assert other.exit_code == 2
     assert "another campaign (different friction)" in other.output
+    Path("p.toml").write_text(FILE + "drive = false\n[world]\nfriction = 1.0\n")
     said = roadgpt("campaign", "p.toml", "--out", "d").stdout
     assert f"note: {WET}: {SET.format(1)}" in said
     with Path("d/cells.csv").open() as file:
@@ -192,6 +194,7 @@ def read_test(name: str):  # type: ignore[no-untyped-def]
     return named.run()
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_a_campaign_of_one_description_says_it_and_its_report_repeats_it() -> None:
     words = [WET, "--reader", "plan", "-n", 2, "--no-drive"]
     assert f"note: {USED}" in roadgpt("campaign", *words, "--out", "c").stdout
@@ -206,7 +209,7 @@ def test_campaigns_from_python_take_it(tmp_path: Path) -> None:
     assert run.world.site.friction == 0.6
     plan = Plan(prompts=(WET,), reader="plan", drives=False, budget=Budget(tests=1))
     begin(plan, tmp_path / "b")
-    assert sum(1 for _ in work(tmp_path / "b"))
+    assert sum(1 for _ in work(tmp_path / "b"))  # by a worker of its own
     with Record.opened(tmp_path / "b") as record:
         assert record.cells()[0].request.world == World(site=Site(friction=0.6))
 

@@ -101,7 +101,7 @@ def test_a_bomb_of_entities(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
-        ("<OpenDRIVE>" + "<x/>" * 1_000_000 + "</OpenDRIVE>", "more than 500,000 elements"),
+        ("<OpenDRIVE>" + "<x/>" * 600_000 + "</OpenDRIVE>", "more than 500,000 elements"),
         ("<OpenDRIVE><road>" + "<x>" * 400_000, "elements too deep"),
         ('<OpenDRIVE a="' + "a" * 30_000_000 + '"/>', "one tag is longer than a megabyte"),
         ("<OpenDRIVE " + " ".join(f'a{i}="1"' for i in range(1_000_000)) + "/>", "one tag is longer"),
@@ -125,13 +125,13 @@ def test_a_pipe_is_refused_and_not_waited_for(tmp_path: Path) -> None:
         read_opendrive(pipe)
 
 
-def test_a_line_of_a_million_elements(tmp_path: Path) -> None:
+def test_a_line_of_two_hundred_thousand_elements(tmp_path: Path) -> None:
     begin, rest = SOUND.split("<planView>")
     end = rest.split("</planView>")[1]
     whole = '<geometry s="0" x="0" y="0" hdg="0" length="0.01"><line/></geometry>'
     for one, count, most in (
         (whole, 10_000, "4,000"),
-        ("<geometry><line/></geometry>", 1_000_000, "60,000"),
+        ("<geometry><line/></geometry>", 200_000, "60,000"),
     ):
         said = refused(tmp_path, f"{begin}<planView>{one * count}</planView>{end}")
         assert f"more than {most} elements" in said

@@ -306,7 +306,7 @@ def test_a_survey_without_films_is_made_without_films(
     monkeypatch.setattr(build, "make_film", forbidden)
     out = tmp_path / "s"
     words = ["new", "--from", str(runs), "--out", str(out), "--asks", "J", "--contact", "j@x.example"]
-    done = CliRunner().invoke(command, [*words, "--no-films"])
+    done = CliRunner().invoke(command, [*words, "--no-films", "--pairs", "0"])
     assert done.exit_code == 0, done.output
     assert not read_plan(out / "SURVEY.toml").films, "made anew it has none either"
     assert not read_survey(out).lacks, "nobody is told to install what was not wanted"
