@@ -74,7 +74,7 @@ def test_a_campaign_looks_into_its_failures_when_it_is_done(looked: Path) -> Non
 
 
 def test_a_campaign_leaves_out_the_small_changes_if_asked_to(tmp_path: Path) -> None:
-    roadgpt("campaign", *WORDS, "--out", tmp_path / "c", "--groups", "--repeat", 1, "-q")
+    roadgpt("campaign", *WORDS, "-n", 1, "--out", tmp_path / "c", "--groups", "--repeat", 1, "-q")
     assert {row["removed_by"] for row in table(tmp_path / "c" / "faults" / "faults.csv")} == {""}
     assert not (tmp_path / "c" / "faults" / "remedies").exists()
 

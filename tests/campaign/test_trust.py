@@ -85,7 +85,7 @@ def invoke(*words: str) -> Result:
 COMMANDS: dict[str, tuple[str, ...]] = {
     "edit": ("edit", "run/runs/0001", "--plan", "road: length +20", "--no-plot", "--out", "edited"),
     "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot", "-j", "2"),
-    "faults of a campaign": ("faults", "done", "--repeat", "1", "--no-plot"),
+    "faults of a campaign": ("faults", "done", "--repeat", "1", "--groups", "--no-plot"),
     "drive": ("drive", "--again", "done", "1", "--no-plot"),
     "resume": ("resume", "begun", "-q"),
     "resume with workers": ("resume", "begun", "-q", "-j", "2"),
@@ -135,7 +135,7 @@ def test_the_users_own_copy_is_run_where_the_folder_names_another_place(shared: 
 
 
 AGAIN = {
-    "faults": ("faults", "made", "--repeat", "2", "--no-plot"),
+    "faults": ("faults", "made", "--repeat", "1", "--groups", "--no-plot"),
     "drive": ("drive", "--again", "made", "1", "--no-plot"),
     "resume": ("resume", "made", "-q"),
 }
@@ -220,7 +220,7 @@ def at_a_terminal(words: list[str], answer: bytes) -> tuple[int, str]:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
-@pytest.mark.parametrize(("answer", "status"), [(b"y\n", 0), (b"n\n", 2), (b"\n", 2)])
+@pytest.mark.parametrize(("answer", "status"), [(b"y\n", 0), (b"\n", 2)])
 def test_at_a_terminal_the_user_is_asked(shared: Path, answer: bytes, status: int) -> None:
     ended, said = at_a_terminal([*COMMANDS["drive"]], answer)
     assert "names the driver" in said

@@ -68,6 +68,14 @@ def test_one_that_raises_gives_a_status_and_a_sentence() -> None:
     ],
 )
 def test_what_cannot_be_is_told(words: list[str]) -> None:
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 2, done.output
+    assert isinstance(done.exception, SystemExit)
+    assert list(Path().iterdir()) == [], "nothing was begun"
+
+
+def test_what_cannot_be_loaded_is_told_once() -> None:
+    words = ["sbft", "--module-name", "nowhere", "--class-name", "X", "--test-budget", "1"]
     done = subprocess.run(
         [sys.executable, "-c", "from roadgpt.cli import main; main()", *words],
         capture_output=True,

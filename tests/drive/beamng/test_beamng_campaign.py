@@ -1,4 +1,4 @@
-"""A campaign of 100 roads through a BeamNG that fails ten times loses nothing; so do workers side by side."""
+"""A campaign of 40 roads through a BeamNG that fails ten times loses nothing; so do workers side by side."""
 
 import json
 import subprocess
@@ -22,20 +22,20 @@ from roadgpt.run import Request, Setup, prove
 from roadgpt.sbft import Experiment, compete
 
 OURS = Connection.PROTOCOL_VERSION
-ROADS = 100
+ROADS = 40
 SHORTEST = "straight | turns=0 len=22"  # messages are what such a test costs: 90 or so for this road
 # Every kind, in the middle of driving and while a road is laid; what is made anew counts as a scenario too.
 FAULTS = [
-    Fault("hang", "SensorRequest", 6, 20),
-    Fault("drop", "Step", 14, 15),
-    Fault("die", "SensorRequest", 23, 28),
-    Fault("error", "LoadScenario", 32, 1),
-    Fault("half", "SensorRequest", 45, 20),
-    Fault("garbage", "Step", 51, 12),
-    Fault("die", "CreateScenario", 63, 1),
-    Fault("wrong_ack", "Step", 75, 22),
-    Fault("hang", "LoadScenario", 88, 1),
-    Fault("value_error", "SetAiWaypoint", 97, 1),
+    Fault("hang", "SensorRequest", 2, 20),
+    Fault("drop", "Step", 6, 15),
+    Fault("die", "SensorRequest", 10, 28),
+    Fault("error", "LoadScenario", 14, 1),
+    Fault("half", "SensorRequest", 18, 20),
+    Fault("garbage", "Step", 22, 12),
+    Fault("die", "CreateScenario", 27, 1),
+    Fault("wrong_ack", "Step", 31, 22),
+    Fault("hang", "LoadScenario", 36, 1),
+    Fault("value_error", "SetAiWaypoint", 40, 1),
 ]
 
 
@@ -53,11 +53,11 @@ def settings(monkeypatch: pytest.MonkeyPatch, home: Path, port: int, **more: obj
         monkeypatch.setenv(f"ROADGPT_BEAMNG_{name.upper()}", str(value))
 
 
-def test_a_hundred_roads_and_ten_faults_lose_nothing(
+def test_forty_roads_and_ten_faults_lose_nothing(
     tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     home = fake_home(tmp_path / "home", protocol=OURS, faults=FAULTS)
-    settings(monkeypatch, home, port, recycle=40)
+    settings(monkeypatch, home, port, recycle=16)
     setup = Setup(reader="plan", simulator="beamng")
     made = campaign(SHORTEST, ROADS, 5, World(), setup, tmp_path / "out")
     outcomes = [run.outcome for run in made]
@@ -182,7 +182,7 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
 ) -> None:
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    budget = Budget(tests=8)
+    budget = Budget(tests=5)
     plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*continue with: roadgpt resume .*c"):
@@ -193,8 +193,8 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
     home = fake_home(tmp_path / "home", protocol=OURS)
     monkeypatch.setenv("ROADGPT_BEAMNG_HOME", str(home))
     *_, last = work(tmp_path / "c", 1)
-    assert last.outcomes["PASS"] >= 7
-    assert last.done == 8
+    assert last.outcomes["PASS"] >= 4
+    assert last.done == 5
     assert status_of(tmp_path / "c").is_finished
 
 
