@@ -48,9 +48,7 @@ def test_the_tightest_turn_is_that_of_the_world() -> None:
     assert read("a turn with a radius of 8 m", min_radius=5.0).clauses[0].radius == exactly(8)
 
 
-@pytest.mark.parametrize(
-    "words", ["nothing but a roundabout", "a crossroads", "from Berlin to Munich", "a figure of eight"]
-)
+@pytest.mark.parametrize("words", ["from Berlin to Munich", "a figure of eight"])
 def test_what_no_map_holds_is_refused_on_every_map(words: str) -> None:
     with pytest.raises(BriefError):
         read(words, map_size=10_000)
