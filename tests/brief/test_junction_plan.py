@@ -158,7 +158,7 @@ def test_a_road_of_a_route_is_not_bound_by_the_map_alone() -> None:
         ),
         (
             "// roundabout mini arms=3 exit=2 // || len=300",
-            "At a mini roundabout with 3 arms take the second exit, then 300 metres in all.",
+            "At a mini roundabout with 3 arms take the second exit; 300 metres in all.",
         ),
         ("// crossroads skew //", "At a skew crossroads go on somewhere."),
         (

@@ -38,10 +38,10 @@ def _route_sentence(brief: Brief) -> str:
     parts = [_stretch(brief.stretches[0])]
     for junction, stretch in zip(brief.junctions, brief.stretches[1:], strict=True):
         parts += [junction_text(junction), _stretch(stretch)]
-    parts += [text for text in _wishes(brief.model_copy(update={"junctions": (), "stretches": ()})) if text]
-    whole = f"{brief.length} metres in all" if brief.length else ""
-    parts = [part for part in parts if part and not part.endswith("long in all")] + [whole] * bool(whole)
-    text = ", then ".join(parts[: len(parts)])
+    way = ", then ".join(part for part in parts if part)
+    length = f"{brief.length} metres in all" if brief.length else ""
+    whole = _wishes(brief.model_copy(update={"junctions": (), "stretches": (), "length": None}))
+    text = "; ".join([way, *whole, *([length] if length else [])])
     return text[0].upper() + text[1:] + "."
 
 
