@@ -2,8 +2,10 @@
 
 import pytest
 
+from roadgpt.brief import read
 from roadgpt.brief.left_hand import says_left_hand
 from roadgpt.brief.readers.model import ModelReader
+from roadgpt.errors import BriefError
 
 READER = ModelReader()
 
@@ -22,7 +24,7 @@ READER = ModelReader()
     ],
 )
 def test_traffic_on_the_left_is_heard_in_five_languages(words: str) -> None:
-    assert says_left_hand(words)
+    assert says_left_hand(words, by_place=True)
 
 
 @pytest.mark.parametrize(
@@ -40,9 +42,19 @@ def test_traffic_on_the_left_is_heard_in_five_languages(words: str) -> None:
     ],
 )
 def test_the_left_alone_is_no_traffic_on_the_left(words: str) -> None:
-    assert not says_left_hand(words)
+    assert not says_left_hand(words, by_place=True)
 
 
 def test_a_route_is_read_with_it() -> None:
     assert READER.read("left-hand traffic, a T-junction, turn right").left_hand
     assert not READER.read("a T-junction, turn right").left_hand
+
+
+def test_a_single_road_as_in_a_country_is_no_wish_for_its_traffic() -> None:
+    assert len(read("two bends, as in Scotland").clauses) == 1
+
+
+@pytest.mark.parametrize("words", ["left-hand traffic", "two bends with traffic on the left"])
+def test_a_single_road_with_it_is_refused_and_not_read_as_something_else(words: str) -> None:
+    with pytest.raises(BriefError, match="a road without junctions has no traffic on the left; leave it out"):
+        read(words)

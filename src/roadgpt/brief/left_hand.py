@@ -1,7 +1,8 @@
 """Left-hand traffic: the words in five languages that ask for it."""
 
 import re
-import unicodedata
+
+from roadgpt.brief.words import unaccented
 
 COUNTRIES = (
     r"(?:great )?britain|the uk|england|scotland|wales|ireland|dublin|london|bristol|japan|australia|"
@@ -17,20 +18,28 @@ SAYS = re.compile(
     r"\b(?:conduite|circulation) a gauche|\b(?:roul|condui|circul)\w* a gauche|\btient la gauche|"
     r"\b(?:circul|conduc|condu[cz]|manej|transit|trafico)\w*(?: siempre)? por la izquierda|"
     r"\bguida\w* a sinistra|\b(?:si|che) (?:viaggia|guida|circola|tiene) (?:a |la |sulla )?sinistra|"
+    r"\bbritish (?:rules|traffic)"
+)
+BY_PLACE = re.compile(
     rf"\b(?:as|like|wie|comme|como|come)(?: we| man)?(?: drive| roads?)? (?:in|en|a|au) (?:{COUNTRIES})\b|"
     rf"\b(?:in|en|a|au|siamo a|this is) (?:{COUNTRIES})\b[^.;]{{0,24}}"
     r"\b(?:left|links|gauche|izquierda|sinistra)(?=\b(?!.{0,8}(?:bend|turn|kurve|virage|curva)))|"
     rf"\bthis is (?:{COUNTRIES})\b|^(?:in|en|a|au) (?:{COUNTRIES})\b[:,]|"
-    r"\bbritish (?:rules|roads|traffic)|like the (?:british|uk)\b|ponmelo britanico"
+    r"\bbritish roads|like the (?:british|uk)\b|ponmelo britanico"
 )
 NEGATED = re.compile(
     r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
 )
 
 
-def says_left_hand(words: str) -> bool:
+def says_left_hand(words: str, by_place: bool = False) -> bool:
     """Returns True if a description in English, German, French, Spanish or Italian asks for traffic that
     drives on the left side of the road.
+
+    Args:
+        words: the description.
+        by_place: whether "as in Scotland" asks for it, too.
     """
-    said = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
-    return any(not NEGATED.search(said[: found.start()]) for found in SAYS.finditer(said))
+    said = unaccented(words)
+    found = [*SAYS.finditer(said), *(BY_PLACE.finditer(said) if by_place else ())]
+    return any(not NEGATED.search(said[: each.start()]) for each in found)

@@ -12,7 +12,6 @@ m, grades up to 4, 4.5, 4.5 and 6 percent.
 """
 
 import re
-import unicodedata
 from collections.abc import Iterator
 from itertools import pairwise
 from math import ceil, radians
@@ -20,7 +19,13 @@ from math import ceil, radians
 from roadgpt.brief.map_fit import LARGEST_MAP
 from roadgpt.brief.model import Brief, Clause, span
 from roadgpt.brief.normal import STRAIGHT, normal, total, turns_of
-from roadgpt.brief.words import LENGTH_SLACK, MOTORWAY_GRADE, MOTORWAY_RADIUS, ROAD_LENGTH_SLACK
+from roadgpt.brief.words import (
+    LENGTH_SLACK,
+    MOTORWAY_GRADE,
+    MOTORWAY_RADIUS,
+    ROAD_LENGTH_SLACK,
+    unaccented,
+)
 
 
 def _bag(*lines: str) -> frozenset[str]:
@@ -56,8 +61,7 @@ STEEP = ("steeply_up", "steeply_down")
 
 def says_motorway(words: str) -> bool:
     """Returns True if a description in English, German, French, Spanish or Italian asks for a motorway."""
-    plain = "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))
-    said = re.findall(r"[^\W\d_]+", plain)
+    said = re.findall(r"[^\W\d_]+", unaccented(words))
     for at, (word, after) in enumerate(pairwise([*said, ""])):
         is_pair = (word, after) in PAIRS
         if is_pair or word in NAMES:

@@ -10,6 +10,7 @@ grade of a feature. Designers aim well inside these ranges; measured curvature i
 
 from __future__ import annotations
 
+import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
@@ -369,3 +370,8 @@ def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -
 
 SURE = 0.8
 """If the confidence is below this, a reading is wrong so often that the user is asked or warned."""
+
+
+def unaccented(words: str) -> str:
+    """Returns the words in lower case and without accents; "ß" stays."""
+    return "".join(c for c in unicodedata.normalize("NFD", words.lower()) if not unicodedata.combining(c))

@@ -50,7 +50,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
         for each in brief.stretches
     )
     return brief.model_copy(
-        update={"left_hand": brief.left_hand or says_left_hand(words), "stretches": roads}
+        update={"left_hand": brief.left_hand or says_left_hand(words, by_place=True), "stretches": roads}
     )
 
 
