@@ -69,6 +69,7 @@ def test_measures_of_a_grid_and_a_village() -> None:
         ("map columns=2 rows=1 stop", "stop"),
         ("map columns=2 rows=1 yield", "yield"),
         ("map columns=2 rows=1 priority", "priority"),
+        ("map columns=2 rows=1 route=straight+left", "none"),
     ],
 )
 def test_a_grid_that_is_as_asked(asked: str, control: str) -> None:
@@ -86,6 +87,11 @@ def test_a_grid_that_is_as_asked(asked: str, control: str) -> None:
             "asked for traffic lights at all junctions, near (100, 100): no signs",
         ),
         ("map columns=2 rows=1 stop", "asked for stop signs at all junctions, near (100, 100): no signs"),
+        ("map columns=2 rows=1 route=left", "asked for a route that goes left, goes straight, left"),
+        (
+            "map columns=2 rows=1 route=left+left",
+            "asked for a route that goes left, left, goes straight, left",
+        ),
     ],
 )
 def test_a_grid_that_is_not_as_asked(asked: str, wanted: str) -> None:
@@ -100,6 +106,7 @@ def test_a_grid_that_is_not_as_asked(asked: str, wanted: str) -> None:
         "map crossroads; junction",
         "map crossroads x1..2; y_junction x1..3",
         "map junction x2 len=90",
+        "map crossroads; y_junction route=straight+left",
     ],
 )
 def test_a_village_that_is_as_asked(asked: str) -> None:

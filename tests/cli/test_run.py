@@ -123,6 +123,33 @@ def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
     assert not Path("roadgpt-runs").exists()
 
 
+def test_a_route_through_a_map_is_named_and_said_back() -> None:
+    result = invoke(
+        "a grid of 2 by 2 blocks", "--route", "left, right", "--seed", "2", "--no-drive", "--no-plot"
+    )
+    assert result.exit_code == 0
+    assert "a grid of 2 by 2 blocks; the route goes left, right" in result.output
+
+
+@pytest.mark.parametrize(
+    ("words", "route", "said"),
+    [
+        ("a winding road", "left", "leave --route out"),
+        ("a T-junction, turn right", "left", "leave --route out"),
+        ("a grid of 2 by 2 blocks", "up", "the route 'up' through a map cannot be read"),
+        ("a grid of 2 by 2 blocks", ",", "cannot be read"),
+        ("a grid of 2 by 2 blocks", "left," * 13, "give 1 to 12 of left, right, straight"),
+    ],
+)
+def test_a_route_that_cannot_be_named_is_refused_before_anything_is_made(
+    words: str, route: str, said: str
+) -> None:
+    result = invoke(words, "--route", route)
+    assert result.exit_code == 2
+    assert said in result.stderr
+    assert not Path("roadgpt-runs").exists()
+
+
 def test_nothing_that_could_be_designed_ends_with_3(monkeypatch: pytest.MonkeyPatch) -> None:
     def cannot(*_: object, **__: object) -> None:
         raise DesignError("no road fits; ask for less")

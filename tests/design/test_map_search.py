@@ -7,6 +7,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 from outside_judge import SHARED
@@ -139,6 +140,35 @@ def test_routes_are_long_enough_and_turn_to_both_sides_where_they_can() -> None:
         ]
         assert max(turns) > 0.5
         assert min(turns) < -0.5
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "map columns=3 rows=2 route=left+straight+right",
+        "map columns=1 rows=1 route=left+left",
+        "map crossroads x3; t_junction route=right+left",
+        "map columns=2 rows=2 route=straight",
+    ],
+)
+def test_a_route_through_a_map_goes_where_it_was_asked_to(line: str) -> None:
+    """The directions are measured on the centre line, 10 m before and behind each junction."""
+    for seed in range(3):
+        route = route_of(line, seed)
+        assert inspect(route, read_plan(line), USUAL) == ()
+        goes = [_way(route, each.start, each.end) for each in route.passages]
+        assert goes == line.rpartition("=")[2].split("+")
+
+
+def _way(route: Route, start: float, end: float) -> str:
+    x, y = np.diff(route.at(np.array([start - 10, start, end, end + 10]))[:, :2], axis=0)[[0, 2]].T
+    angle = np.degrees(np.arctan2(x[0] * y[1] - x[1] * y[0], x[0] * x[1] + y[0] * y[1]))
+    return "straight" if abs(angle) < 40 else "left" if angle > 0 else "right"
+
+
+def test_a_route_that_no_map_has_is_refused() -> None:
+    with pytest.raises(DesignError, match="no route left, left, left, left leads through it"):
+        drafted("map columns=1 rows=1 route=left+left+left+left", 1)
 
 
 def test_limits_of_the_world_are_kept() -> None:

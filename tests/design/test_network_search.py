@@ -217,16 +217,32 @@ def test_single_roads_only_are_drafted_where_junctions_do_not_belong() -> None:
 
 
 @pytest.mark.parametrize(
-    "line", ["crossroads // | down pct=6 // crossroads", "| up pct=5 // t_junction left"]
+    ("line", "index", "asked"),
+    [
+        ("crossroads // | down pct=6 // crossroads", 2, -6),
+        ("| up pct=8 // t_junction left // | flat", 0, 8),
+        ("t_junction left // turn x2 | up pct=4 // t_junction right", 2, 4),
+        ("t_junction left // straight len=60 down pct=9 // t_junction right", 2, -9),
+    ],
 )
-def test_a_road_keeps_its_mean_grade_though_its_ends_are_level(line: str) -> None:
-    route = drafted(line, 2)
-    asked = -6 if "down" in line else 5
-    index = 2 if "down" in line else 0
-    road = route.network.road(route.legs[index].road).road
-    heights = road.at(np.array([0.0, road.length]))[:, 2]
-    assert 100 * (heights[1] - heights[0]) / road.length == pytest.approx(asked, abs=1)
-    assert road.grade(np.array([road.length])) == pytest.approx(0, abs=1e-12)
+def test_a_road_between_junctions_is_as_steep_as_asked_where_it_is_not_level_for_them(
+    line: str, index: int, asked: float
+) -> None:
+    for seed in range(3):
+        route = drafted(line, seed)
+        road = route.network.road(route.legs[index].road).road
+        s = np.arange(0.0, road.length - 10, 0.5)
+        windows = 100 * (road.at(s + 10)[:, 2] - road.at(s)[:, 2]) / 10
+        assert math.copysign(np.abs(windows).max(), asked) == pytest.approx(asked, abs=0.8)
+        assert (windows * asked >= -1e-9).all()
+        assert road.grade(np.array([road.length])) == pytest.approx(0, abs=1e-12)
+
+
+def test_a_road_between_junctions_climbs_as_many_metres_as_asked() -> None:
+    for seed in range(3):
+        route = drafted("t_junction left // | up climb=5 // t_junction right", seed)
+        road = route.network.road(route.legs[2].road).road
+        assert np.diff(road.at(np.array([0.0, road.length]))[:, 2]) == pytest.approx(5, abs=1)
 
 
 @pytest.mark.parametrize(

@@ -2,20 +2,23 @@
 
 map columns=3 rows=2 lights        a grid with three by two blocks
 map crossroads x3; roundabout      three crossroads and a roundabout, joined by roads
+map columns=2 rows=2 route=left+straight   a grid, and where the route through it goes at its junctions
 """
 
 import re
 from typing import Self, get_args
 
-from pydantic import ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from roadgpt.brief.amount import Amount, Frozen, exactly
-from roadgpt.brief.junctions import Control, MapJunctionKind
+from roadgpt.brief.junctions import Control, MapJunctionKind, Way
 from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
 MAP = "map"
 KEYS = {"columns": "columns", "rows": "rows", "len": "length"}
+ROUTE = "route"
+LONGEST_ROUTE = 12  # junctions
 CONTROLS = get_args(Control)
 ONE = exactly(1)
 
@@ -39,6 +42,8 @@ class MapClause(Frozen):
     junctions: tuple[JunctionCount, ...] = ()
     control: Control | None = None
     """The sign or light of all junctions."""
+    route: tuple[Way, ...] = Field((), max_length=LONGEST_ROUTE)
+    """Where the route goes at the junctions that it passes; empty: it is drawn freely."""
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
@@ -59,7 +64,9 @@ def map_plan(asked: MapClause) -> str:
         for key, name in KEYS.items()
         if (amount := getattr(asked, name)) is not None
     ]
-    return " ".join([MAP, *filter(None, ["; ".join(kinds)]), *words, *filter(None, [asked.control])])
+    words += [asked.control] if asked.control else []
+    words += [f"{ROUTE}={'+'.join(asked.route)}"] if asked.route else []
+    return " ".join([MAP, *filter(None, ["; ".join(kinds)]), *words])
 
 
 def is_map(line: str) -> bool:
@@ -79,6 +86,8 @@ def read_map(line: str) -> MapClause:
         key, equals, value = word.partition("=")
         if equals and key in KEYS:
             found: tuple[str, object] = (KEYS[key], read_amount(value))
+        elif key == ROUTE and equals:
+            found = (ROUTE, read_ways(value))
         elif word in CONTROLS:
             found = ("control", word)
         elif word in get_args(MapJunctionKind):
@@ -88,7 +97,7 @@ def read_map(line: str) -> MapClause:
             counts[-1] = JunctionCount(kind=counts[-1].kind, count=read_amount(word[1:]))
             continue
         else:
-            known = ", ".join([*(f"{key}=" for key in KEYS), *CONTROLS, *get_args(MapJunctionKind)])
+            known = ", ".join([*(f"{key}=" for key in (*KEYS, ROUTE)), *CONTROLS, *get_args(MapJunctionKind)])
             raise BriefError(f"a plan has no word '{word[:40]}' for a map; there are {known}")
         if found[0] in fields:
             raise BriefError(f"a plan gives {found[0]} of a map twice: '{word[:40]}'; give it once")
@@ -100,3 +109,33 @@ def read_map(line: str) -> MapClause:
             f"the map '{line.strip()[:60]}' in a plan cannot be read; give columns and rows, as in map "
             "columns=3 rows=2, or kinds of junctions, as in map crossroads x3"
         ) from error
+
+
+def read_ways(text: str) -> tuple[Way, ...]:
+    """Returns the ways that a route takes at junctions, from a text such as "left, straight".
+
+    Raises:
+        BriefError: A word is neither left, right nor straight, or there are too many.
+    """
+    words = [word for word in re.split(r"[+,\s]+", text) if word]
+    ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
+    if not 1 <= len(ways) == len(words) <= LONGEST_ROUTE:
+        raise BriefError(
+            f"the route '{text[:40]}' through a map cannot be read; give 1 to {LONGEST_ROUTE} of "
+            f"{', '.join(get_args(Way))}, one for each junction that it passes, as in left+straight+right"
+        )
+    return tuple(ways)
+
+
+def with_route(asked: MapClause | None, text: str) -> MapClause:
+    """Returns a map whose route goes where a text such as "left,straight" says.
+
+    Raises:
+        BriefError: There is no map, or the text cannot be read.
+    """
+    if asked is None:
+        raise BriefError(
+            "a route can be named through a map only, such as 'a grid of 3 by 2 blocks'; this description "
+            "has a route or a road of its own, so leave --route out"
+        )
+    return asked.model_copy(update={"route": read_ways(text)})

@@ -11,6 +11,7 @@ from roadgpt.brief.junctions import NAMES, Control
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
+from roadgpt.check.junction_measures import measured_junctions
 from roadgpt.check.map_measures import MeasuredMap, MeasuredNode, measured_map
 from roadgpt.network import Route
 from roadgpt.plural import plural
@@ -30,7 +31,7 @@ CORNERS = 4  # of a grid, where roads may lead around a corner without a junctio
 def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
     """Returns one Finding for each requirement that the map of a route does not meet."""
     found = measured_map(route.network)
-    out = [Finding(RULE, text) for text in _complaints(found, asked)]
+    out = [Finding(RULE, text) for text in (*_complaints(found, asked), *_route(route, asked))]
     for node in found.nodes:
         if asked.control is not None and not _is_controlled(node, asked.control):
             x, y = node.place
@@ -38,6 +39,13 @@ def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
             text = f"asked for {SAID[asked.control]} at all junctions, near ({x:.0f}, {y:.0f}): {has}"
             out.append(Finding(RULE, text, None, x, y))
     return tuple(out)
+
+
+def _route(route: Route, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with where the route goes, as text."""
+    goes = [each.sides[each.exit - 1] for each in measured_junctions(route)]
+    if asked.route and goes != [*asked.route]:
+        yield f"asked for a route that goes {', '.join(asked.route)}, goes {', '.join(goes) or 'nowhere'}"
 
 
 def _complaints(found: MeasuredMap, asked: MapClause) -> Iterator[str]:

@@ -5,6 +5,9 @@ and compared with its own requirements, as a single road is by the rule ``promis
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, SIZES, TAKES, JunctionClause
@@ -22,7 +25,7 @@ from roadgpt.check.junction_measures import (
 from roadgpt.check.measures import measure
 from roadgpt.check.rules.promises import complaints
 from roadgpt.network import NetworkRoad, RoadEnd, Route
-from roadgpt.network.stretch import joined_roads
+from roadgpt.network.stretch import joined_roads, without_level_ends
 from roadgpt.road import Road
 
 RULE = "promises"
@@ -46,9 +49,10 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
             Finding(RULE, f"junction {number} at s = {place.s:.0f} m: {text}", place.s, x, y)
             for text in texts
         ]
-    for (start, road), stretch in zip(stretches_of(route), brief.stretches, strict=False):
+    roads = stretches_of(route)
+    for n, ((start, road), stretch) in enumerate(zip(roads, brief.stretches, strict=False)):
         if not stretch.is_open:
-            out += _broken(start, road, stretch)
+            out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1))
     return (*out, *_length(route, brief))
 
 
@@ -65,10 +69,17 @@ def stretches_of(route: Route) -> list[tuple[float, Road]]:
     return [(start, joined_roads([member.road for member in own])) for start, own in found]
 
 
-def _broken(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
+def _broken(start: float, road: Road, asked: Brief, is_level: tuple[bool, bool]) -> Iterator[Finding]:
+    """Yields a Finding for each requirement that a road does not meet.
+
+    Grades are required of the road as it would be if its ends were not level because they meet junctions.
+    """
     yield from _broken_lanes(start, road, asked)
     wanted = outline(asked.as_stretch)
-    for complaint in complaints(measure(road.centreline(), wanted.widest), wanted):
+    found = measure(without_level_ends(road, is_level).centreline(), wanted.widest)
+    heights = road.at(np.array([0.0, road.length]))[:, 2]
+    found = replace(found, climb=float(heights[1] - heights[0]))
+    for complaint in complaints(found, wanted):
         s = start if complaint.s is None else start + complaint.s
         x, y = road.at(min(s - start, road.length))[:2].tolist()
         yield Finding(RULE, f"on the road from s = {start:.0f} m: {complaint.sentence}", s, x, y)

@@ -1,10 +1,12 @@
-"""Draws a route through the draft of a map: it passes several junctions and turns to both sides if it can."""
+"""Draws a route through the draft of a map. It goes where the description says; otherwise, it passes several
+junctions and turns to both sides if it can.
+"""
 
 import cmath
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from roadgpt.brief.junctions import side_of
+from roadgpt.brief.junctions import Way, side_of
 from roadgpt.design.map_draft import MapDraft, Rng
 
 WALKS = 60  # that are drawn, of which the best is taken
@@ -30,6 +32,45 @@ def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
         if best is None or worth > best[0]:
             best = worth, walk
     return None if best is None else best[1]
+
+
+def named_route(draft: MapDraft, ways: Sequence[Way], rng: Rng) -> list[int] | None:
+    """Returns the nodes along a route that goes the given ways at the junctions that it passes; None if there
+    is no such route.
+
+    It leads from one end of a road to another if it can, else from one end or junction to another. No node is
+    passed twice.
+    """
+    neighbours = draft.neighbours()
+    starts = [n for n, node in enumerate(draft.nodes) if node.kind != "bend"]
+    found = [walk for n in starts for walk in _named(draft, neighbours, [n], ways)]
+    if not found:
+        return None
+    ends = [sum(draft.nodes[walk[n]].kind == "end" for n in (0, -1)) for walk in found]
+    best = [walk for walk, number in zip(found, ends, strict=True) if number == max(ends)]
+    return best[int(rng.integers(len(best)))]
+
+
+def _named(
+    draft: MapDraft, neighbours: Sequence[Sequence[int]], walk: list[int], ways: Sequence[Way]
+) -> Iterator[list[int]]:
+    """Yields all routes that begin with ``walk`` and go the given ways from there on."""
+    here = draft.nodes[walk[-1]]
+    is_first = len(walk) == 1
+    if not is_first and not ways and here.kind != "bend":
+        yield walk
+        return
+    if here.kind == "end" and not is_first:
+        return
+    passes = here.is_junction and not is_first
+    for other in neighbours[walk[-1]]:
+        if other in walk:
+            continue
+        if passes:
+            z = [draft.nodes[n].z for n in (walk[-2], walk[-1], other)]
+            if side_of(_degrees(z[0], z[1], z[2])) != ways[0]:
+                continue
+        yield from _named(draft, neighbours, [*walk, other], ways[1:] if passes else ways)
 
 
 def _walk(

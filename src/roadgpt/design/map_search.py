@@ -20,7 +20,7 @@ from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
 from roadgpt.design.layout import boxes
 from roadgpt.design.map_draft import DraftNode, MapDraft
-from roadgpt.design.map_route import drawn_route
+from roadgpt.design.map_route import drawn_route, named_route
 from roadgpt.design.village_draft import draft_village
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.network import MapDesign, MapNode, build_map
@@ -101,9 +101,11 @@ class MapSearch:
         if not self._place(draft, turns, room):
             self.failed[TOO_LARGE] += 1
             return None
-        route = drawn_route(draft, self.rng)
+        ways = self.asked.route
+        route = named_route(draft, ways, self.rng) if ways else drawn_route(draft, self.rng)
         if route is None:
-            self.failed["no route leads through it"] += 1
+            which = f"no route {', '.join(ways)}" if ways else "no route"
+            self.failed[f"{which} leads through it"] += 1
             return None
         heights = self._heights(draft, haste)
         control: Control = self.asked.control or "none"

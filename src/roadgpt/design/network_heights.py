@@ -1,4 +1,4 @@
-"""Makes up for the level ends of a road between junctions, so that it still climbs as much as it was to."""
+"""Makes up for the level ends of a road between junctions of which a difference of heights is required."""
 
 import math
 from collections.abc import Sequence

@@ -253,8 +253,10 @@ class NetworkSearch:
             if segments is None:
                 self.failed.update(search.failed)
                 return None
-            is_level = (n > 0, n < len(drafts) - 1)
-            found.append(climbing(segments, is_level, 100 * self.world.limits.max_grade))
+            if self.brief.stretches[n].climb is not None:
+                is_level = (n > 0, n < len(drafts) - 1)
+                segments = climbing(segments, is_level, 100 * self.world.limits.max_grade)
+            found.append(segments)
         return found
 
     def _open(self, haste: float, shortest: float, is_straight: bool = False) -> Brief:

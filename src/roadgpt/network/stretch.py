@@ -66,6 +66,29 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
     return [(0.0, 0.0), (landing, 0.0), (landing + length, grade), *rest]
 
 
+def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
+    """Returns a road with the heights that it would have if ``road_of`` had not made its ends level.
+
+    Args:
+        road: The road; its heights are given by grades.
+        is_level: Whether it was made level at its start, and at its end.
+    """
+    profile = road.elevation
+    assert isinstance(profile, GradeProfile)
+    knots = list(zip(profile.stations, profile.grades, strict=True))
+    steep = [n for n, (_, grade) in enumerate(knots) if abs(grade) >= LEVEL]
+    if not steep:
+        return road
+    if is_level[0]:
+        knots = [(0.0, knots[steep[0]][1]), *knots[steep[0] :]]
+    if is_level[1]:
+        last = steep[-1] - len(profile.grades)
+        knots = [*knots[: len(knots) + last + 1], (profile.stations[-1], knots[last][1])]
+    kept = [knots[0], *(b for a, b in pairwise(knots) if b[0] > a[0])]
+    heights = GradeProfile(profile.z0, tuple(s for s, _ in kept), tuple(g for _, g in kept))
+    return Road(road.plan, heights, profile=road.profile)
+
+
 def climb_between(z: float, end: float, length: float) -> GradeProfile:
     """Returns heights that lead from one height to another, level at both ends, with one grade between.
 

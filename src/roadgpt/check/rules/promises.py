@@ -69,13 +69,14 @@ def _counts(found: Measures, asked: Outline) -> Iterator[Complaint]:
 def _slopes(found: Measures, asked: Outline) -> Iterator[Complaint]:
     """Checks the whole road: up or down on average and nowhere the other way, or level everywhere."""
     low, high, mean = found.lowest_grade, found.highest_grade, found.grade
+    whole = 100 * found.climb / found.length
     is_so = {
-        "up": mean >= LEVEL and low > -LEVEL,
-        "down": mean <= -LEVEL and high < LEVEL,
+        "up": whole >= LEVEL and low > -LEVEL,
+        "down": whole <= -LEVEL and high < LEVEL,
         "flat": low > -LEVEL and high < LEVEL,
     }
     if asked.grade and not is_so[asked.grade]:
-        grades = f"{mean:.1f} % on average and {low:.1f} to {high:.1f} % over 20 m"
+        grades = f"{whole:.1f} % on average and {low:.1f} to {high:.1f} % over 20 m"
         yield Complaint(
             f"asked for a road that {WHOLE_SLOPES[asked.grade]} all the way, has {grades}", on_heights=True
         )

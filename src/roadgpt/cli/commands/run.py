@@ -49,6 +49,8 @@ class RunJob:
     """Formats of the road files that are written into each run."""
     junit: Path | None = None
     """The JUnit file to write; None: none is written."""
+    route: str = ""
+    """Where the route through a map goes, such as "left,straight"; empty: it is drawn."""
 
 
 OPTIONS = (
@@ -56,6 +58,15 @@ OPTIONS = (
     options.seed("The same seed gives the same roads. [default: random]"),
     options.out("Folder for the runs. [default: a new one]"),
     options.PLAN,
+    Option(
+        "--route",
+        "Turns of the route through a map, such as left,straight,right. [default: drawn]",
+        str,
+        "",
+        metavar="TURN,...",
+        heading=Heading.DESIGN,
+        is_rare=True,
+    ),
     *named(options.SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
     *options.WORLD,
     *named(options.SETUP, "geometry", "rules"),
@@ -92,7 +103,7 @@ def _job_of(words: str, given: dict[str, Any]) -> RunJob:
     """Returns the job that the values of the options describe; removes some of them from ``given``."""
     from roadgpt.run import Setup
 
-    own = {name: given.pop(name) for name in ("roads", "seed", "out", "axes", "formats", "junit")}
+    own = {name: given.pop(name) for name in ("roads", "seed", "out", "axes", "formats", "junit", "route")}
     world, pictures = options.world_of(given), options.pictures_of(given)
     given["reader"] = options.reader_of(given)
     chat = options.chat_of(given, given["reader"], given["designer"])
@@ -127,6 +138,7 @@ def carry_out(job: RunJob, screen: Screen) -> None:
         RoadGPTError: The description, a plug-in or the folder cannot be used, or nothing could be designed.
         KeyboardInterrupt: The user pressed Ctrl-C; finished roads are saved in full.
     """
+    from roadgpt.brief.map_clause import with_route
     from roadgpt.campaign import campaign
     from roadgpt.chat import Meter
     from roadgpt.run import brief_of
@@ -134,6 +146,8 @@ def carry_out(job: RunJob, screen: Screen) -> None:
     draw = beside(job.pictures, job.axes, job.formats)
     meter = Meter.of(job.setup.chat)
     brief = brief_of(job.words, job.world, job.setup, meter)
+    if job.route:
+        brief = brief.model_copy(update={"map": with_route(brief.map, job.route)})
     seed = _seed(job)
     with redirect_stdout(sys.stderr):  # a user's driver is loaded, and may print
         work = campaign(brief, job.roads, seed, job.world, job.setup, job.out, draw, meter)
