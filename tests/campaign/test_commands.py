@@ -137,7 +137,8 @@ def test_status_and_top_tell_of_a_finished_campaign(driven: Path) -> None:
     assert told["is_finished"]
     assert sum(told["outcomes"].values()) == told["done"] == told["total"] == 3
     assert told["cells"][0]["name"] == "c01"
-    assert "3 of 3 tests" in roadgpt("top", driven, "--once").output
+    shown = roadgpt("top", driven, "--once").output
+    assert "3 of 3 tests" in " ".join(shown.split())  # the line of a long folder name is wrapped
     assert f"roadgpt show {driven}/c01/1" in roadgpt("show", driven).output
     again = roadgpt("resume", driven, "--json")
     assert json.loads(again.output)["done"] == 3

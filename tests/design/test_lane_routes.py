@@ -54,6 +54,16 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "roundabout", "take": "straight", "ring_lanes": 2}],
         **TWO_EACH,
     },
+    "crossroads left stop all_way // | lanes=3 against=3": {
+        "sequence": [{"kind": "X", "take": "left", "all_control": "stop"}],
+        "between": [None, {"lanes": 3, "lanes_against": 3}],
+    },
+    "| len=100 motorway lanes=2 // diverge ramp side=right": {
+        "sequence": [{"kind": "diverge", "take": "exit", "side": "right", "after": 100}],
+    },
+    "merge ramp // | len=200 motorway // diverge ramp": {
+        "sequence": [{"kind": "merge", "take": "ramp"}, {"kind": "diverge", "take": "exit", "after": 200}],
+    },
     "| oneway // t_junction left": {
         "sequence": [{"kind": "T", "take": "left", "two_way": [0, 3]}],
         "between": [{"oneway": True, "lanes": 1}, None],

@@ -55,6 +55,7 @@ CASES: dict[str, dict[str, Any]] = {
     },
     "// roundabout large exit=3 //": {"sequence": [{"kind": "roundabout", "size": "large", "exit": 3}]},
     "// roundabout r=14 arms=4 //": {"sequence": [{"kind": "roundabout", "radius": 14, "arms": 4}]},
+    "// roundabout arms=6 exit=4 //": {"sequence": [{"kind": "roundabout", "arms": 6, "exit": 4}]},
     "turn left // t_junction right stop // straight 60": {
         "sequence": [
             {"kind": "turn", "dir": "left"},

@@ -9,11 +9,13 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt.brief.plan import read_plan
+from roadgpt.check import inspect
 from roadgpt.cli import app
 from roadgpt.cli.commands.run import command
 from roadgpt.design import draft
 from roadgpt.design.room import map_remark, world_for
 from roadgpt.errors import RoadGPTError
+from roadgpt.network import NetworkDesign, build_route
 from roadgpt.road import Limits, Site, World, build
 from roadgpt.run import Setup, brief_of, perform
 
@@ -38,6 +40,31 @@ def test_the_map_grows_until_any_seed_finds_room(line: str) -> None:
         points = build(draft(brief, world, seed=seed)).sample().points
         assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
     assert f"the map is {world.site.map_size:g} m wide" in map_remark(World(), world)
+
+
+LONG_ROUTES = (
+    "| len=500 // junction left lights // roundabout straight normal",
+    "crossroads left lights // roundabout left mini || len=1000",
+    "| sweeping motorway turns=2.. // diverge ramp side=right",
+)
+
+
+@pytest.mark.parametrize("line", LONG_ROUTES)
+def test_the_map_grows_for_a_route_until_it_has_room(line: str) -> None:
+    brief = read_plan(line)
+    world = world_for(brief, World())
+    assert 250 < world.site.map_size <= 1000
+    design = draft(brief, world, seed=20)
+    assert isinstance(design, NetworkDesign)
+    route = build_route(design, world)
+    points = route.at(np.arange(0.0, route.length))
+    assert np.all((points[:, :2] > 0) & (points[:, :2] < world.site.map_size))
+    assert inspect(route, brief, world) == ()
+
+
+def test_it_stays_where_there_is_room_for_a_route() -> None:
+    for line in ("t_junction left", "| len=80 // crossroads left lights // roundabout exit=3 // | up"):
+        assert world_for(read_plan(line), World()) == World()
 
 
 @pytest.mark.parametrize(

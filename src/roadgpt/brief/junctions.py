@@ -58,7 +58,7 @@ ARMS: Mapping[JunctionKind, Range] = {
     "y_junction": Range(3, 3),
     "crossroads": Range(4, 4),
     "star": Range(5, 6),
-    "roundabout": Range(3, 5),
+    "roundabout": Range(3, 6),
     "junction": Range(3, 6),
     "merge": Range(3, 3),
     "diverge": Range(3, 3),

@@ -29,6 +29,7 @@ SKEW = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
 STAR = 50.0  # degrees, least gap of a star junction
 EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
+USUALLY_MOST = 5.0  # arms of a roundabout, where the description does not say how many
 RING_GAP = 55.0  # degrees, least gap of a roundabout
 ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is required
 ROUNDS = 200  # draws of the arms of one junction
@@ -116,7 +117,10 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     fewest = max(counts.lo, min(asked.lo + 1, counts.hi))  # the last exit would lead back
     if clause.kind == "roundabout" and clause.arms is None and clause.take is not None:
         fewest = max(fewest, 4.0 if clause.take == "straight" else 3.0)
-    count = int(rng.integers(int(fewest), int(counts.hi) + 1))
+    most = counts.hi
+    if clause.kind == "roundabout" and clause.arms is None:
+        most = max(USUALLY_MOST, fewest)
+    count = int(rng.integers(int(fewest), int(most) + 1))
     if clause.arms is None and clause.kind == "roundabout" and int(fewest) <= 4:
         count = 4 if rng.random() < 0.6 else count
     if count == 4 and clause.kind == "roundabout":

@@ -1,11 +1,9 @@
 """Chooses the lanes of the roads of a route, within what is required of them."""
 
 from collections.abc import Sequence
-from math import ceil, inf
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.map_fit import LARGEST_MAP
+from roadgpt.brief.junctions import RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import MOST_LANES, Range, nearest
 from roadgpt.network.lane_design import (
@@ -16,13 +14,11 @@ from roadgpt.network.lane_design import (
     RampDesign,
 )
 from roadgpt.network.ramps import TAPER as RAMP_TAPER
-from roadgpt.network.ramps import length_at_ramp
-from roadgpt.road import World
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
 WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
 LEAST_LANE = 17.0  # m, which counts as 28 with its taper: what the rule ``ramp_too_short`` requires
-LEAST_BESIDE = 40.0  # m, of a lane for acceleration or deceleration whose length is not said
+LEAST_BESIDE = 20.0  # m, of a lane for acceleration or deceleration whose length is not said
 SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
 USUAL_ROAD = 90.0  # m, of a road whose length is not said
 DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
@@ -55,28 +51,6 @@ def drawn_change(asked: JunctionClause) -> LanesChangeDesign:
     return LanesChangeDesign.model_validate(
         {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
     )
-
-
-def map_of_route(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a map on which the longest straight part of a route has room.
-
-    Beside the lanes of ramps, and where lanes change, a route is nearly straight. Returns None if the map of
-    the World is large enough.
-    """
-    longest, run = 0.0, 0.0
-    for n, road in enumerate(brief.stretches):
-        place = brief.junctions[n - 1] if n else None
-        if place is None or place.kind not in (*RAMPS, *LANE_KINDS):
-            run = 0.0
-        elif place.kind in RAMPS:
-            run += length_at_ramp(drawn_ramp(place, ACCELERATION))
-        low = span(road.length).lo
-        run += low if 0 < low < inf else USUAL_ROAD
-        longest = max(longest, run)
-    needed = longest / DIAGONAL + EDGES
-    if needed <= world.site.map_size or not any(p.kind in (*RAMPS, *LANE_KINDS) for p in brief.junctions):
-        return None
-    return float(min(ceil(needed / STEP) * STEP, LARGEST_MAP))
 
 
 def _length(asked: Amount) -> float:

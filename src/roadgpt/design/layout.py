@@ -135,9 +135,17 @@ def meeting(
     return of_z, here[of_earlier]
 
 
-def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | None:
-    """Returns a random start and heading at which the road lies on the map; None if none was found."""
-    room = world.site.map_size - world.section.road_width - 2 * EDGE
+def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:
+    """Returns a random start and heading at which the road lies on the map; None if none was found.
+
+    Args:
+        line: the centre line of the road.
+        world: the map, and the width of its usual roads.
+        rng: random number generator.
+        reach: greatest distance in metres from the line to an edge of a road, if a road is wider than usual.
+    """
+    half = max(world.section.road_width / 2, reach)
+    room = world.site.map_size - 2 * half - 2 * EDGE
     turns = rng.integers(3600) / 10 + np.arange(HEADINGS) * (360 / HEADINGS)
     chosen = _first_that_fits(line.z, turns[:1], room)
     if chosen is None:
@@ -148,7 +156,7 @@ def place(line: PlanLine, world: World, rng: np.random.Generator) -> MapPose | N
     if chosen is None:
         return None
     theta, left, low, width, height = chosen
-    border = world.section.road_width / 2 + EDGE
+    border = half + EDGE
     x = border - left + rng.random() * max(room - width, 0.0)
     y = border - low + rng.random() * max(room - height, 0.0)
     return MapPose(round(x, 2), round(y, 2), round(theta % 360, 1) % 360)

@@ -54,7 +54,9 @@ TURNING = 45.0  # m more for such a road with a turn
 PARTS = 250.0  # m, the usual map
 ROOM_TO_TURN = 20.0  # m, of a road whose length is required and that is partly beside the lane of a ramp
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
-
+TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of its roads cannot be drafted"
+FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
+"""Reasons for which drafts fail that a larger map may do away with."""
 
 Draft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
@@ -76,16 +78,20 @@ class NetworkSearch:
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
         self.failed: Counter[str] = Counter()
 
-    def run(self) -> NetworkDesign:
+    def run(self, drafts: int = DRAFTS) -> NetworkDesign:
         """Returns the first draft that is accepted.
+
+        Args:
+            drafts: how many drafts are tried at most.
 
         Raises:
             DesignError: no draft was accepted; the message says why most of them failed.
         """
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
-        hastes = (max(0.0, (n - NO_HASTE) / (DRAFTS - NO_HASTE)) ** 0.5 for n in range(DRAFTS))
-        drafts = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
-        found = first_accepted(drafts, build_route, self.brief, self.world, self.failed, BUILT)
+        calm = min(NO_HASTE, drafts // 3)
+        hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))
+        tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
+        found = first_accepted(tried, build_route, self.brief, self.world, self.failed, BUILT)
         if found is None:
             raise DesignError(self._advice())
         return found
@@ -150,9 +156,14 @@ class NetworkSearch:
 
     def _room_beside(self, number: int) -> float:
         """Returns the length in metres that a lane for acceleration or deceleration can have."""
-        is_exit = self.brief.junctions[number].kind == "diverge"
-        asked = self.brief.stretches[number if is_exit else number + 1].length
-        return inf if asked is None else span(asked).hi - RAMP_TAPER - SHORT_ROAD - ROOM_TO_TURN
+        places = self.brief.junctions
+        n = number if places[number].kind == "diverge" else number + 1
+        asked = self.brief.stretches[n].length
+        if asked is None:
+            return inf
+        is_shared = 0 < n < len(places) and (places[n - 1].kind, places[n].kind) == ("merge", "diverge")
+        room = span(asked).hi - SHORT_ROAD - ROOM_TO_TURN
+        return (room / 2 if is_shared else room) - RAMP_TAPER
 
     def _profiles(self, places: Sequence[PlaceDesign], lengths: Sequence[float]) -> list[Profile]:
         return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)
@@ -173,7 +184,7 @@ class NetworkSearch:
                 share = left / sum(each not in found for each in free)
             draft = self._stretch(self._without_ramps(n, junctions), haste, share, self._shortest(n))
             if draft is None:
-                self.failed["one of its roads cannot be drafted"] += 1
+                self.failed[UNDRAFTED] += 1
                 return None
             found[n] = draft
         return [found[n] for n in range(len(briefs))]
@@ -277,19 +288,20 @@ class NetworkSearch:
         lines = [drafted.line for _, drafted in drafts]
         profiles = self._profiles(junctions, [float(line.s[-1]) for line in lines])
         sketch = sketched(lines, junctions, profiles)
-        if not is_clear(sketch, max(profile.reach for profile in profiles)):
-            self.failed["its roads would overlap"] += 1
+        reach = max(profile.reach for profile in profiles)
+        if not is_clear(sketch, reach):
+            self.failed[OVERLAPS] += 1
             return None
-        pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng)
+        pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng, reach)
         if pose is None:
-            self.failed["too large"] += 1
+            self.failed[TOO_LARGE] += 1
         return pose
 
     def _advice(self) -> str:
         """Returns why most drafts failed and what to do, as one sentence."""
         why, _ = max(self.failed.items(), key=lambda item: item[1], default=("nothing could be drafted", 0))
         size = self.world.site.map_size
-        if why in ("too large", "its roads would overlap"):
+        if why in (TOO_LARGE, OVERLAPS):
             count = plural(len(self.brief.junctions), "junction")
             return (
                 f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "

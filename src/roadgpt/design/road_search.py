@@ -33,7 +33,6 @@ from roadgpt.design.compose import composed
 from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
-from roadgpt.design.lane_draft import map_of_route
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
 from roadgpt.design.sequence import drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
@@ -78,8 +77,6 @@ def sufficient_map(brief: Brief, world: World) -> float | None:
 
     Returns None if the World's map is large enough, or if no larger map would help.
     """
-    if brief.junctions:
-        return map_of_route(brief, world)
     try:
         check_room(normal(brief), world.site.map_size, world.limits.min_radius, world.section.road_width)
         searches = [

@@ -8,6 +8,7 @@ from roadgpt.brief.beside import surface_remark
 from roadgpt.brief.model import Brief
 from roadgpt.design.map_search import room_for_map
 from roadgpt.design.road_search import sufficient_map
+from roadgpt.design.route_room import room_for_route
 from roadgpt.road import World
 
 
@@ -21,7 +22,10 @@ def world_for(brief: Brief | None, world: World) -> World:
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
-    size = sufficient_map(brief, found) if brief.map is None else room_for_map(brief, found)
+    if brief.junctions:
+        size = room_for_route(brief, found)
+    else:
+        size = sufficient_map(brief, found) if brief.map is None else room_for_map(brief, found)
     return found if size is None else found.changed(map_size=size)
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
+from roadgpt.geometry.curve import wrap_angle
 from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
 from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign, PlaceDesign
@@ -24,6 +25,7 @@ from roadgpt.road.road import check_length
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # of an arm that lies opposite another one
+USUALLY_FED = 2  # lanes of a road onto which one turns: all of them are led to from side roads of one lane
 
 
 def build_route(design: NetworkDesign, world: World) -> Route:
@@ -165,7 +167,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     """Returns the cross-section of each arm but that of arrival.
 
     A road that the route does not take has one lane in each direction; but straight ahead, it has as many as
-    the road of arrival, and at a roundabout as many as the ring.
+    the road of arrival, at a roundabout as many as the ring, and opposite a road with more than two lanes on
+    which the route turns, as many as that road: its lanes would lead nowhere, and nothing would lead to them.
 
     Args:
         junction: The junction.
@@ -176,10 +179,29 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     ring = (junction.ring_lanes, junction.ring_lanes)
     counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
     side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
-    return [
+    found = [
         after if n == junction.taken else ahead if side_of(arm.angle) == "straight" else side
         for n, arm in enumerate(junction.all_arms)
     ]
+    opposite = _continuing(junction)
+    if opposite is not None and max(after.count) > USUALLY_FED:
+        out, into = (max(count, 1) for count in after.count[::-1])
+        found[opposite] = Profile.of(out, into, width, shoulder)
+    return found
+
+
+def _continuing(junction: JunctionDesign) -> int | None:
+    """Returns the index of the arm that continues the road onto which the route turns; None if there is none,
+    if it is that of arrival, or at a roundabout.
+    """
+    if junction.taken is None or junction.kind == "roundabout":
+        return None
+    angles = [arm.angle for arm in junction.all_arms]
+    behind = math.radians(angles[junction.taken] + 180)
+    others = {n: abs(wrap_angle(math.radians(angle) - behind)) for n, angle in enumerate(angles)}
+    others.pop(junction.taken)
+    nearest = min(others, key=lambda n: others[n], default=None)
+    return nearest if nearest is not None and others[nearest] < LEAST else None
 
 
 def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int:
