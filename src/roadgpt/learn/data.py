@@ -15,6 +15,7 @@ from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, token
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
+from roadgpt.learn.generated_routes import generated_routes
 from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.mentions import names_in, with_mention, with_talk
@@ -35,17 +36,18 @@ SHARES: Mapping[str, float] = {
 }
 """The share of each series of pairs with which networks learn single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
-    "networks": 0.52,
-    "routes": 0.16,
-    "hand": 0.12,
-    "free": 0.08,
-    "contrasts": 0.04,
-    "generated": 0.02,
+    "networks": 0.42,
+    "generated routes": 0.20,
+    "routes": 0.13,
+    "hand": 0.10,
+    "free": 0.07,
+    "contrasts": 0.03,
+    "generated": 0.01,
     "generated contrasts": 0.02,
-    "generated specs": 0.04,
+    "generated specs": 0.02,
 }
 """The same for the network that learns routes and maps. ``networks`` are hand-written routes with junctions,
-``routes`` are put together of those and of hand-written roads.
+``routes`` are put together of those and of hand-written roads, ``generated routes`` come from grammars.
 """
 NETWORK = "networks/"
 """How the families of the pairs of data/networks begin, once they are read."""
@@ -160,6 +162,7 @@ def _streams(seed: int, hand: Sequence[Pair]) -> dict[str, Iterator[Pair]]:
         "generated contrasts": contrasted(seed),
         "generated changes": changed(seed),
         "generated specs": specified(seed),
+        "generated routes": generated_routes(seed),
     }
     kinds: dict[str, list[Pair]] = {}
     for pair in hand:

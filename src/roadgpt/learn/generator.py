@@ -48,7 +48,7 @@ def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair
     """Yields an endless series of pairs; the same seed gives the same pairs."""
     rng = np.random.default_rng(seed)
     while True:
-        code = _language(languages or SHARES, rng)
+        code = drawn_language(languages or SHARES, rng)
         is_composed = code == "en" and rng.random() < COMPOSED
         pair = _composed(rng) if is_composed else draw(code, rng)
         if pair:
@@ -59,7 +59,7 @@ def contrasted(seed: int) -> Iterator[Pair]:
     """Yields an endless series of descriptions that deny, exchange, limit or compare something."""
     rng = np.random.default_rng([seed, 1])
     while True:
-        pair = draw(_language(EVEN, rng), rng, "contrast", "contrasts")
+        pair = draw(drawn_language(EVEN, rng), rng, "contrast", "contrasts")
         if pair:
             yield pair
 
@@ -69,7 +69,7 @@ def specified(seed: int) -> Iterator[Pair]:
     values that all turns share, and heights."""
     rng = np.random.default_rng([seed, 3])
     while True:
-        pair = draw(_language(EVEN, rng), rng, "specs", "specs")
+        pair = draw(drawn_language(EVEN, rng), rng, "specs", "specs")
         if pair:
             yield sometimes_spoiled(pair, rng)
 
@@ -78,12 +78,13 @@ def changed(seed: int) -> Iterator[Pair]:
     """Yields an endless series of change requests."""
     rng = np.random.default_rng([seed, 2])
     while True:
-        pair = draw_change(_language(EVEN, rng), rng)
+        pair = draw_change(drawn_language(EVEN, rng), rng)
         if pair:
             yield pair
 
 
-def _language(shares: dict[str, float], rng: np.random.Generator) -> str:
+def drawn_language(shares: dict[str, float], rng: np.random.Generator) -> str:
+    """Returns the code of a random language."""
     codes, weights = list(shares), np.cumsum(list(shares.values()))
     return codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
 
@@ -147,14 +148,19 @@ def assembled(raw: str) -> str | None:
     refusal = REFUSAL.search(raw)
     if refusal:
         return refusal[0]
+    brief = read_plan(road_of(raw))
+    return standard(brief) if makes_sense(brief) else None
+
+
+def road_of(raw: str) -> str:
+    """Returns the plan of a road, of which grammar rules wrote the parts in any order."""
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
     clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
     line = "; ".join(part for part in clauses if part)
     wishes = [_placed(wish) for wish in dict.fromkeys(wishes)]
     if line and "turns=1.." in wishes:
         wishes.remove("turns=1..")
-    brief = read_plan(f"{line} | {' '.join(wishes)}" if wishes else line)
-    return standard(brief) if makes_sense(brief) else None
+    return f"{line} | {' '.join(wishes)}" if wishes else line
 
 
 def _placed(wish: str) -> str:

@@ -205,8 +205,8 @@ def grammar_of(language: str, phrases: str = "") -> Grammar:
 
     Args:
         language: code of the language.
-        phrases: empty for descriptions, "contrasts" or "specs" for descriptions with further symbols,
-            "changes" for change requests.
+        phrases: empty for descriptions; "contrasts", "specs" or "networks" for descriptions with further
+            symbols, "changes" for change requests.
 
     Raises:
         LearnError: there are no phrases in this language.
@@ -217,7 +217,10 @@ def grammar_of(language: str, phrases: str = "") -> Grammar:
         if phrases == "changes"
         else [path.name for path in folder.iterdir() if path.name.startswith(language)]
     )
-    names = [*sorted(own), *([f"{phrases}_{language}.txt"] if phrases else [])]
+    further = [
+        path.name for path in folder.iterdir() if phrases and path.name.startswith(f"{phrases}_{language}")
+    ]
+    names = sorted(own) + sorted(further)
     if not names:
         raise LearnError(f"there are no phrases in the language '{language}'; there are: de, en, es, fr, it")
     return read_grammar("\n".join((folder / name).read_text(encoding="utf-8") for name in names), language)
