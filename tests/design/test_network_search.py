@@ -20,7 +20,8 @@ from roadgpt.check import inspect
 from roadgpt.check.measures import measure
 from roadgpt.design import draft, draft_road
 from roadgpt.design.designers.planner import Planner
-from roadgpt.errors import DesignError
+from roadgpt.design.room import world_for
+from roadgpt.errors import BriefError, DesignError
 from roadgpt.export import save
 from roadgpt.network import Junction, NetworkDesign, Route, build_route, read_network_design
 from roadgpt.road import Site, World
@@ -195,6 +196,42 @@ def test_a_design_from_a_plan_is_read_back_as_it_was_written() -> None:
     again, remarks = read_network_design(json.loads(json.dumps(design.to_json())))
     assert again == design
     assert remarks == ()
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("roundabout mini arms=5", "a mini roundabout is too small for 5 arms"),
+        ("star arms=9", "a star junction has 5 to 6 arms, not 9"),
+        ("t_junction left straight", "take"),
+    ],
+)
+def test_what_no_junction_can_be_is_refused_before_anything_is_drawn(line: str, said: str) -> None:
+    with pytest.raises(BriefError, match=said):
+        draft(read_plan(line), USUAL, seed=1)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "| len=120 // t_junction right // | down || len=850",
+        "turn x2 // crossroads right // turn left || len=500",
+    ],
+)
+def test_roads_without_a_length_of_their_own_make_up_the_length_of_the_whole(line: str) -> None:
+    brief = read_plan(line)
+    world = world_for(brief, USUAL)
+    route = drafted(line, 3, world)
+    assert brief.length is not None
+    assert brief.length.lo is not None
+    assert route.length == pytest.approx(brief.length.lo, rel=0.1)
+    assert inspect(route, brief, world) == ()
+
+
+def test_a_wide_road_and_a_narrow_one_keep_apart_by_their_own_widths() -> None:
+    line = "| motorway lanes=4 len=300 // diverge ramp // junction right stop"
+    world = world_for(read_plan(line), USUAL)
+    assert inspect(drafted(line, 1, world), read_plan(line), world) == ()
 
 
 def test_what_finds_no_place_is_refused_with_what_to_do() -> None:

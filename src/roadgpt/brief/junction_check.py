@@ -32,6 +32,7 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
 """The ways on that a kind of junction has; every way on is possible at the others."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
+MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
 CIRCULATORY = 10.0  # m, by which the outer diameter of a roundabout exceeds that of its island, about
 
 
@@ -57,6 +58,11 @@ def check_junction(junction: JunctionClause) -> None:
                 raise BriefError(f"a {name} has no {field}, only a roundabout has; leave it out")
     elif junction.exit is not None:
         _check_exit(junction.exit, arms)
+    if junction.size == "mini" and arms.lo > MOST_ARMS_OF_MINI:
+        raise BriefError(
+            f"a mini roundabout is too small for {junction.arms} arms, it has room for {MOST_ARMS_OF_MINI}; "
+            "ask for a normal one, or for fewer arms"
+        )
     if not _meets(junction.lanes, Range(1, 2)):
         raise BriefError(f"the ring of a roundabout has one or two lanes, not {junction.lanes}; change it")
     if (junction.side or junction.length) and junction.kind not in (*RAMPS, *LANE_KINDS):

@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 
 from roadgpt.brief.amount import span
+from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
 from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, PlainKind, side_of
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
@@ -112,7 +113,8 @@ def _near(angle: float, most: float, rng: Rng) -> float:
 
 def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     """Returns the arms of a star junction or a roundabout, spread around it."""
-    counts = overlap(ARMS[clause.kind], span(clause.arms)) or ARMS[clause.kind]
+    possible = Range(ARMS[clause.kind].lo, MOST_ARMS_OF_MINI) if clause.size == "mini" else ARMS[clause.kind]
+    counts = overlap(possible, span(clause.arms)) or possible
     asked = span(clause.exit)
     fewest = max(counts.lo, min(asked.lo + 1, counts.hi))  # the last exit would lead back
     if clause.kind == "roundabout" and clause.arms is None and clause.take is not None:

@@ -13,6 +13,7 @@ from math import inf
 import numpy as np
 
 from roadgpt.brief.amount import at_least, between, exactly, span
+from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
@@ -72,7 +73,12 @@ class NetworkSearch:
             brief: the requirements, with junctions.
             world: size of the map, and limits that the rules check.
             rng: random number generator.
+
+        Raises:
+            BriefError: a junction cannot meet its requirements.
         """
+        for clause in brief.junctions:
+            check_junction(clause)
         self.brief, self.world, self.rng = brief, world, rng
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
@@ -171,10 +177,12 @@ class NetworkSearch:
     def _stretches(self, junctions: Sequence[PlaceDesign], haste: float) -> list[Draft] | None:
         """Returns a draft of each road between the junctions; None if one of them cannot be drafted.
 
-        The roads of which nothing is required are drafted last: they make up the length of the whole route.
+        The roads of which nothing is required, or else those of which no length is, are drafted last: they
+        make up the length of the whole route.
         """
         briefs = self.brief.stretches
         free = [n for n, brief in enumerate(briefs) if brief.has_free_shape]
+        free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
         found: dict[int, Draft] = {}
         rest = self._rest(junctions)
         for n in sorted(range(len(briefs)), key=lambda n: (n in free, n)):
@@ -236,7 +244,7 @@ class NetworkSearch:
         if length is not None:
             if length < SHORTEST:
                 return None
-            wanted = Brief(length=between(0.97 * length, 1.03 * length))
+            wanted = brief.model_copy(update={"length": between(0.97 * length, 1.03 * length)})
         elif brief.has_free_shape:
             wanted = self._open(haste, shortest, is_straight=brief.motorway)
         elif brief.length is None and not brief.clauses and brief.turns is None:
@@ -288,11 +296,11 @@ class NetworkSearch:
         lines = [drafted.line for _, drafted in drafts]
         profiles = self._profiles(junctions, [float(line.s[-1]) for line in lines])
         sketch = sketched(lines, junctions, profiles)
-        reach = max(profile.reach for profile in profiles)
-        if not is_clear(sketch, reach):
+        if not is_clear(sketch):
             self.failed[OVERLAPS] += 1
             return None
-        pose = place(PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z), self.world, self.rng, reach)
+        line = PlanLine(np.arange(len(sketch.z), dtype=float), sketch.z)
+        pose = place(line, self.world, self.rng, float(sketch.reach.max()))
         if pose is None:
             self.failed[TOO_LARGE] += 1
         return pose

@@ -40,6 +40,8 @@ class NetworkSketch(NamedTuple):
     joined: NDArray[np.bool_]
     """Shape (parts, parts): whether two parts are roads that continue each other or meet at a small angle, so
     that they may be near each other anywhere."""
+    reach: NDArray[np.float64]
+    """The distance in metres from each point to the outer edge of the shoulder of its road, ``(n,)``."""
     nodes: tuple[tuple[complex, float], ...]
     """The node of each junction, and the distance from it within which its arms may be near each other."""
 
@@ -54,49 +56,53 @@ def sketched(
         places: these places.
         profiles: the cross-section of each road.
     """
-    pen = _Pen(lines[0])
+    pen = _Pen(lines[0], profiles[0].reach)
     for number, (place, line) in enumerate(zip(places, lines[1:], strict=True)):
+        around = profiles[number], profiles[number + 1]
         if isinstance(place, JunctionDesign):
-            pen.pass_junction(place, line, (profiles[number], profiles[number + 1]))
+            pen.pass_junction(place, line, around)
         elif isinstance(place, RampDesign):
-            pen.pass_ramp(place, line)
+            pen.pass_ramp(place, line, around)
         else:
-            pen.go_on(line)
+            pen.go_on(line, around[1].reach)
     near, joined = (np.eye(len(pen.parts), dtype=bool) for _ in range(2))
     for pairs, table in ((pen.pairs, near), (pen.joined, joined)):
         for a, b in pairs:
             table[a, b] = table[b, a] = True
     numbers = np.repeat(np.arange(len(pen.parts)), [len(z) for z in pen.parts])
-    return NetworkSketch(np.concatenate(pen.parts), numbers, near | joined, joined, tuple(pen.nodes))
+    reach = np.array(pen.reaches)[numbers]
+    return NetworkSketch(np.concatenate(pen.parts), numbers, near | joined, joined, reach, tuple(pen.nodes))
 
 
 class _Pen:
     """Draws the parts of a sketch one after another, in driving order."""
 
-    def __init__(self, line: PlanLine) -> None:
+    def __init__(self, line: PlanLine, reach: float) -> None:
         self.parts: list[Complex] = [_thinned(line.z)]
+        self.reaches = [reach]
         self.pairs: list[tuple[int, int]] = []
         self.joined: list[tuple[int, int]] = []
         self.nodes: list[tuple[complex, float]] = []
         self._arrival, self._end, self._way = 0, complex(line.z[-1]), _way(line.z)
 
-    def go_on(self, line: PlanLine) -> None:
+    def go_on(self, line: PlanLine, reach: float) -> None:
         """Draws a road that continues the one on which the route has arrived."""
         before, way = self._arrival, self._way
-        self._arrival = self._drawn(self._end + way * _thinned(line.z))
+        self._arrival = self._drawn(self._end + way * _thinned(line.z), reach)
         self._end, self._way = self._end + way * complex(line.z[-1]), way * _way(line.z)
         self.joined.append((before, self._arrival))
 
-    def pass_ramp(self, ramp: RampDesign, line: PlanLine) -> None:
+    def pass_ramp(self, ramp: RampDesign, line: PlanLine, profiles: tuple[Profile, Profile]) -> None:
         """Draws a merge or an exit, the road that the route does not take, and that on which it goes on."""
         first = self._arrival
         on_route, beside = lines_at_ramp(ramp)
         at, way = self._end, self._way
-        parts = [self._drawn(at + way * np.array(each)) for each in (on_route, beside)]
+        widest = max(profile.reach for profile in profiles)
+        parts = [self._drawn(at + way * np.array(each), widest) for each in (on_route, beside)]
         self._arrival, self._end = parts[0], at + way * on_route[-1]
         self._way = way * (on_route[-1] - on_route[-2]) / abs(on_route[-1] - on_route[-2])
         here = [first, *parts]
-        self.go_on(line)
+        self.go_on(line, profiles[1].reach)
         here.append(self._arrival)
         self.joined += [(a, b) for a in here for b in here]
 
@@ -114,22 +120,25 @@ class _Pen:
             around = np.exp(1j * np.linspace(0, 2 * pi, POINTS, endpoint=False))
             here.append(
                 self._drawn(
-                    node + (junction.radius + ring_width(junction.radius, junction.ring_lanes) / 2) * around
+                    node + (junction.radius + ring_width(junction.radius, junction.ring_lanes) / 2) * around,
+                    max(arm.reach for arm in arms),
                 )
             )
         for n, arm in enumerate(junction.all_arms):
             out = way * cmath.exp(1j * radians(arm.angle))
             start = node + out * far[n + 1]
             if n == junction.taken:
-                self._arrival = self._drawn(start + out * _thinned(line.z))
+                self._arrival = self._drawn(start + out * _thinned(line.z), profiles[1].reach)
                 self._end, self._way = start + out * complex(line.z[-1]), out * _way(line.z)
                 here.append(self._arrival)
             else:
-                here.append(self._drawn(start + out * np.arange(0.0, arm.length or STUB, STEP)))
+                stub = start + out * np.arange(0.0, arm.length or STUB, STEP)
+                here.append(self._drawn(stub, arms[n + 1].reach))
         self.pairs += [(a, b) for a in here for b in here]
 
-    def _drawn(self, z: NDArray[Any]) -> int:
+    def _drawn(self, z: NDArray[Any], reach: float) -> int:
         self.parts.append(z)
+        self.reaches.append(reach)
         return len(self.parts) - 1
 
 
@@ -143,22 +152,16 @@ def _way(z: Complex) -> complex:
     return step / abs(step)
 
 
-def is_clear(sketch: NetworkSketch, reach: float) -> bool:
-    """Returns whether roads and junctions that do not meet keep their distance.
-
-    Args:
-        sketch: the sketch.
-        reach: distance in metres from the reference line of a road to the outer edge of its shoulder.
-    """
-    apart = 2 * reach + MARGIN
-    z, part = sketch.z, sketch.part
-    of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < apart, 1))
+def is_clear(sketch: NetworkSketch) -> bool:
+    """Returns whether roads and junctions that do not meet keep their distance."""
+    z, part, reach = sketch.z, sketch.part, sketch.reach
+    of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < reach[:, None] + reach + MARGIN, 1))
     apart_from = ~sketch.joined[part[of], part[others]]
     of, others = of[apart_from], others[apart_from]
     meet = sketch.near[part[of], part[others]]
     if not meet.all():
         return False
-    for node, reach in sketch.nodes:
-        inside = (np.abs(z[of] - node) < reach) & (np.abs(z[others] - node) < reach)
+    for node, away in sketch.nodes:
+        inside = (np.abs(z[of] - node) < away) & (np.abs(z[others] - node) < away)
         of, others = of[~inside], others[~inside]
     return not len(of)
