@@ -55,6 +55,8 @@ def rows(tree: ET.Element, is_mirrored: bool) -> list[tuple[str, ...]]:
                 values.pop("signalId", None)
             if element.tag == "road":
                 assert values.pop("rule") == ("LHT" if is_mirrored else "RHT")
+            if is_mirrored and values.get("name") == "arrow":
+                values["subtype"] = in_a_mirror(values["subtype"])
             for name in FLIPPED.get(element.tag, ()) if is_mirrored else ():
                 if name in values:
                     values[name] = repr(0.0 - float(values[name]))
@@ -62,6 +64,13 @@ def rows(tree: ET.Element, is_mirrored: bool) -> list[tuple[str, ...]]:
                 (top.tag, top.attrib["id"], element.tag, *map(str, sorted(map(plain, values.items()))))
             )
     return sorted(found)
+
+
+def in_a_mirror(subtype: str) -> str:
+    """The name of an arrow with left and right exchanged; the left one is always named first."""
+    if "Left" in subtype and "Right" in subtype:
+        return subtype
+    return subtype.replace("Left", "?").replace("Right", "Left").replace("?", "Right")
 
 
 def plain(item: tuple[str, str]) -> tuple[str, object]:

@@ -8,9 +8,11 @@ import pytest
 import shapely
 
 from export.test_opendrive_networks import WORLD, WrittenMap, boundary_of, check_signs, turned
+from network.changing import design
 from network.random_designs import random_lanes_design
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Junction, Route, build_route, read_network_design
+from roadgpt.network.arrows import arrows
 from roadgpt.network.paved import paved_by
 
 SEEDS = range(25)
@@ -120,3 +122,68 @@ def test_lanes_lead_through_junctions_without_a_step(seed: int) -> None:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_signs_and_lines_stand_where_traffic_comes_to_the_junction(seed: int) -> None:
     check_signs(written(seed), route_of(seed).network)
+
+
+def ways_of(here: WrittenMap, road: str, lane: str, ramps: set[str]) -> str:
+    """The ways on from a lane, as the name of an arrow tells them: by the headings of connecting roads."""
+    found = set()
+    for connection, way in here.ways():
+        if connection.attrib["incomingRoad"] == road and lane in {
+            link.attrib["from"] for link in connection.iter("laneLink")
+        }:
+            turn = math.degrees(turned(way.pose(way.length)[2] - way.pose(0.0)[2]))
+            straight = 2 if way.junction in ramps else 25  # degrees
+            found.add("Left" if turn > straight else "Right" if turn < -straight else "Straight")
+    return "arrow" + "".join(way for way in ("Straight", "Left", "Right") if way in found)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_arrows_lie_in_the_middle_of_lanes_and_show_the_ways_on(seed: int) -> None:
+    here = written(seed)
+    ramps = {str(each.id) for each in route_of(seed).network.junctions if each.kind == "diverge"}
+    count = 0
+    for road in here.roads.values():
+        for each in road.element.iter("object"):
+            if each.attrib["name"] != "arrow":
+                continue
+            count += 1
+            (validity,) = each.findall("validity")
+            lane = int(validity.attrib["fromLane"])
+            assert validity.attrib["toLane"] == str(lane)
+            contact = "end" if each.attrib["orientation"] == "+" else "start"
+            assert lane in road.into(contact)
+            assert float(each.attrib["hdg"]) == pytest.approx(0.0 if contact == "end" else math.pi)
+            s, t = float(each.attrib["s"]), float(each.attrib["t"])
+            edges = road.border(lane, s), road.border(lane - (1 if lane > 0 else -1), s)
+            assert t == pytest.approx(sum(edges) / 2)
+            assert float(each.attrib["width"]) < abs(edges[1] - edges[0])
+            assert abs(s - road.end(contact)) - float(each.attrib["length"]) / 2 > 10.0
+            assert (each.attrib["type"], each.attrib["subtype"]) == (
+                "roadMark",
+                ways_of(here, road.id, str(lane), ramps),
+            )
+    assert count == len(arrows(route_of(seed).network))
+    check_ids(here)
+
+
+def test_crosswalks_and_arrows_have_ids_of_their_own() -> None:
+    data = design(60.0, {"kind": "crossroads", "take": "left", "control": "lights", "crosswalk": True}, 60.0)
+    data["lanes"] = {"forward": 2, "backward": 2, "width": 3.5}
+    here = WrittenMap(document(build_route(read_network_design(data)[0], WORLD), WORLD).to_text())
+    names = [each.attrib["name"] for each in here.root.iter("object")]
+    assert names.count("crosswalk") == 4
+    assert names.count("arrow") >= 4
+    check_ids(here)
+
+
+def check_ids(here: WrittenMap) -> None:
+    """No two roads, junctions, signs, lights or objects have the same id, but a sign and its line."""
+    signs = [each.attrib["id"] for each in here.root.iter("signal")]
+    tags = ("road", "junction", "object")
+    ids = [
+        each.attrib["id"]
+        for tag in tags
+        for each in here.root.iter(tag)
+        if each.get("subtype") != "signalLines"
+    ]
+    assert len({*signs, *ids}) == len(signs) + len(ids)

@@ -258,7 +258,7 @@ def check_signs(here: WrittenMap, network: Network) -> None:
             assert float(line["t"]) == pytest.approx(sum(edges) / 2)
             assert float(line["width"]) == pytest.approx(abs(edges[1] - edges[0]))
             assert abs(at - road.end(contact)) == pytest.approx(float(line["length"]) / 2)
-        assert not objects
+        assert {each.get("name") for each in objects.values()} <= {"arrow"}  # these have a test of their own
     assert found == wanted
 
 

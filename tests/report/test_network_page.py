@@ -11,6 +11,7 @@ from tests import chromium
 from tests.report.test_networks import TWO
 
 from roadgpt.network import Route, made_from, read_network_design
+from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import strokes
 from roadgpt.report import view
 from roadgpt.road import CrossSection, Design, Segment, World
@@ -72,6 +73,22 @@ def test_every_line_and_every_sign_is_on_the_page(run: Run, route: Route) -> Non
     lights = [face for face in network["signs"] if face["colour"] == "#2e9a4b"]
     assert not lights
     assert [each["name"] for each in network["stretches"]] == ["crossroads", "roundabout"]
+
+
+def test_every_arrow_is_on_the_page_with_triangles_seen_from_above() -> None:
+    data = {**TWO, "lanes": {"forward": 2, "backward": 2, "width": 3.5}}
+    data["junction2"] = {**TWO["junction2"], "ring_lanes": 2}
+    run = prove(made_from(read_network_design(data)[0], World()), setup=Setup(drives=False))
+    assert isinstance(run.road, Route)
+    told, painted = view.scene(run)["network"]["arrows"], arrows(run.road.network)
+    assert len(told) == len(painted) > 2
+    for each, arrow in zip(told, painted, strict=True):
+        points = np.reshape(each["points"], (-1, 3))
+        np.testing.assert_allclose(points, arrow.points, atol=1e-3)
+        flat = polygons({**each, "points": points[:, :2].reshape(-1)})
+        assert all(polygon.exterior.is_ccw for polygon in flat)
+        outline = shapely.Polygon(arrow.points[:, :2])
+        assert sum(polygon.area for polygon in flat) == pytest.approx(outline.area, abs=0.02)
 
 
 def test_a_floating_network_has_no_ground(route: Route) -> None:

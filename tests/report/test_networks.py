@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
+from roadgpt.network.arrows import arrows
 from roadgpt.report import birds_eye, draw, height_profile, strip
 from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
@@ -207,3 +208,17 @@ def test_the_place_of_a_failure_shows_the_junction_around_it(driven: Run, route:
     assert shapely.symmetric_difference(drawn, route.network.paved).intersection(box).area < 0.01
     assert site.lines
     assert 'fill-rule="evenodd"' in draw_site(site, "a junction")
+
+
+def test_arrows_before_a_junction_are_drawn() -> None:
+    data = {**TWO, "lanes": {"forward": 2, "backward": 2, "width": 3.5}}
+    data["junction2"] = {**TWO["junction2"], "ring_lanes": 2}
+    found = made_from(read_network_design(data)[0], World())
+    assert isinstance(found, Route)
+    picture = birds_eye(prove(found, setup=Setup(drives=False)))
+    outer = next(each for each in arrows(found.network) if each.end.road == 1 and each.lane == -2)
+    head = outer.points[np.argsort(outer.points[:, 0])[-8:]].mean(axis=0)
+    assert near(seen(picture, head[None, :2]), PAINT, 40).all()
+    site = site_of(found, World(), None, 60.0)
+    assert any(np.array_equal(each, outer.points[:, :2]) for each in site.arrows)
+    assert f"{len(site.arrows)}" == f"{draw_site(site, 'arrows').count('<polygon')}"

@@ -7,13 +7,13 @@ import pytest
 import shapely
 
 from roadgpt.network import Route, made_from, read_any_design
+from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import signs, strokes
 from roadgpt.road import CrossSection, World
 from roadgpt.scene import Camera, CameraPlacement, Pose, Scene
 from roadgpt.scene.junction_signs import faces_of
 
 HIGH = 40.0  # m, of a camera that looks down
-CAMERA = Camera(400, 400, math.radians(70), "above", CameraPlacement(0.0, HIGH, -math.pi / 2))
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
 
 
@@ -45,11 +45,17 @@ def network_of(scene: Scene) -> Route:
     return scene.road
 
 
-def seen(scene: Scene, middle: tuple[float, float, float], places: np.ndarray) -> np.ndarray:
+def camera(high: float = HIGH) -> Camera:
+    return Camera(400, 400, math.radians(70), "above", CameraPlacement(0.0, high, -math.pi / 2))
+
+
+def seen(
+    scene: Scene, middle: tuple[float, float, float], places: np.ndarray, high: float = HIGH
+) -> np.ndarray:
     """The colours ``(n, 3)`` of places ``(n, 2)`` from above a point; north is on the left."""
     x, y, z = middle
-    picture = scene.render(CAMERA, Pose(x, y, z + 0.56, 0.0)).astype(int)
-    per_metre = 200 / math.tan(math.radians(35)) / HIGH
+    picture = scene.render(camera(high), Pose(x, y, z + 0.56, 0.0)).astype(int)
+    per_metre = 200 / math.tan(math.radians(35)) / high
     columns = 200 - (places[:, 1] - y) * per_metre
     rows = 200 - (places[:, 0] - x) * per_metre
     return picture[rows.astype(int), columns.astype(int)]
@@ -157,3 +163,23 @@ def test_the_route_begins_with_a_white_line_and_ends_with_a_chequered_band(cross
     band = seen(crossing, tuple(end), route.at(np.full(60, route.length - 0.25), across)[:, :2])
     assert 0.3 < is_white(band).mean() < 0.7
     assert (band.max(axis=1) < 80).mean() > 0.3
+
+
+def test_arrows_are_white_and_the_asphalt_beside_them_is_not() -> None:
+    data = {
+        "starting_point": [40, 60, 2],
+        "theta": 0,
+        "lanes": {"forward": 2, "backward": 2, "width": 3.5},
+        "road_segment1": STRAIGHT,
+        "junction1": {"after": 1, "kind": "crossroads", "take": "left"},
+        "road_segment2": STRAIGHT,
+    }
+    route = made_from(read_any_design(data)[0], World())
+    assert isinstance(route, Route)
+    found = [shapely.Polygon(each.points[:, :2]) for each in arrows(route.network) if each.end.road == 1]
+    assert len(found) == 2
+    scene, place = Scene.of(route, World()), (87.0, 57.0, 2.0)
+    for outline in found:
+        assert is_white(seen(scene, place, inner(outline.buffer(-0.04), 0.02), 6.0)).all()
+        ring = shapely.difference(outline.buffer(0.2), outline.buffer(0.05))
+        assert is_grey(seen(scene, place, inner(ring, 0.05), 6.0)).all()

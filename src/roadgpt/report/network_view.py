@@ -9,6 +9,7 @@ from matplotlib.path import Path
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
+from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import JunctionSign, signs, strokes
 from roadgpt.network.polygon import Area
@@ -55,6 +56,8 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
             axes.add_collection(
                 LineCollection(lines, colors=PAINT, linewidths=points, zorder=3, capstyle="butt")
             )
+    outlines = [each.points[:, :2] for each in arrows(network)]
+    axes.add_collection(PolyCollection(outlines, facecolors=PAINT, edgecolors="none", zorder=3))
     if per_inch <= NEAR:
         for sign in signs(network):
             _draw_sign(axes, sign)

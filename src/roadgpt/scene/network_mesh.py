@@ -14,6 +14,7 @@ import numpy as np
 from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.network import NetworkRoad, Route
+from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
@@ -99,6 +100,10 @@ def network_patches(
             out.append(_kerb_line(stroke.points, axis.kerb))
         elif stroke.kind in ("stop", "give_way", "crosswalk") or stroke.road in route.network.roundabout_of:
             out.append(_painted(stroke.points, stroke.width))
+    for arrow in arrows(route.network):
+        values = attributes(0.0, 0.0, np.full(len(arrow.points), level_light()))
+        kinds = np.full(len(arrow.corners), WHITE, np.int64)
+        out.append(Patch(arrow.points + [0.0, 0.0, LIFT], values, arrow.corners, kinds))
     out += _start_and_goal(route)
     for sign in signs(route.network):
         out += [_flat(face.points, COLOURS[face.colour]) for face in faces_of(sign)]

@@ -1,5 +1,6 @@
 """Draws the place of one failure from above: road, lane, driven path, and the car at the failure."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
+from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import strokes
 from roadgpt.report.page.svg import chart, line, number, tag, words
 from roadgpt.road import Road, World
@@ -41,6 +43,8 @@ class FailureSite:
     rings: tuple[Array, ...] = ()
     """The outlines of the paved area of a network, and of the holes in it; ``left`` and ``right`` are empty
     then."""
+    arrows: tuple[Array, ...] = ()
+    """The outlines of the arrows that are painted before the junctions of a network."""
 
 
 def site_of(road: Road, world: World, drive: Drive | None, station: float) -> FailureSite:
@@ -49,7 +53,8 @@ def site_of(road: Road, world: World, drive: Drive | None, station: float) -> Fa
     if isinstance(road, Route):
         none = np.empty((0, 2))
         rings, lines = _network_around(road, at)
-        return FailureSite(none, lines, none, path, car, at, heading, rings)
+        painted = tuple(arrow.points[:, :2] for arrow in arrows(road.network))
+        return FailureSite(none, lines, none, path, car, at, heading, rings, _near(painted, at))
     s = np.arange(max(0.0, station - REACH), min(road.length, station + REACH) + 0.5)
     profile = world.profile_of(road)
     (_, left), *inner, (_, right) = [(mark, road.at(s, t)[:, :2]) for mark, t in profile.boundaries(s)]
@@ -81,10 +86,14 @@ def _network_around(route: Route, at: Array) -> tuple[tuple[Array, ...], tuple[t
     parts = shapely.get_parts(shapely.intersection(route.network.paved, box))
     rings = [ring for part in parts for ring in (part.exterior, *part.interiors)]
     lines = [stroke.points[:, :2] for stroke in strokes(route.network)]
-    near = [line for line in lines if np.abs(line - at).max(axis=1).min() < ACROSS]
     return tuple(np.asarray(ring.coords, float)[:, :2] for ring in rings), tuple(
-        (line, False) for line in near
+        (line, False) for line in _near(lines, at)
     )
+
+
+def _near(lines: Sequence[Array], at: Array) -> tuple[Array, ...]:
+    """Returns the lines ``(n, 2)`` that come near a place."""
+    return tuple(line for line in lines if np.abs(line - at).max(axis=1).min() < ACROSS)
 
 
 def _step(drive: Drive, station: float) -> int:
@@ -115,6 +124,7 @@ def draw_site(of: FailureSite, label: str) -> str:
             _line(placed(each), "var(--edge)", 1.2, **({"stroke_dasharray": "9 7"} if is_broken else {}))
             for each, is_broken in of.lines
         ),
+        *(tag("polygon", points=_points(placed(each)), fill="var(--edge)") for each in of.arrows),
     ]
     if len(of.path):
         out.append(_line(placed(of.path), "var(--s0)", 2.4))

@@ -6,6 +6,7 @@ import numpy as np
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
+from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import PaintedStroke, signs, strokes
 from roadgpt.network.polygon import Area
@@ -48,6 +49,10 @@ def network_values(route: Route) -> dict[str, Any]:
         "strokes": [
             {"kind": stroke.kind, "width": stroke.width, "points": _points(_simple(stroke))}
             for stroke in strokes(network)
+        ],
+        "arrows": [
+            {"points": _points(arrow.points), "corners": arrow.corners.reshape(-1).tolist()}
+            for arrow in arrows(network)
         ],
         "signs": [
             {"colour": SIGNS[face.colour], "points": _points(face.points)}

@@ -1,4 +1,4 @@
-"""Writes the signs and lights of junctions, with their stop lines.
+"""Writes the signs and lights of junctions, with their stop lines, crosswalks and arrows.
 
 Source: ASAM OpenDRIVE 1.8.1, signals; its catalogue of signals gives type 1000001 for traffic lights. Signs
 are those of the German road traffic regulations (StVO): 205 give way, 206 stop, 306 priority road.
@@ -7,8 +7,10 @@ are those of the German road traffic regulations (StVO): 205 give way, 206 stop,
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from roadgpt.export.exporters.opendrive.arrows import arrow_object
 from roadgpt.export.markup import XmlElement
-from roadgpt.network import Arm, Network
+from roadgpt.network import Arm, Network, RoadEnd
+from roadgpt.network.arrows import PaintedArrow, arrows
 from roadgpt.network.building import width_at
 from roadgpt.network.markings import place_of_sign
 from roadgpt.network.passages import CROSSWALK, STOP_LINE, line_before
@@ -43,6 +45,8 @@ class Signals:
     them: tuple[_Signal, ...]
     first_free: int
     """The first id behind those of all signals."""
+    arrows: tuple[PaintedArrow, ...]
+    """The arrows before all junctions."""
 
     @classmethod
     def of(cls, network: Network) -> "Signals":
@@ -55,12 +59,13 @@ class Signals:
         ]
         first = 1 + max([*(each.id for each in network.roads), *(each.id for each in network.junctions)])
         them = tuple(_Signal(first + n, junction, arm) for n, (junction, arm) in enumerate(arms))
-        return cls(network, them, first + len(arms))
+        return cls(network, them, first + len(arms), arrows(network))
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
         """Yields the elements ``objects`` and ``signals`` of a road; nothing if it has none."""
         own = [signal for signal in self.them if signal.arm.end.road == road]
         lines = [*(line for signal in own for line in self._line(signal)), *self._crosswalks(road)]
+        lines += self._arrows(road)
         if lines:
             yield XmlElement("objects").extended(*lines)
         if own:
@@ -113,9 +118,8 @@ class Signals:
 
     def _crosswalks(self, road: int) -> Iterator[XmlElement]:
         """Yields the crosswalks of a road; their ids follow those of the signals."""
-        junctions, member = self.network.junctions, self.network.road(road)
-        ends = [arm.end for junction in junctions for arm in junction.arms if arm.crosswalk]
-        for number, end in enumerate(ends):
+        member = self.network.road(road)
+        for number, end in enumerate(self._crossed):
             if end.road != road:
                 continue
             away = min(CROSSWALK[0] + CROSSWALK[1] / 2, member.road.length)
@@ -138,6 +142,19 @@ class Signals:
                     "dynamic": "no",
                 },
             )
+
+    @property
+    def _crossed(self) -> list[RoadEnd]:
+        """The ends of roads that have a crosswalk."""
+        arms = [arm for junction in self.network.junctions for arm in junction.arms]
+        return [arm.end for arm in arms if arm.crosswalk]
+
+    def _arrows(self, road: int) -> Iterator[XmlElement]:
+        """Yields the arrows on a road; their ids follow those of the crosswalks."""
+        first = self.first_free + len(self._crossed)
+        for number, arrow in enumerate(self.arrows):
+            if arrow.end.road == road:
+                yield arrow_object(arrow, first + number)
 
     def _line(self, signal: _Signal) -> Iterator[XmlElement]:
         """Yields the stop line or give-way line of an arm; nothing for a road with priority."""

@@ -76,6 +76,11 @@ function networkMarkings(scene, origin) {
     )));
     for (let i = 1; i < line.length; i++) lines.quad(sides[1][i - 1], sides[1][i], sides[0][i], sides[0][i - 1]);
   }
+  for (const { points, corners } of scene.network.arrows) {
+    const first = lines.count;
+    inGroups(points, 3).forEach(([x, y, z]) => lines.point(x, y, z + 0.015, paint));
+    corners.forEach((corner) => lines.corners.push(first + corner));
+  }
   const tint = new Shape3(origin);
   const { bounds, driven } = scene.road.lanes;
   band(tint, scene.road, scene.road.s, [bounds[driven].t, 0.006], [bounds[driven + 1].t, 0.006], colourOf(ON_ROUTE));
@@ -128,4 +133,5 @@ function paintNetwork(pen, { network, road }, px, py, scale) {
     inGroups(points, 3).forEach(([x, y], i) => (i ? pen.lineTo(px(x), py(y)) : pen.moveTo(px(x), py(y))));
     pen.stroke();
   }
+  areas(network.arrows.map(({ points }) => inGroups(points, 3).flatMap(([x, y]) => [x, y])), "#fff");
 }
