@@ -165,6 +165,51 @@ def test_the_route_begins_with_a_white_line_and_ends_with_a_chequered_band(cross
     assert (band.max(axis=1) < 80).mean() > 0.3
 
 
+@pytest.mark.parametrize(
+    ("lanes", "solid", "broken"),
+    [
+        ({"forward": 2, "backward": 2, "centre": "broken"}, [], [-3.5, 0.0, 3.5]),
+        ({"forward": 2, "backward": 2}, [0.0], [-3.5, 3.5]),
+        ({"forward": 2, "backward": 1, "centre": "solid"}, [0.0], [-3.5]),
+        ({"forward": 3, "backward": 0}, [], [-3.5, -7.0]),
+        ({"forward": 1, "backward": 1, "centre": "none"}, [], []),
+    ],
+)
+def test_lines_between_lanes_lie_where_lanes_meet(
+    lanes: dict[str, object], solid: list[float], broken: list[float]
+) -> None:
+    data = {
+        "starting_point": [40, 60, 2],
+        "theta": 0,
+        "lanes": {"width": 3.5, **lanes},
+        "road_segment1": STRAIGHT,
+        "junction1": {"after": 1, "kind": "crossroads", "take": "straight"},
+        "road_segment2": STRAIGHT,
+    }
+    route = made_from(read_any_design(data)[0], World())
+    assert isinstance(route, Route)
+    scene = Scene.of(route, World())
+    x = np.arange(50.0, 66.0, 0.05)
+
+    def white(t: float) -> float:
+        pixels = seen(scene, (58.0, 60.0, 2.0), np.column_stack([x, np.full_like(x, 60.0 + t)]), 14.0)
+        return float(is_white(pixels).mean())
+
+    for t in solid:
+        assert white(t) > 0.95
+    for t in broken:
+        assert 0.15 < white(t) < 0.6
+    unpainted = {-1.75, 1.75 if lanes["backward"] else -5.25, *({0.0, -3.5, 3.5} - {*solid, *broken})}
+    inside = [
+        t
+        for t in unpainted
+        if -3.5 * int(str(lanes["forward"])) + 0.5 < t < 3.5 * int(str(lanes["backward"])) - 0.5
+    ]
+    assert inside
+    for t in inside:
+        assert white(t) < 0.02
+
+
 def test_arrows_are_white_and_the_asphalt_beside_them_is_not() -> None:
     data = {
         "starting_point": [40, 60, 2],

@@ -33,6 +33,7 @@ FAR = 1e4  # m, of boundaries that nothing comes near
 BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
 LIFT = 0.006  # m by which lines lie above the road
 KERB = 0.12  # m, height of a traffic island
+LEAST_OFFSET = 1e-6  # m
 CHECKS = 8  # squares across the lane at the end of the route
 COLOURS: dict[SignColour, int] = {
     "grey": RIM, "white": WHITE, "red": RED, "yellow": YELLOW, "green": GREEN, "black": BLACK,
@@ -79,9 +80,21 @@ class StationAxis:
 
 
 def _three(member: NetworkRoad, s: Array) -> Array:
-    """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge."""
+    """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge.
+
+    The lines within a carriageway with other lanes are drawn apart; its centre line is the left edge.
+    """
     found = [t for _, t in member.profile.boundaries(s)]
-    return np.stack([found[0], np.zeros_like(s), found[-1]], axis=1)
+    centre = np.zeros_like(s) if _has_broken_line_only(member) else found[0]
+    return np.stack([found[0], centre, found[-1]], axis=1)
+
+
+def _has_broken_line_only(member: NetworkRoad) -> bool:
+    """Returns whether the only line within the carriageway is a broken one along the reference line."""
+    profile = member.profile
+    inner = profile.markings(np.zeros(1))[1:-1]
+    middle = [float(line.edges.left[0] + line.edges.right[0]) for line in inner]
+    return [line.marking for line in inner] == ["broken"] and abs(middle[0]) < LEAST_OFFSET
 
 
 def network_patches(
@@ -95,10 +108,13 @@ def network_patches(
         out += _junction(area, axis)
         if parts.shoulder > 0:
             out += _banks(area, terrain)
+    drawn_apart = {each.id for each in parts.roads if not _has_broken_line_only(each)}
     for stroke in strokes(route.network):
         if stroke.kind == "edge" and stroke.road is None:
             out.append(_kerb_line(stroke.points, axis.kerb))
-        elif stroke.kind in ("stop", "give_way", "crosswalk") or stroke.road in route.network.roundabout_of:
+        elif stroke.kind in ("stop", "give_way", "crosswalk") or (
+            stroke.kind == "lane" and stroke.road in drawn_apart
+        ):
             out.append(_painted(stroke.points, stroke.width))
     for arrow in arrows(route.network):
         values = attributes(0.0, 0.0, np.full(len(arrow.points), level_light()))
