@@ -37,7 +37,6 @@ def counted(folder: Path) -> dict[str, str]:
 
 
 ENDS = {
-    "enough": ("pass", "done", "finished by itself"),
     "raises": ("raise KeyError('lane')", "raised", r"KeyError \(.*misbehaves.py, line \d+\): 'lane'"),
     "exits": ("sys.exit(3)", "exit", r"sys.exit\(3\)"),
     "leaves": ("os._exit(9)", "died", "exit status 9"),
@@ -49,11 +48,11 @@ ENDS = {
         "raised",
         "ValueError.*noise",
     ),
-    "closed": ("os.close(0); os.close(1); os.close(2)", "done", "finished by itself"),
-    "thread": ("threading.Thread(target=time.sleep, args=(600,)).start()", "done", "finished by itself"),
-    "assertion": ("RoadTestFactory.create_road_test([(1, 2, 3), (4, 5, 6)])", "raised", "AssertionError"),
-    "double point": ("RoadTestFactory.create_road_test([(50, 50), (50, 50)])", "raised", "ValueError"),
-    "too long": ("RoadTestFactory.create_road_test([(0, 0), (1e9, 0)])", "raised", "ValueError"),
+    "closed, but for a thread": (
+        "os.close(0); os.close(1); os.close(2)\nthreading.Thread(target=time.sleep, args=(600,)).start()",
+        "done",
+        "finished by itself",
+    ),
 }
 if POSIX:
     ENDS["crash"] = ("os.kill(os.getpid(), signal.SIGSEGV)", "died", "signal 11")
@@ -73,9 +72,8 @@ def test_however_a_generator_ends_its_tests_are_kept(name: str, tmp_path: Path) 
     assert json.loads((tmp_path / "out" / "campaign.json").read_text())["is_finished"]
 
 
-@pytest.mark.parametrize("does", ["while True: pass", "time.sleep(600)"])
-def test_one_that_hangs_is_stopped(does: str, tmp_path: Path) -> None:
-    write(tmp_path, does)
+def test_one_that_hangs_is_stopped(tmp_path: Path) -> None:
+    write(tmp_path, "while True: pass")
     begun = time.monotonic()
     work, runs = let_loose(tmp_path, patience=5)
     assert time.monotonic() - begun < 120
@@ -123,7 +121,14 @@ def test_garbage_is_an_invalid_test(tmp_path: Path) -> None:
         "assert self.executor.execute_test(test)[:2] == "
         "('INVALID', 'The road definition contains too many points')\n"
         "assert (test.is_valid, test.validation_message) == "
-        "(False, 'The road definition contains too many points')",
+        "(False, 'The road definition contains too many points')\n"
+        "refused = []\n"
+        "for points in [(1, 2, 3), (4, 5, 6)], [(50, 50), (50, 50)], [(0, 0), (1e9, 0)]:\n"
+        "    try:\n"
+        "        RoadTestFactory.create_road_test(points)\n"
+        "    except (AssertionError, ValueError) as error:\n"
+        "        refused.append(type(error).__name__)\n"
+        "assert refused == ['AssertionError', 'ValueError', 'ValueError'], refused",
     )
     work, runs = let_loose(tmp_path, tests=20)
     assert work.ending is not None
@@ -156,7 +161,7 @@ def test_the_budget_of_tests_ends_it_with_123(tmp_path: Path) -> None:
 
 def test_one_that_does_not_leave_when_its_budget_is_over_is_stopped(tmp_path: Path) -> None:
     write(tmp_path, "while True:\n    try:\n        self.two()\n    except BaseException:\n        pass")
-    work, runs = let_loose(tmp_path, tests=3, grace=2)
+    work, runs = let_loose(tmp_path, tests=3, grace=1)
     assert work.ending is not None
     assert work.ending.how == "budget"
     assert len(runs) == 3
@@ -165,7 +170,7 @@ def test_one_that_does_not_leave_when_its_budget_is_over_is_stopped(tmp_path: Pa
 
 def test_the_budget_of_time_drops_the_last_test(tmp_path: Path) -> None:
     write(tmp_path, "while True:\n    self.two()")
-    work, runs = let_loose(tmp_path, tests=None, time_budget=4, grace=20)
+    work, runs = let_loose(tmp_path, tests=None, time_budget=3, grace=20)
     assert work.ending is not None
     assert work.ending.how == "budget"
     assert runs
@@ -210,15 +215,12 @@ def test_a_search_as_others_write_it_runs_unchanged(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"module_name": "nowhere"}, "No module named 'nowhere'"),
         ({"class_name": "Nobody"}, "has no class 'Nobody'; it has .*Generator"),
-        ({"module_name": "broken"}, "SyntaxError"),
         ({"module_name": "leaving"}, "SystemExit"),
     ],
 )
 def test_one_that_cannot_be_loaded_is_told_of(values: dict[str, str], said: str, tmp_path: Path) -> None:
     write(tmp_path, "pass")
-    (tmp_path / "broken.py").write_text("class (:")
     (tmp_path / "leaving.py").write_text("import sys\nsys.exit(4)")
     with pytest.raises(UsageError, match=said):
         let_loose(tmp_path, **values)
@@ -234,7 +236,7 @@ def test_folders_and_budgets_are_looked_at_first(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("module", "name", "tests"), [("random_points", "RandomPoints", 60), ("simple_ga", "SimpleGA", 12)]
+    ("module", "name", "tests"), [("random_points", "RandomPoints", 30), ("simple_ga", "SimpleGA", 6)]
 )
 def test_the_examples_work(module: str, name: str, tests: int, tmp_path: Path) -> None:
     work, runs = let_loose(tmp_path, tests, module_name=module, class_name=name, module_path=str(EXAMPLES))
@@ -250,10 +252,10 @@ def test_the_same_seed_gives_the_same_tests(tmp_path: Path) -> None:
     for folder in (tmp_path / "one", tmp_path / "other"):
         folder.mkdir()
         values = {"module_name": "curvature_walk", "class_name": "CurvatureWalk"}
-        let_loose(folder, 4, **values, module_path=str(EXAMPLES))
+        let_loose(folder, 3, **values, module_path=str(EXAMPLES))
         made.append([path.read_bytes() for path in sorted((folder / "out").glob("test.*.json"))])
     assert made[0] == made[1]
-    assert len(made[0]) == 4
+    assert len(made[0]) == 3
 
 
 def test_a_generators_process_needs_no_simulator() -> None:
