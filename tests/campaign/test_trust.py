@@ -6,9 +6,8 @@ import shutil
 import sqlite3
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
@@ -18,6 +17,7 @@ from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.rerun import run_again
+from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.road import Limits, Site, World
@@ -49,8 +49,10 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_run(run, place / "run")
     plan = Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan")
     begin(plan, place / "done")
-    for _ in work(place / "done"):
-        pass
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+        for _ in work(place / "done"):
+            pass
     begin(plan, place / "begun")
     return place
 
@@ -84,11 +86,11 @@ def invoke(*words: str) -> Result:
 
 COMMANDS: dict[str, tuple[str, ...]] = {
     "edit": ("edit", "run/runs/0001", "--plan", "road: length +20", "--no-plot", "--out", "edited"),
-    "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot", "-j", "2"),
+    "faults by workers": ("faults", "run/runs/0001", "--repeat", "1", "--groups", "--no-plot", "-j", "2"),
+    "faults of a run": ("faults", "run/runs/0001", "--repeat", "1", "--no-plot"),
     "faults of a campaign": ("faults", "done", "--repeat", "1", "--groups", "--no-plot"),
     "drive": ("drive", "--again", "done", "1", "--no-plot"),
     "resume": ("resume", "begun", "-q"),
-    "resume with workers": ("resume", "begun", "-q", "-j", "2"),
     "plan": ("campaign", "plan.toml", "--out", "new", "-q"),
 }
 
@@ -105,7 +107,12 @@ def test_code_that_a_file_names_is_refused_in_a_sentence(shared: Path, words: tu
 
 
 @pytest.mark.parametrize("words", COMMANDS.values(), ids=COMMANDS)
-def test_code_that_the_user_names_as_well_is_run(shared: Path, words: tuple[str, ...]) -> None:
+def test_code_that_the_user_names_as_well_is_run(
+    shared: Path, words: tuple[str, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In processes of their own where it is workers that analyse, or that resume."""
+    if words is COMMANDS["plan"]:
+        monkeypatch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
     result = invoke(*words, "--driver", "mine.py:Mine")
     assert result.exit_code == 0, result.output
     assert (shared / "ran").exists()
@@ -222,19 +229,18 @@ def at_a_terminal(words: list[str], answer: bytes) -> tuple[int, str]:
 @pytest.mark.skipif(sys.platform == "win32", reason="no pseudo-terminals")
 @pytest.mark.parametrize(("answer", "status"), [(b"y\n", 0), (b"\n", 2)])
 def test_at_a_terminal_the_user_is_asked(shared: Path, answer: bytes, status: int) -> None:
-    ended, said = at_a_terminal([*COMMANDS["drive"]], answer)
+    ended, said = at_a_terminal([*COMMANDS["edit"]], answer)
     assert "names the driver" in said
     assert "Run the code in that file? [y/N]" in said
     assert ended == status, said
     assert (shared / "ran").exists() == (status == 0)
 
 
-@pytest.mark.parametrize("stdin", ["nothing", "a pipe that stays open"])
-def test_without_a_terminal_nobody_is_waited_for(shared: Path, stdin: str) -> None:
+def test_without_a_terminal_nobody_is_waited_for(shared: Path) -> None:
+    """At a pipe that stays open; nothing at all is what the commands above are given."""
     ours, theirs = os.pipe()
-    given: Callable[[], Any] = lambda: subprocess.DEVNULL if stdin == "nothing" else ours  # noqa: E731
     program = [sys.executable, "-c", "from roadgpt.cli import main; main()", *COMMANDS["edit"]]
-    done = subprocess.run(program, stdin=given(), capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(program, stdin=ours, capture_output=True, text=True, timeout=60, check=False)
     os.close(ours)
     os.close(theirs)
     assert done.returncode == 2
