@@ -6,8 +6,6 @@ import sys
 import tomllib
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).resolve().parents[2]
 WITHOUT = {"ribs", "pandas", "sklearn", "joblib", "pyarrow"}
 SCRIPT = f"""
@@ -20,35 +18,42 @@ class Refused:
 
 sys.meta_path.insert(0, Refused())
 from pathlib import Path
+import roadgpt.campaign.executors.processes as processes
 from roadgpt.campaign import Budget, Plan, Record, begin, read_trace, work
+from roadgpt.campaign.workers.in_process import InProcess
 
-folder = Path(sys.argv[1])
-settings = {{"batch": 3, "candidates": 1, "archive": sys.argv[2], "cells": 20}}
-plan = Plan(prompts=("| flat turns=1..",), generators=("quality_diversity",), goal="coverage",
-            settings=settings, budget=Budget(tests=15), reader="plan")
-begin(plan, folder)
-for progress in work(folder):
-    pass
-assert len(read_trace(folder, "c01", 2)) > 10
-with Record.opened(folder) as record:
-    assert len(list(record.results())) == 15
+processes.Processes = InProcess  # so that nothing of it runs where they can be imported
+for archive in ("grid", "cvt"):
+    folder = Path(sys.argv[1], archive)
+    settings = {{"batch": 3, "candidates": 1, "archive": archive, "cells": 20}}
+    plan = Plan(prompts=("| flat turns=1..",), generators=("quality_diversity",), goal="coverage",
+                settings=settings, budget=Budget(tests=15), reader="plan")
+    begin(plan, folder)
+    for progress in work(folder):
+        pass
+    assert len(read_trace(folder, "c01", 2)) > 10
+    with Record.opened(folder) as record:
+        assert len(list(record.results())) == 15
+    print("done", archive, progress.done)
 assert not [name for name in sys.modules if name.partition(".")[0] in {WITHOUT!r}]
-print("done", progress.done)
 """
 
 
-@pytest.mark.parametrize("archive", ["grid", "cvt"])
-def test_a_search_needs_none_of_them(tmp_path: Path, archive: str) -> None:
+def test_a_search_needs_none_of_them(tmp_path: Path) -> None:
     """Fifteen tests, so that the surrogate, which learns from ten, chooses the last of them."""
-    words = [sys.executable, "-c", SCRIPT, str(tmp_path / "c"), archive]
+    words = [sys.executable, "-c", SCRIPT, str(tmp_path)]
     ended = subprocess.run(words, capture_output=True, text=True, timeout=280, check=False)
-    assert ended.stdout == "done 15\n", ended.stderr
+    assert ended.stdout == "done grid 15\ndone cvt 15\n", ended.stderr
+    assert ended.returncode == 0, ended.stderr
 
 
 def test_nothing_imports_them_but_the_reader_of_old_traces() -> None:
     found = set()
     for path in (ROOT / "src" / "roadgpt").rglob("*.py"):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        text = path.read_text(encoding="utf-8")
+        if path.name != "surrogate.py" and not any(name in text for name in WITHOUT):
+            continue  # to parse every file takes seconds
+        for node in ast.walk(ast.parse(text)):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
             names += [node.module or ""] if isinstance(node, ast.ImportFrom) and not node.level else []
             found |= {(path.name, name.partition(".")[0]) for name in names}
