@@ -12,6 +12,7 @@ from roadgpt.campaign.faults.fault import faults_in
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.selection import chosen, selection_of
+from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
 from roadgpt.road import read_opendrive
 from roadgpt.run import read_run
@@ -35,9 +36,11 @@ def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
         'prompts = ["turn x2 | flat"]\nseeds = [3, 4]\ntests = 4\nreader = "plan"\n'
         "[world]\noob_tolerance = 0.3\nmap_size = 200\n"
     )
-    lines("campaign", home / "plan.toml", "--out", home / "two", "-q")
     words = ["turn x2 | flat", "--reader", "plan", "--seed", 3, "--oob-tolerance", 0.3]
-    lines("campaign", *words, "-n", 3, "--out", home / "one", "-q")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+        lines("campaign", home / "plan.toml", "--out", home / "two", "-q")
+        lines("campaign", *words, "-n", 3, "--out", home / "one", "-q")
     lines("run", *words, "-n", 3, "--no-plot", "--out", home / "runs", "-q")
     return home
 
@@ -207,7 +210,8 @@ def test_what_cannot_be_meant_is_told(words: list[str], said: str) -> None:
     assert said in " ".join(done.stderr.split())
 
 
-def test_where_nothing_failed_that_is_said(home: Path) -> None:
+@pytest.mark.usefixtures("no_workers")
+def test_where_nothing_failed_that_is_said() -> None:
     words = ["straight | turns=0", "--reader", "plan", "--seed", 1, "-n", 2, "-q"]
     lines("campaign", *words, "--out", "calm")
     for choice in ("--failures", "--faults"):
@@ -247,7 +251,8 @@ def test_a_test_of_a_campaign_is_changed() -> None:
     assert card["design_before"] == again.design.to_json()
 
 
-def test_a_campaign_that_was_moved_needs_no_driver(tmp_path: Path, home: Path) -> None:
+@pytest.mark.usefixtures("no_workers")
+def test_a_campaign_that_was_moved_needs_no_driver() -> None:
     """The file of the driver is gone; what the campaign kept can be seen all the same."""
     Path("mine.py").write_text(
         "from roadgpt.drive import Command\n"
