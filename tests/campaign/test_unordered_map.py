@@ -1,6 +1,7 @@
 """Work on many items: here or in other processes, with a line now and then on how long it takes."""
 
 import time
+from collections.abc import Generator, Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -18,12 +19,12 @@ def test_a_line_now_and_then_says_how_long_it_takes(
     now = [0.0]
     monkeypatch.setattr(time, "monotonic", lambda: now[0])
 
-    def steps() -> object:
+    def steps() -> Iterator[int]:
         for number in range(20):
             now[0] += 4.0
             yield number
 
-    assert [*watched(steps(), 20, "faults")] == [*range(20)]  # type: ignore[call-overload]
+    assert [*watched(steps(), 20, "faults")] == [*range(20)]
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "roadgpt: 3 of 20 faults, about 1 min 08 s to go"
     assert len(lines) == 6
@@ -49,6 +50,7 @@ def test_work_is_shared_and_who_stops_listening_stops_the_workers(tmp_path: Path
     work = unordered_map(twice, [3, 1, 2, 50, 50, 50], 2, tmp_path / "workers.log")
     assert sorted(islice(work, 3)) == [2, 4, 6]
     assert len(children._running) == 2
+    assert isinstance(work, Generator)
     begun = time.perf_counter()
     work.close()
     assert time.perf_counter() - begun < 10
