@@ -1,3 +1,5 @@
+from collections.abc import Iterator
+from functools import cache
 from math import inf, radians
 
 import numpy as np
@@ -12,7 +14,7 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import measure
-from roadgpt.design import draft
+from roadgpt.design import draft, road_search
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.vertical import Pace
@@ -36,10 +38,21 @@ ENDS_LEFT = Brief(
 EVALUATION = {"a road": A_ROAD, "uphill": UPHILL, "ends left": ENDS_LEFT}
 
 
-def campaign(brief: Brief, count: int, world: World = WORLD) -> list[Design]:
+@pytest.fixture(scope="module", autouse=True)
+def short_searches() -> Iterator[None]:
+    """Fewer drafts before a road is given up, and before a map counts as too small; test_offers has all."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in {"TRIALS": (1,), "TRIED": 30, "GROWN": 3, "GROWN_ON_TRIAL": 1}.items():
+            patch.setattr(road_search, name, value)
+        yield
+    road_search.sufficient_map.cache_clear()
+
+
+@cache
+def campaign(brief: Brief, count: int) -> list[Design]:
     out: list[Design] = []
     for number in range(count):
-        out.append(planner.draft(brief, world, (), out, 7 + number))
+        out.append(planner.draft(brief, WORLD, (), out, 7 + number))
     return out
 
 
@@ -60,13 +73,13 @@ def assert_fine(design: Design, brief: Brief, world: World) -> None:
     assert read_design(design.to_json()) == (design, ())
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(sensible_briefs(), st.integers(0, 10**9))
 def test_what_can_be_had_is_drafted(brief: Brief, seed: int) -> None:
     assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(briefs(), worlds(), st.integers(0, 1000))
 def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, world: World, seed: int) -> None:
     drafted = attempt(brief, world, seed)
@@ -81,7 +94,7 @@ def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, wor
 @pytest.mark.parametrize("name", EVALUATION)
 def test_roads_of_one_prompt_are_fine_and_look_every_way(name: str) -> None:
     brief = EVALUATION[name]
-    designs = campaign(brief, 60)
+    designs = campaign(brief, 40)
     for design in designs:
         assert_fine(design, brief, WORLD)
     assert {int(design.theta // 45) for design in designs} == set(range(8))
@@ -136,7 +149,7 @@ def test_roads_stay_above_the_floor() -> None:
 
 
 def test_the_lowest_place_of_a_hilly_road_is_no_lower_than_the_ground() -> None:
-    for seed in range(40):
+    for seed in range(20):
         road = build(planner.draft(Brief(hills=at_least(3)), WORLD, (), (), seed))
         lowest = road.elevation.height(np.linspace(0, road.length, 20_000)).min()
         assert 0 <= lowest < 6.02
@@ -199,7 +212,7 @@ def test_a_short_ramp_between_level_straights_is_as_steep_as_asked(
 
 @pytest.mark.parametrize(
     ("slope", "seeds"),
-    [("up", (0, 1)), ("down", (2, 3)), ("gently_up", (0, 1)), ("steeply_up", (2,)), ("steeply_down", (3,))],
+    [("up", (0, 1)), ("down", (2,)), ("gently_up", (0,)), ("steeply_down", (3,))],
 )
 def test_a_short_climb_between_straights_is_short_and_steep_enough(
     slope: Slope, seeds: tuple[int, ...]
@@ -222,7 +235,7 @@ def test_hard_roads_are_tight_and_crest_before_bends() -> None:
 
 
 ADVICE = [
-    (Brief(clauses=(turns(40, "hairpin"),)), "40 hairpins do not fit on a 250 m map.*--map-size"),
+    (Brief(clauses=(turns(20, "hairpin"),)), "20 hairpins do not fit on a 250 m map.*--map-size"),
     (Brief(clauses=(turns(8, "hairpin", side="left"),)), "8 hairpins do not fit"),
     (Brief(clauses=(turns(6),), length=exactly(60)), "do not fit into a road of 54 to 66 m"),
     (Brief(climb=exactly(150)), "a climb of 127.5 to 172.5 m does not fit"),
@@ -265,7 +278,7 @@ ODD_WORLDS = [
 @pytest.mark.parametrize("world", ODD_WORLDS)
 def test_other_worlds_have_roads_too(world: World) -> None:
     for brief in (A_ROAD, Brief(clauses=(turns(2),), slope="gently_up")):
-        for seed in range(5):
+        for seed in range(2):
             assert_fine(planner.draft(brief, world, (), (), seed), brief, world)
 
 
