@@ -12,6 +12,8 @@ import pytest
 from scipy import stats
 
 from roadgpt.errors import UsageError
+from roadgpt.report.page import Figure
+from roadgpt.study.survey import rating_charts
 from roadgpt.study.survey.analysis import analyse, load_answers
 from roadgpt.study.survey.answers import answers_of_raters
 from roadgpt.study.survey.questions import CHECK, MATCHES
@@ -55,6 +57,21 @@ def made_up(asked: Survey, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def analysed(asked: Survey, out: Path) -> Path:
     return analyse(synthetic(asked, 25, 4, 0.7, failing=0.2), out, "roadgpt study survey analyse").parent
+
+
+@pytest.fixture
+def svg_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Charts are not written as PDF and PNG as well, which takes most of the time of an analysis."""
+    monkeypatch.setattr(rating_charts, "save_all", lambda *_: [])
+
+
+@pytest.fixture
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        rating_charts,
+        "_finished",
+        lambda _, name, label, caption, *rest: Figure(name, caption, "<svg></svg>"),
+    )
 
 
 @pytest.mark.parametrize(("said", "low", "high"), [(1.0, 1.0, 1.0), (0.9, 0.6, 0.99), (0.0, -0.05, 0.05)])
@@ -102,6 +119,7 @@ def test_made_up_raters_are_marked_wherever_they_are_seen(made_up: Path) -> None
         assert path.suffix != ".tex" or "SYNTHETIC" in path.read_text("utf-8")
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_people_are_not_called_made_up(asked: Survey, tmp_path: Path) -> None:
     given = {f"{n:x}" * 64: {"a1.overall": MATCHES[n % 5], "check": MATCHES[CHECK]} for n in range(4)}
     analyse(answers_of_raters(asked, given, "people", 9, 2), tmp_path)
@@ -163,6 +181,7 @@ def test_numbers_of_the_tables_are_those_of_the_rows(made_up: Path, asked: Surve
     assert told_people == pytest.approx(people)
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_bars_are_as_long_as_the_shares_they_show(asked: Survey, tmp_path: Path) -> None:
     """The SVG's own rectangles: of every row they add up to the same width, and the middle lies on zero."""
     given = {f"{n:x}" * 64: {"a1.overall": MATCHES[n]} for n in range(5)}
@@ -182,6 +201,7 @@ def test_bars_are_as_long_as_the_shares_they_show(asked: Survey, tmp_path: Path)
     assert (boxes[2][0] + boxes[2][1]) / 2 == pytest.approx(axis, abs=0.5)
 
 
+@pytest.mark.usefixtures("svg_alone")
 def test_hostile_remarks_are_words_in_every_form(asked: Survey, tmp_path: Path) -> None:
     formula = "=cmd|' /C calc'!A0"
     given = {
@@ -197,6 +217,7 @@ def test_hostile_remarks_are_words_in_every_form(asked: Survey, tmp_path: Path) 
     assert [row["remark"] for row in table(tmp_path, "remarks")] == [EVIL, "'" + formula]
 
 
+@pytest.mark.usefixtures("no_pictures")
 def test_pairs_are_compared_only_where_roads_differ_at_all(asked: Survey, tmp_path: Path) -> None:
     """Two raters of one mind: Conover's p is 0 for every pair, while Friedman's is far from 0.05.
 
