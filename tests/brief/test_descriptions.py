@@ -52,7 +52,7 @@ def expected_of(case: dict[str, Any]) -> Brief:
 def test_most_are_read_as_they_are_meant() -> None:
     """Their Briefs were written by hand for rules; where the guide of labels decides otherwise, they miss."""
     reader, missed = ModelReader(), []
-    sample = CASES[::3]
+    sample = CASES[::8]
     for case in sample:
         expected = expected_of(case)
         try:

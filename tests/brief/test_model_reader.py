@@ -49,7 +49,7 @@ WORDS = st.lists(
 ).map(" ".join)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.one_of(st.text(max_size=200), WORDS))
 def test_any_text_is_a_brief_or_refused(words: str) -> None:
     try:
@@ -83,7 +83,8 @@ def test_numbers_are_those_that_were_said() -> None:
 def test_the_same_words_are_read_the_same_way_twice() -> None:
     words = "a road over two hills with a bend or two"
     assert READER.read(words) == READER.read(words)
-    assert READER.alternatives(words, seed=3) == READER.alternatives(words, seed=3)
+    one, other = (READER.alternatives(words, number=2, seed=3) for _ in range(2))
+    assert one == other
 
 
 def test_a_vague_wish_has_several_readings() -> None:

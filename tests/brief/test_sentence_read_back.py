@@ -9,7 +9,7 @@ from roadgpt.errors import BriefError
 from roadgpt.learn.generator import pairs
 
 SHARE = 0.9
-NUMBER = 60
+NUMBER = 20
 
 
 def test_sentences_of_usual_briefs_are_read_back() -> None:

@@ -264,13 +264,18 @@ ROWS = sorted(
 )
 
 
-@cache
 def read(words: str) -> str:
     """The plan that the reader makes of words, or '!' where it refuses them."""
+    return answer(words)[0]
+
+
+@cache
+def answer(words: str) -> tuple[str, str]:
+    """The plan; or '!' and what is said where words are refused."""
     try:
-        return change_plan(read_request(words))
-    except EditError:
-        return "!"
+        return change_plan(read_request(words)), ""
+    except EditError as error:
+        return "!", str(error)
 
 
 def meaning(plan: str) -> tuple[str, ...]:
@@ -307,14 +312,14 @@ def test_plain_requests_are_read_right(words: str, plan: str) -> None:
 
 
 def test_requests_are_read_right() -> None:
-    sample = ROWS[::3]
+    sample = ROWS[::5]
     wrong = [f"{words[:90]}: {read(words)} and not {plan}"
              for words, plan in sample if meaning(read(words)) != meaning(plan)]  # fmt: skip
     assert len(wrong) <= (1 - RIGHT) * len(sample), "\n".join(wrong)
 
 
 def test_what_must_be_refused_is_refused() -> None:
-    refused = [words for words, plan in ROWS if plan == "!"]
+    refused = [*REFUSED, *[words for words, plan in ROWS[::4] if plan == "!" and words not in REFUSED]]
     done = [f"{words}: {read(words)}" for words in refused if read(words) != "!"]
     assert len(done) <= (1 - LEAST_REFUSED) * len(refused), "\n".join(done)
 
@@ -347,11 +352,7 @@ def test_no_row_is_one_that_a_reader_is_trained_on() -> None:
 
 @pytest.mark.parametrize("words", ["", *REFUSED])
 def test_a_refusal_is_one_short_sentence(words: str) -> None:
-    said = ""
-    try:
-        read_request(words)
-    except EditError as error:
-        said = str(error)
+    said = answer(words)[1]
     assert "\n" not in said
     assert len(said) < 300
 
@@ -381,7 +382,7 @@ def test_words_that_are_not_understood_are_told() -> None:
 KNOWN = sorted({word for words, _ in ROWS if len(words) < 300 for word in words.split()})
 
 
-few = settings(max_examples=30, deadline=None)
+few = settings(max_examples=12, deadline=None)
 
 
 @few
