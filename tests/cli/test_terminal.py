@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 ROADGPT = [sys.executable, "-c", "from roadgpt.cli import main; main()"]
-RUN = [*ROADGPT, "run", "an uphill road with 3 turns", "--no-plot", "--no-drive"]
+RUN = [*ROADGPT, "run", "turn x3 | up", "--reader", "plan", "--no-plot", "--no-drive"]
 
 
 @pytest.fixture(autouse=True)
