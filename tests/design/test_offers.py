@@ -20,8 +20,7 @@ CASES = (
     ("turn x3 | up len=985", 150, 975),
     ("| turns=1.. hills=3.. len=1252", 120, 140),
     ("| turns=1.. len=287..", 120, 342),
-    ("turn x6 sharp | len=11086", 1000, 96),
-    ("serpentine | len=2334", 200, 764),
+    ("turn x6 sharp | len=2800", 250, 96),
     ("straight | turns=0 len=2283", 200, 18),
 )
 """Plans for which the map has no room, the map's size in m, and a seed."""
