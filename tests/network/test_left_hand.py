@@ -13,7 +13,7 @@ from shapely.affinity import scale
 
 from network.mirrored import in_mirror
 from network.random_designs import random_design, random_lanes_design
-from network.random_maps import PLANS, random_map
+from network.random_maps import random_map
 from roadgpt import check
 from roadgpt.brief.mirror import mirrored
 from roadgpt.brief.plan import plan, read_plan
@@ -39,7 +39,7 @@ FLIP = np.array([1.0, -1.0, 1.0])
 EXACT = 1e-9  # m
 ROUNDED = 0.01  # m^2
 CUSP = 0.15  # m, by which the tip of a thin island between two roads moves if corners are rounded to 0.1 mm
-settled = settings(max_examples=5, deadline=None)
+settled = settings(max_examples=3, deadline=None)
 seeds = st.integers(0, 10_000)
 DRAWINGS = pytest.mark.parametrize("draw", [random_design, random_lanes_design])
 Drawing = Callable[[int], dict[str, Any]]
@@ -131,7 +131,7 @@ def test_the_rules_find_the_same(draw: Drawing, seed: int) -> None:
     assert own == other
 
 
-@pytest.mark.parametrize("seed", range(len(PLANS)))
+@pytest.mark.parametrize("seed", [0, 1, 3, 5])  # blocks; roundabouts and lights; T and Y; a star
 def test_a_map_is_the_mirror_image_of_the_mirrored_map(seed: int) -> None:
     design = random_map(seed)
     data = design.to_json()
