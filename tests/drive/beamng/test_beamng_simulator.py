@@ -206,8 +206,7 @@ def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fa
         leave_all()
 
 
-@pytest.mark.parametrize("told", [1.0, -1.0])
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize(("sign", "told"), [(-1.0, 1.0), (1.0, -1.0)])
 def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float, told: float) -> None:
     spy = Spy()
     with FakeBeamNG(protocol=OURS, steer_sign=sign, told_sign=told) as fake:
