@@ -31,7 +31,7 @@ def said(*words: str) -> Result:
 
 def test_a_road_goes_out_and_comes_back(here: Path) -> None:
     out = said("export", "hill.json", "--to", "opendrive,csv", "--lane-width", "3.5", "--speed-limit", "50")
-    assert out.stdout.split() == ["exports/hill.xodr", "exports/hill.csv"]
+    assert out.stdout.split() == ["exports/hill.route.json", "exports/hill.xodr", "exports/hill.csv"]
     back = said("import", "exports/hill.xodr")
     assert "road 1 (road): A 100 metre road with " in back.stdout
     assert "left turn of 60 degrees" in back.stdout
@@ -63,7 +63,8 @@ def test_a_campaign_is_exported_as_it_goes_and_afterwards(here: Path) -> None:
     run = here / "camp" / "runs" / "0001"
     assert {"road.xodr", "road.csv", "road.drive.csv"} <= {path.name for path in run.iterdir()}
     out = said("export", "camp", "camp/runs/0001", "--to", "opendrive", "--speed-limit", "30")
-    assert out.stdout.split() == ["exports/camp-0001.xodr", "exports/camp-0002.xodr"]
+    names = [f"exports/camp-000{n}.{suffix}" for n in (1, 2) for suffix in ("route.json", "xodr")]
+    assert out.stdout.split() == names
     assert out.stderr == "roadgpt: runs keep their own lanes and limits; --speed-limit is for road files\n"
     assert (here / "exports" / "camp-0001.xodr").read_bytes() == (run / "road.xodr").read_bytes()
     test = said("export", "camp/test.0001.json", "--to", "csv")  # the run itself, with its drive
@@ -75,7 +76,8 @@ def test_two_sources_of_one_name_and_one_source_twice(here: Path) -> None:
     Path("other").mkdir()
     Path("other/hill.json").write_text(json.dumps(DESIGN))
     out = said("export", "hill.json", "other/hill.json", "./hill.json", "--to", "opendrive")
-    assert out.stdout.split() == ["exports/hill.xodr", "exports/hill-2.xodr"]
+    names = [f"exports/{name}.{suffix}" for name in ("hill", "hill-2") for suffix in ("route.json", "xodr")]
+    assert out.stdout.split() == names
 
 
 def test_opendrive_keeps_its_lanes_and_limits_on_its_way_through(here: Path) -> None:

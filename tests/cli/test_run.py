@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from click.testing import CliRunner, Result
@@ -121,6 +122,46 @@ def test_words_that_cannot_be_a_road_get_one_sentence(words: str) -> None:
     assert result.stderr.startswith("roadgpt: ")
     assert len(result.stderr) < 600
     assert not Path("roadgpt-runs").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "options", "forward", "backward"),
+    [
+        ("straight len=60 | lanes=3 oneway", [], 3, 0),
+        ("turn right | lanes=2 against=1", [], 2, 1),
+        ("straight len=60 | lanes=3 oneway", ["--lanes", "1+1"], 1, 1),
+        ("straight len=60", [], 1, 1),
+    ],
+)
+def test_the_lanes_that_the_words_ask_for_are_built_unless_an_option_gives_others(
+    words: str, options: list[str], forward: int, backward: int
+) -> None:
+    given = [
+        "--plan",
+        "--seed",
+        "3",
+        "--no-drive",
+        "--no-plot",
+        "--export",
+        "opendrive",
+        "--out",
+        "r",
+        *options,
+    ]
+    result = invoke(words, *given)
+    assert result.exit_code == 0
+    assert ("--lanes 1+1 is set and used" in result.output) == bool(options)
+    (file,) = Path("r").rglob("*.xodr")
+    driving = {
+        int(lane.get("id", "0"))
+        for lane in ElementTree.parse(file).iter("lane")
+        if lane.get("type") == "driving"
+    }
+    assert driving == {*range(-forward, 0), *range(1, backward + 1)}
+    ((road, lane),) = json.loads(file.with_suffix(".route.json").read_text())["route"]
+    assert road == int(ElementTree.parse(file).getroot().findall("road")[0].get("id", "0"))
+    assert lane in driving
+    assert lane < 0
 
 
 def test_a_route_through_a_map_is_named_and_said_back() -> None:

@@ -47,8 +47,9 @@ def test_a_wider_world_is_another_file(tmp_path: Path, format_: str) -> None:
 
 def test_formats_are_written_in_their_order_and_once(tmp_path: Path) -> None:
     written = save(ROADS["arcs"], tmp_path, ["csv", "opendrive", "csv"], WORLD)
-    assert [path.name for path in written] == ["road.csv", "road.xodr"]
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["road.csv", "road.xodr"]
+    names = ["road.csv", "road.route.json", "road.xodr"]
+    assert [path.name for path in written] == names
+    assert sorted(path.name for path in tmp_path.iterdir()) == names
 
 
 def test_no_file_is_written_where_one_format_is_unknown(tmp_path: Path) -> None:

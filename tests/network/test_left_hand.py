@@ -212,7 +212,7 @@ def test_a_hand_that_is_no_truth_value_is_refused(value: object) -> None:
 PLANS_WITH_SIDES = (
     "turn left 60 // t_junction left // roundabout exit=2",
     "| lanes=2 against=2 divided // crossroads right lights // | lanes=2 against=2 divided",
-    "crossroads sharp_left ways=left+straight+right // | up",
+    "crossroads left ways=left+straight+right // | up",
     "y_junction right stop // turn x2 right | down",
     "| lanes=2 // lane_change left // lane_drop side=left",
     "| lanes=2 oneway // lane_gain // crossroads left",

@@ -28,7 +28,7 @@ class OpenDrive:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file and, for a route through a network, ``NAME.route.json`` beside it.
+        """Writes the file, and ``NAME.route.json`` with the roads and lanes to drive beside it.
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
         """
@@ -36,7 +36,7 @@ class OpenDrive:
 
 
 def write(road: Road, path: Path, world: World, revision: int = REVISION) -> None:
-    """Writes the file of a road and, for a route, the file with the roads and lanes that it follows.
+    """Writes the file of a road or network, and a file with the roads and lanes to drive, in driving order.
 
     Args:
         road: The road, or the route through a network.
@@ -48,8 +48,15 @@ def write(road: Road, path: Path, world: World, revision: int = REVISION) -> Non
         ExportError: The road has a number that is not finite.
     """
     path.write_bytes(document(road, world, revision).to_text().encode())
+    path.with_suffix(ROUTE).write_text(json.dumps(_legs(road, world)) + "\n")
+
+
+def _legs(road: Road, world: World) -> dict[str, list[list[int]]]:
+    """Returns the content of the file with the roads and lanes to drive."""
     if isinstance(road, Route):
-        path.with_suffix(ROUTE).write_text(json.dumps(road.to_route_json()) + "\n")
+        return road.to_route_json()
+    profile = world.profile_of(road)
+    return {"route": [[ROAD, profile.along_ids[profile.driven]]]}
 
 
 def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
