@@ -54,7 +54,7 @@ def test_asams_checker_has_nothing_to_say(tmp_path: Path) -> None:
     python = python_with("qc_opendrive", "venv-qc")
     files = []
     for number, road in enumerate(ROADS.values()):
-        (file,) = save(road, tmp_path, ["opendrive"], WORLD, f"road{number}")
+        *_, file = save(road, tmp_path, ["opendrive"], WORLD, f"road{number}")
         older = file.with_name(f"older{number}.xodr")  # 1.8 leaves one rule out that 1.7 has
         older.write_text(file.read_text().replace('revMinor="8"', 'revMinor="7"'))
         files += [file, older]
@@ -85,7 +85,7 @@ def aside(road: Road, points: np.ndarray) -> tuple[float, float]:
 
 @pytest.mark.parametrize("name", [name for name in ROADS if name != "short"])
 def test_pyxodr_reads_our_line(tmp_path: Path, name: str) -> None:
-    (file,) = save(ROADS[name], tmp_path, ["opendrive"], WORLD)
+    *_, file = save(ROADS[name], tmp_path, ["opendrive"], WORLD)
     (points,) = read_by_pyxodr(file).values()
     across, above = aside(ROADS[name], points)
     assert across < 1e-3
@@ -107,7 +107,7 @@ PROFILED = {f"seed{seed}": random_road(seed) for seed in (1, 4, 9, 11, 14, 17)}
 
 def test_asams_checker_has_nothing_to_say_of_lanes_and_banks(tmp_path: Path) -> None:
     python = python_with("qc_opendrive", "venv-qc")
-    files = [save(road, tmp_path, ["opendrive"], WORLD, name)[0] for name, road in PROFILED.items()]
+    files = [save(road, tmp_path, ["opendrive"], WORLD, name)[-1] for name, road in PROFILED.items()]
     for ends, issues in complaints(python, files).values():
         assert issues == []
         assert ends["completed"] >= 22
@@ -137,7 +137,7 @@ def test_asams_checker_finds_our_edges_and_their_heights(tmp_path: Path) -> None
     python = python_with("qc_opendrive", "venv-qc")
     for seed in (1, 2, 3, 5, 9):
         road = random_road(seed, steepest=0.0)
-        (file,) = save(road, tmp_path, ["opendrive"], WORLD, f"level{seed}")
+        *_, file = save(road, tmp_path, ["opendrive"], WORLD, f"level{seed}")
         done = subprocess.run([python, "-c", EDGES, str(file)], check=True, capture_output=True, text=True)
         _near(road, np.array([line.split() for line in done.stdout.splitlines()], float))
 
@@ -145,7 +145,7 @@ def test_asams_checker_finds_our_edges_and_their_heights(tmp_path: Path) -> None
 def test_esmini_finds_our_edges_and_their_heights(tmp_path: Path) -> None:
     odrplot = program("odrplot")
     for name, road in PROFILED.items():
-        (file,) = save(road, tmp_path, ["opendrive"], WORLD, name)
+        *_, file = save(road, tmp_path, ["opendrive"], WORLD, name)
         subprocess.run(
             [odrplot, str(file), "track.csv"], check=True, capture_output=True, cwd=tmp_path, timeout=60
         )
@@ -179,7 +179,7 @@ def test_pyxodr_finds_our_edges_in_plan(tmp_path: Path) -> None:
             banked = random_road(seed)
             assert banked.profile is not None
             road = banked.with_profile(replace(banked.profile, superelevation_angle=None))
-            (file,) = save(road, tmp_path, ["opendrive"], WORLD, f"plain{seed}")
+            *_, file = save(road, tmp_path, ["opendrive"], WORLD, f"plain{seed}")
             (found,) = RoadNetwork(str(file), ignored_lane_types=set(), resolution=0.1).get_roads()
             for lane in found.lane_sections[0].lanes:
                 s, t = road.locate(*lane.boundary_line[5:-5].T)

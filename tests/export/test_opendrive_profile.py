@@ -86,7 +86,7 @@ def test_widths_and_superelevation_are_cubics_of_the_station() -> None:
 def test_eighty_roads_come_back_within_a_millimetre(tmp_path: Path) -> None:
     for seed in range(80):
         road = random_road(seed)
-        (file,) = save(road, tmp_path, ["opendrive"], World())
+        *_, file = save(road, tmp_path, ["opendrive"], World())
         imported = read_opendrive(file)
         assert road.profile is not None
         back, found = imported.road, imported.world(World()).profile_of(imported.road)
@@ -105,7 +105,7 @@ def test_eighty_roads_come_back_within_a_millimetre(tmp_path: Path) -> None:
 def test_lines_arcs_and_clothoids_come_back_exactly(tmp_path: Path) -> None:
     profile = replace(Profile.of(2, 1, smooth(3.0, 4.0, LENGTH), 2.0), superelevation_angle=BANK)
     road = Road(PLAN, CLIMB, profile=profile)
-    (file,) = save(road, tmp_path, ["opendrive"], World())
+    *_, file = save(road, tmp_path, ["opendrive"], World())
     back = read_opendrive(file).road
     assert back.profile is not None
     assert back.profile.right == profile.right
@@ -117,7 +117,7 @@ def test_lines_arcs_and_clothoids_come_back_exactly(tmp_path: Path) -> None:
 def test_an_outer_lane_that_begins_on_the_way_is_not_the_driven_one(tmp_path: Path) -> None:
     begins = CubicProfile((0.0, 60.0), ((0.0, 0.0, 0.0, 0.0), (3.0, 0.0, 0.0, 0.0)))
     right = (Lane("driving", 3.0, "broken"), Lane("driving", begins, "solid"))
-    (file,) = save(Road(PLAN, CLIMB, profile=Profile((), right)), tmp_path, ["opendrive"], World())
+    *_, file = save(Road(PLAN, CLIMB, profile=Profile((), right)), tmp_path, ["opendrive"], World())
     found = read_opendrive(file)
     assert found.road.profile == Profile((), right)
     assert found.remarks == ()

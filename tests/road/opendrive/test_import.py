@@ -51,7 +51,7 @@ def file(
 
 
 def written(road: Road, folder: Path, world: World = WORLD) -> ImportedRoad:
-    (path,) = save(road, folder, ["opendrive"], world)
+    *_, path = save(road, folder, ["opendrive"], world)
     return read_opendrive(path)
 
 
@@ -93,7 +93,7 @@ def test_lanes_limits_and_friction_come_back(tmp_path: Path) -> None:
 
 
 def test_a_road_file_may_be_opendrive(tmp_path: Path) -> None:
-    (path,) = save(ROADS["arcs"], tmp_path, ["opendrive"], WORLD)
+    *_, path = save(ROADS["arcs"], tmp_path, ["opendrive"], WORLD)
     road, remarks = read_blueprint(path)
     assert isinstance(road, Road)
     assert apart(road, ROADS["arcs"]) < 1e-6
