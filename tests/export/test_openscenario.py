@@ -192,4 +192,4 @@ def test_a_player_that_merges_close_poses_still_drives_off_in_time(tmp_path: Pat
 
 def test_without_a_drive_there_is_no_second_scenario(tmp_path: Path) -> None:
     written = save(ROADS["arcs"], tmp_path, ["openscenario"], WORLD, "x")
-    assert {path.name for path in written} == {"x.xosc", "x.xodr"}
+    assert {path.name for path in written} == {"x.xosc", "x.xodr", "x.route.json"}
