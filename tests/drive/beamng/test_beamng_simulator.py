@@ -2,6 +2,7 @@
 
 import math
 import re
+import time
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -20,6 +21,7 @@ from roadgpt.drive.drivers.reference import Reference
 from roadgpt.drive.marking_monitor import MarkingMonitor
 from roadgpt.drive.simulators.beamng import BeamngSettings, BeamngSimulator
 from roadgpt.drive.simulators.beamng.session import leave_all, session_of
+from roadgpt.drive.simulators.beamng.tracking import RoadTracker
 from roadgpt.errors import DriverError, PartError, SimulationError, UsageError
 from roadgpt.export.exporters.beamng.files import items
 from roadgpt.export.exporters.beamng.roads import level_road
@@ -296,6 +298,25 @@ def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> 
         made = simulator(fake, poll_timeout=1.5)
         assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
         leave_all()
+
+
+def test_only_beamngs_time_counts_against_it(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What RoadGPT computes between two answers may be compiled just then, and takes its time."""
+    place, asked = RoadTracker.place, []
+
+    def slow(tracker: RoadTracker, x: float, y: float) -> tuple[float, float, float]:
+        asked.append(x)
+        if len(asked) in (1, 20):
+            time.sleep(1.2)
+        return place(tracker, x, y)
+
+    monkeypatch.setattr(RoadTracker, "place", slow)
+    with FakeBeamNG(port, protocol=OURS):
+        settings = BeamngSettings(port=port, rate=20, poll_timeout=0.7)
+        drive = BeamngSimulator(settings).simulate(SHORT, World(), BeamngLike(), 7)
+        leave_all()
+    assert drive.ended == "goal"
+    assert len(asked) > 20
 
 
 def test_beamng_is_started_anew_after_so_many_roads(tmp_path: Path, port: int) -> None:

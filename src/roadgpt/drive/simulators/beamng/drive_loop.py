@@ -63,9 +63,13 @@ class DriveLoop:
             SimulationError: BeamNG's AI does not start to move, or the physics became unstable.
         """
         loaded, world = self.loaded, self.world
+        watchdog = loaded.session.watchdog
+        watchdog.pause()
         self._keep(loaded.now, (0.0, 0.0, 0.0))
         if self.guard is None:
+            watchdog.due_in(loaded.settings.poll_timeout)
             loaded.let_ai_drive(world.limits.speed_limit)
+            watchdog.pause()
         while True:
             here = self.samples[-1]
             now = here.car
@@ -88,17 +92,22 @@ class DriveLoop:
             self._go_on(here)
 
     def _go_on(self, here: Sample) -> None:
+        """Makes one step. Only BeamNG's time counts against it: what RoadGPT computes may be compiled just
+        now, and the guard has its own clock."""
         look()
         command = (0.0, 0.0, 0.0)
+        loaded = self.loaded
+        watchdog = loaded.session.watchdog
         if self.guard is not None:
-            loaded = self.loaded
-            loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
+            watchdog.due_in(loaded.settings.poll_timeout)
             image = loaded.image()
-            loaded.session.watchdog.pause()  # the guard has its own clock
+            watchdog.pause()
             command = self.guard.ask(self._view(here, image))
-            loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
+            watchdog.due_in(loaded.settings.poll_timeout)
             loaded.steer(*command)
-        self._keep(self.loaded.step(), command)
+        now = loaded.step()
+        watchdog.pause()
+        self._keep(now, command)
 
     def _view(self, here: Sample, image: FloatArray | None) -> View:
         now, dt = here.car, 1.0 / self.loaded.settings.rate
@@ -181,9 +190,8 @@ def record(
     Raises:
         DriverError, SimulationError: as for ``DriveLoop.drive``.
     """
+    recorder = DriveLoop(loaded, road, world, guard)
     with loaded.session.within(loaded.settings.poll_timeout, "it was driving"):
-        recorder = DriveLoop(loaded, road, world, guard)
-        loaded.session.watchdog.due_in(loaded.settings.poll_timeout)
         ended = recorder.drive(keep_driving)
     columns, lock = recorder.columns()
     name = AI if guard is None else guard.name
