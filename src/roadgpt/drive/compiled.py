@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Callable
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from roadgpt.drive.native import addresses, intrinsic_call
 
@@ -86,6 +86,20 @@ def compiled(function: Function) -> Function:
     except RuntimeError:  # there is no writable folder for the cache
         made = numba.njit(nogil=True)(function)
     return made
+
+
+def bound(function: Function, arguments: tuple[Any, ...]) -> Function:
+    """Returns a compiled function as machine code for arguments of exactly these types.
+
+    A call does not look at the types again, which takes longer than many a function. Call it with arguments
+    of the same types only: others are misread.
+    """
+    if not COMPILES:
+        return function
+    dispatcher = cast(Any, function)
+    types = tuple(map(dispatcher.typeof_pyval, arguments))
+    dispatcher.compile(types)
+    return cast(Function, dispatcher.get_overload(types))
 
 
 def inlined(function: Function) -> Function:

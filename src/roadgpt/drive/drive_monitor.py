@@ -1,6 +1,7 @@
 """Decides for all simulators when a drive is over, from the state of the car at every control step."""
 
 import math
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +22,7 @@ SPARE = 30.0  # s, added to that time
 ROUNDING = 1e-9  # s, rounding error of times that are multiples of a step
 
 _NAMES = tuple(COLUMNS)
-_SEEN = tuple(map(_NAMES.index, ("x", "y", "z", "speed", "s", "outside")))
+_SEEN = itemgetter(*map(_NAMES.index, ("x", "y", "z", "speed", "s", "outside")))
 _POSE = list(map(_NAMES.index, POSE))
 
 
@@ -64,7 +65,7 @@ class DriveMonitor:
         Raises:
             SimulationError: the physics became unstable.
         """
-        x, y, z, speed, s, outside = (float(row[place]) for place in _SEEN)
+        x, y, z, speed, s, outside = _SEEN(row.tolist())
         if not math.isfinite(x + y + z + speed + outside):
             raise SimulationError(
                 f"the physics became unstable at {time:.2f} s: check the road and the car for "

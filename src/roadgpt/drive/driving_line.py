@@ -115,7 +115,8 @@ def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
 
 
 def _longer(values: FloatArray, more: int, last: float) -> list[float]:
-    return [float(v) for v in values] + [float(last)] * more
+    found: list[float] = values.tolist()
+    return found + [float(last)] * more
 
 
 def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:

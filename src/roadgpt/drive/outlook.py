@@ -28,11 +28,8 @@ class Outlook:
     def __init__(self, road: "Road", world: "World") -> None:
         """Prepares the junctions and the lanes of a road or a route."""
         self._route = route_of(road)
-        self._passages = passages(road)
-        self._ends = [each.end for each in self._passages]
-        self._turns = [
-            float(wrap_angle(road.heading(each.end) - road.heading(each.start))) for each in self._passages
-        ]
+        self._junctions = [_junction(road, each) for each in passages(road)]
+        self._ends = [end for _, end, _ in self._junctions]
         self._starts, self._beside = [0.0], [_beside_on_road(road, world)]
         if self._route is not None:
             self._starts = list(self._route.starts[:-1])
@@ -45,17 +42,18 @@ class Outlook:
             return self._plain
         first = bisect_right(self._ends, s)
         ahead = tuple(
-            JunctionAhead(
-                max(each.start - s, 0.0),
-                each.entered.kind,
-                turn,
-                each.exit,
-                each.control,
-                each.end - max(each.start, s),
-            )
-            for each, turn in zip(self._passages[first:], self._turns[first:], strict=True)
+            [
+                JunctionAhead(max(start - s, 0.0), *seen, end - max(start, s))
+                for start, end, seen in self._junctions[first:]
+            ]
         )
         return self._route, ahead, *self._beside[max(bisect_right(self._starts, s) - 1, 0)]
+
+
+def _junction(road: "Road", passage: Passage) -> tuple[float, float, tuple[str, float, int, str]]:
+    """Returns the stations between which a junction lies, and what a driver sees of it from any station."""
+    turn = float(wrap_angle(road.heading(passage.end) - road.heading(passage.start)))
+    return passage.start, passage.end, (passage.entered.kind, turn, passage.exit, passage.control)
 
 
 def _beside_on_road(road: "Road", world: "World") -> tuple[int, int]:

@@ -13,6 +13,7 @@ of ``g cos e + v^2 k sin e``.
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import repeat
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -152,39 +153,59 @@ def plan_speed(
         limits: The limits that the driver respects.
         highest: The highest speed in m/s at each station, besides these limits; None for no other.
     """
-    top = [_corner_speed(line, i, limits) for i in range(len(line.grade))]
+    slopes = list(map(_inclination, line.grade, line.superelevation, line.curvature))
+    top = list(map(_corner_speed, slopes, line.curvature, line.crest, repeat(limits)))
     if highest is not None:
         top = [min(speed, most) for speed, most in zip(top, highest, strict=True)]
-    _sweep(line, top, limits.lateral, limits.braking, math.inf, forward=False)
-    _sweep(line, top, limits.lateral, limits.traction, limits.power, forward=True)
+    _sweep(line, slopes, top, limits.lateral, limits.braking, math.inf, forward=False)
+    _sweep(line, slopes, top, limits.lateral, limits.traction, limits.power, forward=True)
     return top
 
 
-def _corner_speed(line: PathGeometry, i: int, limits: DrivingLimits) -> float:
+class _Inclination(NamedTuple):
+    """How the road is inclined at one station."""
+
+    level: float
+    """Cosine of the slope along the road."""
+    cube: float
+    """The third power of ``level``."""
+    cos: float
+    """Cosine of the superelevation."""
+    sin: float
+    """Sine of the superelevation, positive where the surface falls to the inside of the bend."""
+
+
+def _inclination(grade: float, superelevation: float, curvature: float) -> _Inclination:
+    level = 1 / math.hypot(1.0, grade)
+    inwards = -math.copysign(1.0, curvature) * math.sin(superelevation)
+    return _Inclination(level, level**3, math.cos(superelevation), inwards)
+
+
+def _corner_speed(slope: _Inclination, curvature: float, crest: float, limits: DrivingLimits) -> float:
     """Returns the highest speed in m/s at one station.
 
     It respects the speed limit, the lateral limit in a bend, and the least wheel load on a crest.
     """
-    steep = 1 / math.hypot(1.0, line.grade[i])
-    crest = line.crest[i] * steep**3
-    cos, sin = _inwards(line, i)
-    needed = abs(line.curvature[i]) * (cos - limits.lateral * sin) - limits.lateral * crest
+    level, cube, cos, sin = slope
+    crest *= cube
+    needed = abs(curvature) * (cos - limits.lateral * sin) - limits.lateral * crest
     square = limits.speed**2
     if needed > 1e-9:
-        square = min(square, (limits.lateral * cos + sin) * GRAVITY * steep / needed)
+        square = min(square, (limits.lateral * cos + sin) * GRAVITY * level / needed)
     if crest < -1e-9:
-        square = min(square, (1 - LIGHTEST) * GRAVITY * steep / -crest)
+        square = min(square, (1 - LIGHTEST) * GRAVITY * level / -crest)
     return math.sqrt(max(square, SLOWEST**2))
 
 
-def _inwards(line: PathGeometry, i: int) -> tuple[float, float]:
-    """Returns cosine and sine of the superelevation, positive where it falls to the inside of the bend."""
-    angle = line.superelevation[i]
-    return math.cos(angle), -math.copysign(1.0, line.curvature[i]) * math.sin(angle)
-
-
 def _sweep(
-    line: PathGeometry, top: list[float], lateral: float, along: float, power: float, *, forward: bool
+    line: PathGeometry,
+    slopes: Sequence[_Inclination],
+    top: list[float],
+    lateral: float,
+    along: float,
+    power: float,
+    *,
+    forward: bool,
 ) -> None:
     """Lowers speeds that the car cannot reach by accelerating (forward), or from which it cannot brake to the
     speed at the following station (backward).
@@ -194,12 +215,11 @@ def _sweep(
     before = top[order[0]] if not forward else 0.0
     for i in order:
         v2 = before * before
-        steep = 1 / math.hypot(1.0, line.grade[i])
-        (cos, sin), bend = _inwards(line, i), v2 * abs(line.curvature[i])
-        load = GRAVITY * steep * cos + bend * sin + v2 * line.crest[i] * steep**3
+        (level, cube, cos, sin), bend = slopes[i], v2 * abs(line.curvature[i])
+        load = GRAVITY * level * cos + bend * sin + v2 * line.crest[i] * cube
         load = max(load, LIGHTEST * GRAVITY)
-        used = min(abs(bend * cos - GRAVITY * steep * sin) / (lateral * load), 1.0)
+        used = min(abs(bend * cos - GRAVITY * level * sin) / (lateral * load), 1.0)
         pull = min(along * load * math.sqrt(1 - used * used), power / max(before, 1.0))
-        pull -= way * GRAVITY * line.grade[i] * steep
+        pull -= way * GRAVITY * line.grade[i] * level
         reached = math.sqrt(max(v2 + 2 * pull * line.step * line.stretch[i], SLOWEST**2))
         top[i] = before = min(top[i], reached)

@@ -1,5 +1,6 @@
 """The simulator ``mujoco``: MuJoCo computes the rigid bodies, RoadGPT the tyres and the road surface."""
 
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 _NAMES = tuple(COLUMNS)
-_SEEN = tuple(
-    map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
+_SEEN = itemgetter(
+    *map(_NAMES.index, ["x", "y", "z", "heading", "speed", "yaw_rate", "s", "t", "steer", "vx", "vy"])
 )
 
 
@@ -48,7 +49,7 @@ class MujocoSimulator:
             rows, step = [vehicle.row.tobytes()], 0
             while (ended := monitor.ended(vehicle.row, step * CONTROL, vehicle.has_fallen)) is None:
                 now = vehicle.row.tolist()
-                *place, steer, vx, vy = (now[i] for i in _SEEN)
+                *place, steer, vx, vy = _SEEN(now)
                 image = None if sensor is None else sensor.see(vehicle.see())
                 ahead = outlook.at(now[station])
                 here = (step * CONTROL, *place, road, world, steer, CONTROL, vx, vy, image)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
+from roadgpt.drive.compiled import bound
 from roadgpt.drive.drive import COLUMNS, FloatArray
 from roadgpt.drive.lane_polygon import LanePolygon
 from roadgpt.drive.outlook import route_of
@@ -57,6 +58,7 @@ class Vehicle:
         self.row: FloatArray = np.zeros(len(COLUMNS))
         """The present state of the car, in the order of COLUMNS."""
         self.has_fallen = False
+        self._step = bound(control_step, (*self._parts, 0.0, 0.0, 0.0, 0, self.row))
 
     @classmethod
     def on(cls, road: "Road", world: "World", car: Car = ETK_LIKE) -> "Vehicle":
@@ -111,9 +113,9 @@ class Vehicle:
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))
 
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:
-        # Always floats: numba compiles a version for each type of number.
+        # always floats, for which the step is compiled
         command = float(steer), float(throttle), float(brake)
-        self.has_fallen = control_step(*self._parts, *command, steps, self.row)
+        self.has_fallen = self._step(*self._parts, *command, steps, self.row)
 
     def _row_at(self, s: float) -> FloatArray:
         sampled = self._ground.sampled
