@@ -16,6 +16,8 @@ _ESCAPES = str.maketrans(
 
 _UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # what an escape may be needed for
 
+MOST_TEXTS = 4096  # that are kept while a document is written
+
 Value = str | float | int
 
 
@@ -81,37 +83,45 @@ class XmlElement:
         level.
         """
         lines = [DECLARATION]
-        _write(self, "", lines, {})
+        _write(self, "", lines, _Texts(), {})
         return "\n".join(lines) + "\n"
+
+
+class _Texts(dict[Value, str]):
+    """The texts of the attributes of a document, by their values: most values are in it many times."""
+
+    def __missing__(self, value: Value) -> str:
+        if len(self) >= MOST_TEXTS:
+            self.clear()
+        text = self[value] = escaped(value) if isinstance(value, str) else number(value)
+        return text
 
 
 _Written = dict[tuple[int, str], str]
 """The text of elements that are in several places, by the element and the indent."""
 
 
-def _write(element: XmlElement, indent: str, lines: list[str], written: _Written) -> None:
-    if not element.is_shared:
-        _write_all(element, indent, lines, written)
-        return
+def _write(element: XmlElement, indent: str, lines: list[str], texts: _Texts, written: _Written) -> None:
+    name = element.name
+    said = "".join([f' {key}="{texts[value]}"' for key, value in element.attributes.items()])
+    if element.children:
+        lines.append(f"{indent}<{name}{said}>")
+        deeper = indent + "  "
+        for child in element.children:
+            if child.is_shared:
+                lines.append(_shared(child, deeper, texts, written))
+            else:
+                _write(child, deeper, lines, texts, written)
+        lines.append(f"{indent}</{name}>")
+    else:
+        lines.append(f"{indent}<{name}{said}" + (f">{element.raw}</{name}>" if element.raw else "/>"))
+
+
+def _shared(element: XmlElement, indent: str, texts: _Texts, written: _Written) -> str:
+    """Returns the text of an element that is in several places."""
     key = (id(element), indent)
     if (text := written.get(key)) is None:
         own: list[str] = []
-        _write_all(element, indent, own, written)
+        _write(element, indent, own, texts, written)
         text = written[key] = "\n".join(own)
-    lines.append(text)
-
-
-def _write_all(element: XmlElement, indent: str, lines: list[str], written: _Written) -> None:
-    said = [
-        f' {name}="{escaped(value) if isinstance(value, str) else number(value)}"'
-        for name, value in element.attributes.items()
-    ]
-    opening = f"{indent}<{element.name}{''.join(said)}"
-    if element.children:
-        lines.append(opening + ">")
-        deeper = indent + "  "
-        for child in element.children:
-            _write(child, deeper, lines, written)
-        lines.append(f"{indent}</{element.name}>")
-    else:
-        lines.append(f"{opening}>{element.raw}</{element.name}>" if element.raw else opening + "/>")
+    return text

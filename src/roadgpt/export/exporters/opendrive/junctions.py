@@ -4,12 +4,13 @@ Source: ASAM OpenDRIVE 1.8.1, junctions.
 """
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 
 from roadgpt.export.exporters.opendrive.boundaries import boundary
 from roadgpt.export.exporters.opendrive.extent import bounds_of, reaches
 from roadgpt.export.exporters.opendrive.lanes import LaneLinks, RoadParts
 from roadgpt.export.exporters.opendrive.plan import Start, starts_of
-from roadgpt.export.exporters.opendrive.roads import REVISION, RoadLink, RoadPlace, header, road_element
+from roadgpt.export.exporters.opendrive.roads import REVISION, RoadPlace, header, road_element
 from roadgpt.export.exporters.opendrive.signals import Signals
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry import PieceCurve
@@ -60,17 +61,20 @@ def _place(network: Network, member: NetworkRoad, starts: Sequence[Start]) -> Ro
     return RoadPlace(links, found[0].id, _lane_links(connection), starts)
 
 
-def _links(network: Network, member: NetworkRoad) -> Iterator[RoadLink]:
+def _links(network: Network, member: NetworkRoad) -> Iterator[XmlElement]:
     """Yields the links of a road outside junctions."""
     for name, end in (("predecessor", RoadEnd(member.id, "start")), ("successor", RoadEnd(member.id, "end"))):
         if (junction := network.junction_at.get(end)) is not None:
-            yield name, {"elementType": "junction", "elementId": str(junction)}
+            yield XmlElement(name, {"elementType": "junction", "elementId": str(junction)})
         elif (found := network.continued_at.get(end)) is not None:
             yield _to_road(name, found.after if found.before == end else found.before)
 
 
-def _to_road(name: str, end: RoadEnd) -> RoadLink:
-    return name, {"elementType": "road", "elementId": str(end.road), "contactPoint": end.contact}
+@lru_cache(maxsize=1024)
+def _to_road(name: str, end: RoadEnd) -> XmlElement:
+    """Returns the link to the end of a road, which all ways from there or to there have in common."""
+    link = {"elementType": "road", "elementId": str(end.road), "contactPoint": end.contact}
+    return XmlElement(name, link, is_shared=True)
 
 
 def _continued_lanes(network: Network, member: NetworkRoad) -> LaneLinks:

@@ -8,10 +8,10 @@ With traffic on the left, lanes with positive ids lead along the road.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 
 from roadgpt.export.exporters.opendrive.heights import elevations, level_height, rows
-from roadgpt.export.markup import XmlElement
+from roadgpt.export.markup import Value, XmlElement
 from roadgpt.geometry import CubicProfile
 from roadgpt.road import Road, World
 from roadgpt.road.profile import DASH, DOUBLE, GAP, LINE, Lane, Marking, Profile, as_cubics
@@ -97,14 +97,20 @@ class RoadParts:
                 for name, other in (("predecessor", before), ("successor", after)):
                     if other is not None:
                         link.add(name, {"id": other})
-            made.extended(*widths, *_mark(lane.marking, is_inside))
-            if lane.kind == "driving":
-                friction = self.world.site.friction
-                made.add(
-                    "material", {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
-                )
-                made.add("speed", {"sOffset": 0, "max": speed_kmh(self.world), "unit": "km/h"})
-            yield made
+            yield made.extended(*widths, *_mark(lane.marking, is_inside), *self._rules(lane))
+
+    def _rules(self, lane: Lane) -> tuple[XmlElement, ...]:
+        """Returns the friction and the speed limit of a lane that is driven on."""
+        return self._driven_on if lane.kind == "driving" else ()
+
+    @cached_property
+    def _driven_on(self) -> tuple[XmlElement, ...]:
+        friction, limit = self.world.site.friction, speed_kmh(self.world)
+        surface: dict[str, Value] = {"sOffset": 0, "friction": friction, "surface": "asphalt", "roughness": 0}
+        return (
+            XmlElement("material", surface, is_shared=True),
+            XmlElement("speed", {"sOffset": 0, "max": limit, "unit": "km/h"}, is_shared=True),
+        )
 
 
 def _is_constant(profile: Profile) -> bool:
@@ -126,15 +132,16 @@ def _lane(number: int, kind: str) -> XmlElement:
     return XmlElement("lane", {"id": number, "type": kind, "level": "false"})
 
 
-def _mark(kind: Marking, is_inside: bool) -> list[XmlElement]:
+@cache
+def _mark(kind: Marking, is_inside: bool) -> tuple[XmlElement, ...]:
     """Returns the road marking at the outer edge of a lane.
 
-    Where there is none, the list is empty; inside junctions, the marking "none" is written, because some
+    Where there is none, nothing is returned; inside junctions, the marking "none" is written, because some
     programs would draw a line there.
     """
     if kind == "none":
-        blank = XmlElement("roadMark", {"sOffset": 0, "type": "none", "color": "standard"})
-        return [blank] if is_inside else []
+        blank: dict[str, Value] = {"sOffset": 0, "type": "none", "color": "standard"}
+        return (XmlElement("roadMark", blank, is_shared=True),) if is_inside else ()
     name = "solid solid" if kind == "double" else kind
     mark = XmlElement(
         "roadMark",
@@ -147,12 +154,13 @@ def _mark(kind: Marking, is_inside: bool) -> list[XmlElement]:
             "width": LINE,
             "laneChange": "both" if kind == "broken" else "none",
         },
+        is_shared=True,
     )
     length, space = (DASH, GAP) if kind == "broken" else (DASH + GAP, 0.0)
     made = mark.add("type", {"name": name, "width": LINE})
     for t in (DOUBLE / 2, -DOUBLE / 2) if kind == "double" else (0,):
         made.add("line", {"length": length, "space": space, "tOffset": t, "sOffset": 0, "width": LINE})
-    return [mark]
+    return (mark,)
 
 
 def speed_kmh(world: World) -> float:

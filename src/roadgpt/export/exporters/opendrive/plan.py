@@ -21,6 +21,7 @@ ROUND = 1e-5  # m between a spiral that other programs would refuse and the arcs
 APART = 0.1  # m; nodes of a spline closer together than this share a cubic
 STEP = 2.0  # m between the stations at which a curve of an unknown class is cut
 CLOSE, NEARLY = 1e-8, 1e-5  # 1/m and ratio; curvatures that differ by less are almost equal
+LINE = XmlElement("line", is_shared=True)
 SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in its place
 
 
@@ -137,7 +138,7 @@ def _shape(piece: Piece) -> XmlElement:
     if abs(piece.k1 - piece.k0) * bend > STRAIGHT:
         return XmlElement("spiral", {"curvStart": piece.k0, "curvEnd": piece.k1})
     middle = (piece.k0 + piece.k1) / 2
-    return XmlElement("arc", {"curvature": middle}) if abs(middle) * bend > STRAIGHT else XmlElement("line")
+    return XmlElement("arc", {"curvature": middle}) if abs(middle) * bend > STRAIGHT else LINE
 
 
 def _cubics(plan: PlanCurve) -> Iterator[XmlElement]:
@@ -169,7 +170,7 @@ def _cubics(plan: PlanCurve) -> Iterator[XmlElement]:
             last = None
         made = _geometry(s, float(x), float(y), heading, length)
         if is_line:
-            last = made.extended(XmlElement("line"))
+            last = made.extended(LINE)
         else:
             yield made.extended(_cubic(cu, cv, du, dv))
     if last is not None:

@@ -1,6 +1,6 @@
 """Writes the header of an OpenDRIVE file, and one road."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from roadgpt.export.exporters.opendrive.lanes import (
@@ -10,13 +10,10 @@ from roadgpt.export.exporters.opendrive.lanes import (
 )
 from roadgpt.export.exporters.opendrive.plan import Start, geometries
 from roadgpt.export.georeference import PROJECTION
-from roadgpt.export.markup import Value, XmlElement
+from roadgpt.export.markup import XmlElement
 from roadgpt.road import Road
 
 REVISION = 8  # ASAM OpenDRIVE 1.8
-
-RoadLink = tuple[str, Mapping[str, Value]]
-"""The name and the attributes of an element ``predecessor`` or ``successor``."""
 
 
 def header(bounds: Sequence[float], revision: int = REVISION) -> XmlElement:
@@ -49,8 +46,8 @@ def header(bounds: Sequence[float], revision: int = REVISION) -> XmlElement:
 class RoadPlace:
     """Where a road is in a network."""
 
-    links: Sequence[RoadLink] = ()
-    """The roads or junctions before and after it."""
+    links: Sequence[XmlElement] = ()
+    """The elements of the roads or junctions before and after it."""
     junction: int = -1
     """The id of the junction to which a connecting road belongs; -1 for any other road."""
     lane_links: LaneLinks | None = None
@@ -79,7 +76,7 @@ def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | N
         },
     )
     if place is not None:
-        body.add("link").extended(*(XmlElement(name, attributes) for name, attributes in place.links))
+        body.add("link").extended(*place.links)
     else:
         place = RoadPlace()
     body.extended(parts.road_type)

@@ -6,6 +6,7 @@ are those of the German road traffic regulations (StVO): 205 give way, 206 stop,
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 from roadgpt.export.exporters.opendrive.arrows import arrow_object
 from roadgpt.export.markup import XmlElement
@@ -63,17 +64,36 @@ class Signals:
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
         """Yields the elements ``objects`` and ``signals`` of a road; nothing if it has none."""
-        own = [signal for signal in self.them if signal.arm.end.road == road]
-        lines = [*(line for signal in own for line in self._line(signal)), *self._crosswalks(road)]
-        lines += self._arrows(road)
-        if lines:
-            yield XmlElement("objects").extended(*lines)
-        if own:
+        if objects := self._objects.get(road):
+            yield XmlElement("objects", children=objects)
+        if own := self._of_road.get(road):
             yield XmlElement("signals").extended(*map(self._element, own))
+
+    @cached_property
+    def _of_road(self) -> dict[int, list[_Signal]]:
+        """The signals of each road that has some."""
+        found: dict[int, list[_Signal]] = {}
+        for signal in self.them:
+            found.setdefault(signal.arm.end.road, []).append(signal)
+        return found
+
+    @cached_property
+    def _objects(self) -> dict[int, list[XmlElement]]:
+        """What is painted on each road: lines at signals, crosswalks, arrows. Ids are in this order."""
+        found: dict[int, list[XmlElement]] = {}
+        for signal in self.them:
+            found.setdefault(signal.arm.end.road, []).extend(self._line(signal))
+        arms = [arm for junction in self.network.junctions for arm in junction.arms]
+        crossed = [arm.end for arm in arms if arm.crosswalk]
+        for number, end in enumerate(crossed, self.first_free):
+            found.setdefault(end.road, []).append(self._crosswalk(end, number))
+        for number, arrow in enumerate(self.arrows, self.first_free + len(crossed)):
+            found.setdefault(arrow.end.road, []).append(arrow_object(arrow, number))
+        return found
 
     def controllers(self) -> Iterator[XmlElement]:
         """Yields a controller for the lights of each junction that has some; its id is the junction's."""
-        for junction in self._lit():
+        for junction in self._lit:
             controller = XmlElement("controller", {"id": str(junction), "name": f"lights {junction}"})
             for signal in self.them:
                 if signal.junction == junction and signal.arm.control == "lights":
@@ -82,10 +102,12 @@ class Signals:
 
     def of_junction(self, junction: int) -> Iterator[XmlElement]:
         """Yields the reference to the controller of a junction; nothing if it has no lights."""
-        if junction in self._lit():
+        if junction in self._lit:
             yield XmlElement("controller", {"id": str(junction), "type": "0", "sequence": 0})
 
+    @cached_property
     def _lit(self) -> list[int]:
+        """The junctions that have lights."""
         return list(dict.fromkeys(s.junction for s in self.them if s.arm.control == "lights"))
 
     def _element(self, signal: _Signal) -> XmlElement:
@@ -116,45 +138,29 @@ class Signals:
         made.add("validity", {"fromLane": min(lanes), "toLane": max(lanes)})
         return made
 
-    def _crosswalks(self, road: int) -> Iterator[XmlElement]:
-        """Yields the crosswalks of a road; their ids follow those of the signals."""
-        member = self.network.road(road)
-        for number, end in enumerate(self._crossed):
-            if end.road != road:
-                continue
-            away = min(CROSSWALK[0] + CROSSWALK[1] / 2, member.road.length)
-            s = member.road.length - away if end.contact == "end" else away
-            left, right = (float(t) for t in member.profile.edges(s))
-            yield XmlElement(
-                "object",
-                {
-                    "id": str(self.first_free + number),
-                    "name": "crosswalk",
-                    "type": "crosswalk",
-                    "s": s,
-                    "t": (left + right) / 2,
-                    "zOffset": 0.0,
-                    "hdg": 0.0,
-                    "orientation": "none",
-                    "length": CROSSWALK[1],
-                    "width": left - right,
-                    "height": 0.01,
-                    "dynamic": "no",
-                },
-            )
-
-    @property
-    def _crossed(self) -> list[RoadEnd]:
-        """The ends of roads that have a crosswalk."""
-        arms = [arm for junction in self.network.junctions for arm in junction.arms]
-        return [arm.end for arm in arms if arm.crosswalk]
-
-    def _arrows(self, road: int) -> Iterator[XmlElement]:
-        """Yields the arrows on a road; their ids follow those of the crosswalks."""
-        first = self.first_free + len(self._crossed)
-        for number, arrow in enumerate(self.arrows):
-            if arrow.end.road == road:
-                yield arrow_object(arrow, first + number)
+    def _crosswalk(self, end: RoadEnd, number: int) -> XmlElement:
+        """Returns the crosswalk at the end of a road, with the id ``number``."""
+        member = self.network.road(end.road)
+        away = min(CROSSWALK[0] + CROSSWALK[1] / 2, member.road.length)
+        s = member.road.length - away if end.contact == "end" else away
+        left, right = (float(t) for t in member.profile.edges(s))
+        return XmlElement(
+            "object",
+            {
+                "id": str(number),
+                "name": "crosswalk",
+                "type": "crosswalk",
+                "s": s,
+                "t": (left + right) / 2,
+                "zOffset": 0.0,
+                "hdg": 0.0,
+                "orientation": "none",
+                "length": CROSSWALK[1],
+                "width": left - right,
+                "height": 0.01,
+                "dynamic": "no",
+            },
+        )
 
     def _line(self, signal: _Signal) -> Iterator[XmlElement]:
         """Yields the stop line or give-way line of an arm; nothing for a road with priority."""
