@@ -34,6 +34,7 @@ JUNCTIONS = st.builds(
     side=st.none() | st.sampled_from(get_args(Side)),
     length=st.none() | AMOUNTS,
     all_way=st.booleans(),
+    others_stop=st.booleans(),
     crosswalk=st.booleans(),
 )
 ROADS = st.sampled_from(

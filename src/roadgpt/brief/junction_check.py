@@ -71,6 +71,11 @@ def check_junction(junction: JunctionClause) -> None:
         )
     if junction.all_way and junction.control not in ("stop", "yield", "lights"):
         raise BriefError("all arms have the same sign or light: give stop or lights beside all_way")
+    if junction.others_stop and (junction.control != "priority" or junction.kind == "roundabout"):
+        raise BriefError(
+            "others_stop means that the roads which give way have stop signs: give it beside priority, not "
+            "at a roundabout"
+        )
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
     if junction.size is not None and junction.radius is not None:

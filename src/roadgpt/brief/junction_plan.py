@@ -29,7 +29,7 @@ LONG = {short: name for name, short in SHORT.items()}
 WAYS = "ways="
 SIDE = "side="
 DIAMETER = "d"
-FLAGS = ("skew", "all_way", "crosswalk")
+FLAGS = ("skew", "all_way", "crosswalk", "others_stop")
 
 
 def junction_plan(junction: JunctionClause) -> str:

@@ -27,6 +27,8 @@ def junction_text(junction: JunctionClause) -> str:
         place.append(CONTROLS[junction.control])
     if junction.all_way:
         place.append("at every arm")
+    if junction.others_stop:
+        place.append("with stop signs for the others")
     if junction.crosswalk:
         place.append("with a crosswalk")
     return f"{' '.join(place)} {_way_on(junction)}".strip()

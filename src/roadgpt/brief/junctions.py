@@ -95,12 +95,21 @@ CONTROLS: Mapping[Control, str] = {
     "lights": "with traffic lights",
     "none": "without signs",
 }
+BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
+"""How many degrees the route turns if it bears slightly, or turns sharply, to a side."""
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def side_of(turn: float) -> Way:
     """Returns the side of a change of direction in degrees, left positive."""
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
+
+
+def bends_as(take: Take | None, turn: float) -> bool:
+    """Returns whether a change of direction in degrees is as slight or as sharp as a take such as
+    "slight_left"; true for takes that say neither.
+    """
+    return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
 class JunctionClause(Frozen):
@@ -130,6 +139,8 @@ class JunctionClause(Frozen):
     """The length in metres of the lane for acceleration or deceleration, or of the taper of a lane."""
     all_way: bool = False
     """Whether every arm has the sign or the light of the route."""
+    others_stop: bool = False
+    """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False
 
     @field_validator("ways")

@@ -13,9 +13,8 @@ import numpy as np
 
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
 from roadgpt.geometry import CubicProfile
-from roadgpt.network import Junction, Network, NetworkRoad, Passage, RoadEnd, Route
+from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route
 
-FAR = 1e6  # m, behind the end of a connecting road
 FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
 T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junction
@@ -49,6 +48,8 @@ class MeasuredJunction:
     """Radius of the central island of a roundabout; None for other junctions."""
     is_ramp: bool | None = None
     """Whether the route comes from the ramp (merge) or goes to it (diverge); None for other junctions."""
+    ramp_side: Side | None = None
+    """The side of the ramp of a merge or exit."""
     beside: float | None = None
     """Length of the full lane for acceleration or deceleration of a merge or exit."""
     ring_lanes: int = 0
@@ -116,25 +117,29 @@ def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool
     )
 
 
-def _ramp_of(network: Network, passage: Passage) -> tuple[bool, float] | None:
-    """Returns whether the route uses the ramp, and the length of its lane; None if there is no ramp.
-
-    The ramp is the one of two roads on the same side of the junction that turns more.
-    """
+def _is_by_ramp(network: Network, passage: Passage) -> bool | None:
+    """Returns whether the route uses the ramp of a merge or exit; None if there is no ramp."""
     junction = passage.entered
     if junction.kind not in RAMPS:
         return None
-    is_merge = junction.kind == "merge"
-    own = passage.arrival if is_merge else passage.departure
-    common = passage.departure if is_merge else passage.arrival
-    turns = {
-        (each.incoming if is_merge else each.outgoing): abs(
-            float(network.road(each.road).road.heading(FAR) - network.road(each.road).road.heading(0.0))
-        )
-        for each in junction.connections
-        if (each.outgoing if is_merge else each.incoming) == common
-    }
-    return turns[own] == max(turns.values()), length_beside_ramp(network, junction)
+    way = _way_of_ramp(network, junction)
+    return way.incoming == passage.arrival and way.outgoing == passage.departure
+
+
+def _way_of_ramp(network: Network, junction: Junction) -> Connection:
+    """Returns the way of a merge or exit that turns most: that from or to the ramp."""
+    return max(junction.connections, key=lambda each: abs(_turn_of(network, each)))
+
+
+def _turn_of(network: Network, way: Connection) -> float:
+    """Returns the change of heading in radians along a way through a junction, left positive."""
+    road = network.road(way.road).road
+    return float(road.heading(road.length) - road.heading(0.0))
+
+
+def side_of_ramp(network: Network, junction: Junction) -> Side:
+    """Returns the side of the ramp of a merge or exit."""
+    return "left" if _turn_of(network, _way_of_ramp(network, junction)) > 0 else "right"
 
 
 def length_beside_ramp(network: Network, junction: Junction) -> float:
@@ -142,9 +147,10 @@ def length_beside_ramp(network: Network, junction: Junction) -> float:
 
     It counts while the lane is wider than 0.9 of its full width. The result is 0 if there is no such lane.
     """
-    ends = [each.outgoing if junction.kind == "merge" else each.incoming for each in junction.connections]
-    beside = network.road(max(ends, key=ends.count).road)
-    width = beside.profile.along[beside.profile.count[0] - 1].width
+    way = _way_of_ramp(network, junction)
+    beside = network.road((way.outgoing if junction.kind == "merge" else way.incoming).road)
+    is_outer = (side_of_ramp(network, junction) == "left") == network.left_hand
+    width = beside.profile.along[beside.profile.count[0] - 1 if is_outer else 0].width
     if not isinstance(width, CubicProfile):
         return 0.0
     s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
@@ -154,13 +160,13 @@ def length_beside_ramp(network: Network, junction: Junction) -> float:
 def _measured(network: Network, passage: Passage) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
     directions = [direction_of(network, end) for end in passage.arms]
-    ramp = _ramp_of(network, passage)
+    is_ramp = _is_by_ramp(network, passage)
     around = 1 if not network.left_hand else -1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
     return MeasuredJunction(
         passage.start,
-        kinds_of(gaps) if ring is None and ramp is None else (passage.entered.kind,),
+        kinds_of(gaps) if ring is None and is_ramp is None else (passage.entered.kind,),
         tuple(gaps),
         180.0 if passage.exit == len(passage.arms) else ways[passage.exit - 1],
         passage.exit,
@@ -168,8 +174,9 @@ def _measured(network: Network, passage: Passage) -> MeasuredJunction:
         passage.control,
         None if ring is None else 2 * (ring.radius + ring.width),
         None if ring is None else ring.radius,
-        ramp and ramp[0],
-        ramp and ramp[1],
+        is_ramp,
+        None if is_ramp is None else side_of_ramp(network, passage.entered),
+        None if is_ramp is None else length_beside_ramp(network, passage.entered),
         0 if ring is None else network.road(ring.ring[0]).profile.count[0],
         tuple(arm.control for arm in passage.entered.arms if _leads_in(network, arm.end)),
     )

@@ -10,7 +10,15 @@ from dataclasses import replace
 import numpy as np
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import LANE_KINDS, NAMES, RAMPS, SIZES, TAKES, JunctionClause
+from roadgpt.brief.junctions import (
+    LANE_KINDS,
+    NAMES,
+    RAMPS,
+    SIZES,
+    TAKES,
+    JunctionClause,
+    bends_as,
+)
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD, Range
@@ -164,9 +172,13 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     yield from _of_ramp(found, asked)
     if asked.all_way and set(found.all_controls) != {asked.control}:
         yield f"asked for {asked.control} at every arm, has {', '.join(found.all_controls)}"
+    if asked.others_stop and set(found.all_controls) != {"priority", "stop"}:
+        yield f"asked for stop signs for the others, has {', '.join(found.all_controls)}"
 
 
 def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    if asked.side not in (None, found.ramp_side):
+        yield f"asked for a ramp on the {asked.side}, is on the {found.ramp_side}"
     if found.beside is None or asked.length is None:
         return
     wanted = span(asked.length)
@@ -190,7 +202,7 @@ def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:
         side = take.rpartition("_")[2]
         same = [each for each, way in zip(found.ways, found.sides, strict=True) if way == side]
         pick = max if take.startswith("sharp") else min
-        return bool(same) and turn == pick(same, key=abs)
+        return bool(same) and turn == pick(same, key=abs) and bends_as(take, turn)
     if asked.kind == "y_junction" and take in ("left", "right"):
         return turn == (max(found.ways) if take == "left" else min(found.ways))
     return take == found.sides[found.exit - 1]

@@ -3,12 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features
+from roadgpt.brief.readers.model.confidence import confidence, features
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.used_words import unused_words
+from roadgpt.brief.words import SURE
+
+GUESS = 0.05
+"""A route of which the network is less sure is a guess; then a single road counts that is surer."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +60,10 @@ def scored_by(
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
     """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
 
-    What the network for routes reads counts if those for single roads name a junction or the like beside the
-    road or as the cause of a refusal; also if they could not write that plan, unless it is doubtful and they
-    have one of which they are surer.
+    The network for routes is asked if a word may tell of one. Its plan counts if those for single roads could
+    not write it, unless it is a guess: they know no junctions, and read "crossroads, sharp left" as a bend,
+    however sure they are. Its refusal counts unless they are sure of a plan. What it reads also counts if
+    they name a junction or the like beside the road or as the cause of a refusal.
 
     Args:
         roads: the networks for single roads.
@@ -69,15 +74,23 @@ def scored_by(
     """
     text = slotted(words)
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
-    is_route = routes is not None and bool(read) and not roads.knows(_without_motorway(read[0].tokens))
-    sure = routes.confidence(read[0], text, ()) if routes and is_route else 0.0
-    if routes and sure >= DOUBT:
+    is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
+    sure = _confidence(routes, read, text) if routes and is_route else 0.0
+    if routes and sure >= GUESS:
         return routes, read
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
         return routes, read or routes.scored(words, refuse_from)
-    is_doubted = found and not found[0].is_refusal and roads.confidence(found[0], text, ()) > sure
-    return (routes, read) if routes and is_route and not is_doubted else (roads, found)
+    against = _confidence(roads, found, text)
+    if routes and read and read[0].is_refusal:
+        return (routes, read) if against < SURE else (roads, found)
+    return (routes, read) if routes and is_route and sure >= against else (roads, found)
+
+
+def _confidence(ensemble: Ensemble, found: Sequence[ScoredPlan], text: SlottedText) -> float:
+    """Returns the confidence in the likeliest plan; 0 if there is none, or if it is a refusal."""
+    is_plan = bool(found) and not found[0].is_refusal
+    return ensemble.confidence(found[0], text, ()) if is_plan else 0.0
 
 
 def _without_motorway(tokens: Sequence[str]) -> list[str]:

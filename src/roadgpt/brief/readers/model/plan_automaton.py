@@ -40,6 +40,7 @@ from roadgpt.brief.readers.model.vocabulary import (
     LANE_KINDS,
     LISTED_WAYS,
     MEASURED,
+    NEWER_FLAGS,
     NEXT_TO,
     NOUNS,
     NUMBER_OF,
@@ -272,7 +273,7 @@ def junction_tokens(numbers: Numbers) -> Symbol:
     """Returns what a plan can say of a junction, a merge or a change of lanes, in the order of printing."""
     side, length = Sequel(OneOf(("side=",)), (OneOf(SIDES),)), Keyed("len=", numbers)
     takes, controls = OneOf((*SIDES, *TAKES)), OneOf(CONTROLS)
-    flags = tuple(OneOf((flag,)) for flag in FLAGS)
+    flags = tuple(OneOf((flag,)) for flag in (*FLAGS, *NEWER_FLAGS))
     ways = Sequel(OneOf(("ways=",)), (OneOf((*LISTED_WAYS, *SIDES, "straight")),))
     exit_, arms, lanes = (Keyed(key, numbers) for key in ("exit=", "arms=", "lanes="))
     radius = AnyOf((Keyed("r=", numbers), Keyed("d=", numbers)))

@@ -27,7 +27,9 @@ ENGLISH = (
     r"\btl\b|signal|\bstop\b|\byield|give way|giving way|priority|right of way|zebra|pedestrian crossing|"
     r"left-hand (?:traffic|drive)|(?:side of the|on british) road|"
     r"(?:drive|driving|keep|traffic) on the left|change (?:to the )?(?:left|right)|freeway|motorway|"
-    r"interstate|highway|branch"
+    r"interstate|highway|branch|"
+    r"\bwye\b|splits? in two|\bparts\b|\bplain \w* ?x\b|\bisland|\brobots?\b|get over to the|"
+    r"pull out|\bcircle|goes off to|ignor"
 )
 GERMAN = (
     r"kreuz|einmünd|einmuend|mündet|gabl?el|gablung|verzweig|\bstern|fünfarm|kreisverk|kreisel|\bkvp|"
@@ -37,7 +39,10 @@ GERMAN = (
     r"straßen? (?:links|rechts|endet|hört|teilt)|(?:weg|straße) (?:sich )?teilt|ende der straße|"
     r"(?:straße|weg) endet|(?:fünf|sechs) straßen|"
     r"\b(?:erste|zweite|dritte|nächste)n? (?:links|rechts|straße)|autobahn|\bbab\b|\bknoten|überhol|"
-    r"markierung"
+    r"markierung|"
+    r"(?:straße|weg|diese?)[^.]{0,30} (?:aufhört|teilt|endet)|endet auch|\bendet\b|aufhört|"
+    r"reißverschluss|wegscheide|strahlig|übernächste|end der straßn|ypsilon|ausfart|(?:rechts|"
+    r"links) ab\b|kommt rechts|kommt links"
 )
 FRENCH = (
     r"carrefour|croisement|intersection|rond-?s?[- ]?points?\b|giratoire|fourche|bifurc|embranch|étoile|"
@@ -45,14 +50,19 @@ FRENCH = (
     r"jonction|patte d|quadrillage|grille|damier|pâtés?|feux?\b|priorit|cédez|passage (?:piéton|pour)|"
     r"autoroute|marquage|\brues?\b|\bfiles?\b|route (?:se termine|finit|se sépare|se divise)|bout de la r|"
     r"conduite à gauche|insère|déboît|dépass|toutes-directions|la route bute|"
-    r"(?:première|2e|deuxième|troisième) à (?:droite|gauche)"
+    r"(?:première|2e|deuxième|troisième) à (?:droite|gauche)|"
+    r"déport|rabat|se (?:partage|dédouble|scinde)|rejoint|\barrêt|échiquier|s'en va|lumière|"
+    r"prochaine|croisée|\bl'y\b|à la y\b|change (?:une|deux) fois"
 )
 SPANISH = (
     r"cruce|cruza|intersecci|glorieta|rotonda|óvalo|isleta|bifurca|horqueta|estrella|ramal|salida|"
     r"incorpor|carril|trenzado|(?:sentido|dirección) única?o?|calzada|mediana|línea|linea|cuadrícula|"
     r"manzana|semáforo|semaforo|prioridad|\bceda|\bpare\b|paso de|\bcalle|bocacalle|autopista|autov|"
     r"desv[ií]o|\bnudo|adelanta|marcas|malla|cuadra|damero|\bdos y\b|una y\b|\balto me|primer alto|"
-    r"vía lateral|camino a la|(?:carretera|camino) (?:[^.,;]{0,20}(?:se parte|se divid|termina))"
+    r"vía lateral|camino a la|(?:carretera|camino) (?:[^.,;]{0,20}(?:se parte|se divid|termina))|"
+    r"transversal|\b(?:la|una|de) tes?\b|desemboca|desvi|\b(?:primera|segunda|tercera|próxima)\b|"
+    r"y griega|encrucijada|redondel|rompoy|\balto\b|luces|focos|lateral|\bstops?\b|cremallera|"
+    r"esquina|desvía|otra carretera|llegue otra|se abre en|se parte|\bla y\b|va a dar a|sale otra"
 )
 ITALIAN = (
     r"in?c?rocc?i|crocevia|quadrivio|rotatori|rotond|biforc|reticolo|\bnod[oi]\b|piazza|laterale|innest|"
@@ -61,17 +71,23 @@ ITALIAN = (
     r"precedenza|attraversament|strisce|autostrad|superstrad|travers|"
     r"(?:strada|via) (?:finisce|termina|si divide|laterale)|finisce su|(?:fine|fondo) alla (?:via|strada)|"
     r"fine della strada|prossima strada|cinque strade|sei strade|"
-    r"(?:prima|seconda|terza) (?:via )?a (?:destra|sinistra)|guida a sinistra"
+    r"(?:prima|seconda|terza) (?:via )?a (?:destra|sinistra)|guida a sinistra|"
+    r"isola centrale|stradin|stradell|sbatt|spost|crocicchio|sdoppia|forcella|\bincr\b|"
+    r"\binc[or]+ci|si apre|rondò|(?:terza|seconda|prima) strada|viuzz|si stacca|confluisc|laterali|"
+    r"in una strada|(?:rondò|la) (?:seconda|terza)\b"
 )
 TELLING = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)), re.IGNORECASE)
 
 COMPANIONS = word_set(
     "junction junctions intersection intersections arm arms leg legs branches exits block blocks traffic",
-    "ramp road roads street streets sign signs arrangement markings",
-    "knoten knotenpunkt arme armen ausfahrten blöcke häuserblöcke rampe straße straßen schild spuren",
-    "branches sorties pâtés maisons bretelle route routes rue rues panneau voies",
-    "brazos ramas salidas manzanas ramal carretera calle calles señal carriles intersección",
-    "bracci rami uscite isolati strada strade via vie cartello corsie intersezione",
+    "ramp road roads street streets sign signs arrangement markings lane lanes grid bear",
+    "knoten knotenpunkt arme armen ausfahrten blöcke häuserblöcke rampe straße straßen",
+    "schild spur spuren raster gitter",
+    "branches sorties pâtés maisons bretelle route routes rue rues panneau voie voies",
+    "quadrillage grille croix",
+    "brazos ramas salidas manzanas ramal carretera calle calles señal carril carriles",
+    "intersección cuadrícula",
+    "bracci rami uscite isolati strada strade via vie cartello corsia corsie intersezione griglia",
 )
 """Words that go with another one, which says what part of a route is meant ("T-junction", "four arms"): the
 plan stays the same without them."""

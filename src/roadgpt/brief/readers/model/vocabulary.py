@@ -90,13 +90,14 @@ TAKES = ["straight", "back", "sharp_left", "sharp_right", "slight_left", "slight
 RING_SIZES = ["mini", "normal", "large"]
 CONTROLS = ["priority", "yield", "stop", "lights", "none"]
 FLAGS = ["skew", "all_way", "crosswalk"]
+NEWER_FLAGS = ["others_stop"]
 LISTED_WAYS = ["left+right", "left+straight", "right+straight", "left+right+straight"]
 CENTRES = ["solid", "broken", "double", "none"]
 NETWORKS = [
     "//", "||", *JUNCTIONS, "roundabout", *RAMPS, *LANE_KINDS, "lane_change", *TAKES, "ramp", "main",
     *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
     "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
-    "d=",
+    "d=", *NEWER_FLAGS,
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
 TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES, *NETWORKS]))
