@@ -17,6 +17,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
+from roadgpt.design.network_search import NetworkSearch
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.export import save
 from roadgpt.network import NetworkDesign, Route, build_route, read_network_design
@@ -64,6 +65,29 @@ CASES: dict[str, dict[str, Any]] = {
     "merge ramp // | len=200 motorway // diverge ramp": {
         "sequence": [{"kind": "merge", "take": "ramp"}, {"kind": "diverge", "take": "exit", "after": 200}],
     },
+    "merge ramp side=left // | lanes=3 motorway // diverge ramp side=left len=60": {
+        "sequence": [
+            {"kind": "merge", "take": "ramp", "side": "left", "accel": [50, None]},
+            {"kind": "diverge", "take": "exit", "side": "left", "decel": 60},
+        ],
+        "between": [{"lanes": 1, "oneway": True}, {"lanes": 3}, {"lanes": 1, "oneway": True}],
+    },
+    "| motorway // diverge main side=left // | len=400 // merge main side=right || left_hand": {
+        "sequence": [
+            {"kind": "diverge", "take": "main", "side": "left", "decel": [50, None]},
+            {"kind": "merge", "take": "main", "side": "right", "accel": [50, None]},
+        ],
+        "between": [{"lanes": 2}, {"lanes": 2, "length": 400}, {"lanes": 2}],
+    },
+    "crossroads straight // | lanes=4 against=4": {
+        "sequence": [{"kind": "X", "take": "straight"}],
+        "between": [None, {"lanes": 4, "lanes_against": 4}],
+    },
+    "| lanes=3 against=3 // t_junction left // | lanes=3 against=3": {
+        "sequence": [{"kind": "T", "take": "left"}],
+        "lanes": 3,
+        "lanes_against": 3,
+    },
     "| oneway // t_junction left": {
         "sequence": [{"kind": "T", "take": "left", "two_way": [0, 3]}],
         "between": [{"oneway": True, "lanes": 1}, None],
@@ -96,6 +120,14 @@ CASES: dict[str, dict[str, Any]] = {
         "lanes": 3,
         "junctions": 0,
     },
+    "crossroads straight priority others_stop": {
+        "sequence": [{"kind": "X", "take": "straight", "control": "priority", "other_control": "stop"}]
+    },
+    "t_junction left priority others_stop ways=left+straight": {
+        "sequence": [{"kind": "T", "take": "left", "control": "priority", "other_control": "stop"}]
+    },
+    "star slight_right arms=5": {"sequence": [{"kind": "star", "take": "right", "deg": [-75, -25]}]},
+    "star sharp_left": {"sequence": [{"kind": "star", "take": "left", "deg": [95, 180]}]},
     "// crossroads stop all_way //": {"sequence": [{"kind": "X", "control": "stop", "all_control": "stop"}]},
     "| centre=double // t_junction straight // | centre=double": {
         "sequence": [{"kind": "T", "take": "straight"}],
@@ -168,7 +200,15 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
-        ("merge ramp side=left // | motorway", "a ramp on the left cannot be built yet; leave it out"),
+        (
+            "| lanes=2 against=2 // diverge ramp side=left",
+            "a ramp on the left would cross the oncoming lanes of its road, and bridges cannot be built .*",
+        ),
+        ("merge main side=left // | divided", "a ramp on the left would cross the oncoming lanes .*"),
+        (
+            "diverge main side=right // | against=1 || left_hand",
+            "a ramp on the right would cross the oncoming lanes .*",
+        ),
         ("| lanes=2 // merge ramp", "a ramp with several lanes or oncoming traffic cannot be built yet; .*"),
         ("diverge ramp // | against=1", "a ramp with several lanes or oncoming traffic cannot be .*"),
         (
@@ -176,15 +216,17 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
             "a roundabout with fewer lanes than the 3 of a road that it joins cannot .*",
         ),
         ("| lanes=2 // roundabout lanes=1", "a roundabout with fewer lanes than the 2 of a road .*"),
-        (
-            "merge ramp side=right // | motorway || left_hand",
-            "a ramp on the right with traffic on the left cannot be built yet; leave it out",
-        ),
     ],
 )
 def test_what_cannot_be_built_yet_is_named(line: str, said: str) -> None:
     with pytest.raises(DesignError, match=f"^{said}$"):
         draft(read_plan(line), WIDE, seed=1)
+
+
+def test_lanes_that_would_lead_nowhere_are_named() -> None:
+    brief = read_plan("| lanes=4 against=4 // crossroads straight // | lanes=1 against=1")
+    with pytest.raises(DesignError, match=r"lanes of one road would lead nowhere .*; give .* as many lanes$"):
+        NetworkSearch(brief, WIDE, np.random.default_rng(1)).run(3)
 
 
 def checked_draft(line: str) -> None:

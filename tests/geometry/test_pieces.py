@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.geometry import Piece, PieceCurve, project, wrap_angle
-from roadgpt.geometry.pieces import joined
+from roadgpt.geometry.curve import wrapped
+from roadgpt.geometry.pieces import along_all, joined
 
 curvatures = st.floats(-1 / 14, 1 / 14)
 pieces = st.lists(st.builds(Piece, st.floats(0.5, 60), curvatures, curvatures), min_size=1, max_size=6)
@@ -43,6 +44,16 @@ def test_no_gap_between_pieces(curve: PieceCurve) -> None:
     assert np.all(gaps < 1e-8)
 
 
+@given(st.lists(curves, min_size=1, max_size=4))
+def test_curves_together_are_where_each_is_alone(several: list[PieceCurve]) -> None:
+    """Their ends and the joints of their pieces are among the stations."""
+    stations = [np.r_[np.linspace(0, c.length, 9), np.cumsum([p.length for p in c.pieces])] for c in several]
+    points, headings = along_all(several, stations)
+    pairs = list(zip(several, stations, strict=True))
+    assert points == pytest.approx(np.concatenate([c.at(s) for c, s in pairs]), abs=1e-9)
+    assert headings == pytest.approx(np.concatenate([c.heading(s) for c, s in pairs]), abs=1e-12)
+
+
 @given(st.floats(15, 200), st.floats(0.1, 3.0), st.floats(0, 1), st.floats(-13, 13))
 def test_projection_undoes_offsets_on_an_arc(radius: float, angle: float, share: float, t: float) -> None:
     curve = PieceCurve(3, 4, 0.5, (Piece(radius * angle, 1 / radius, 1 / radius),))
@@ -73,7 +84,8 @@ def test_a_curve_of_nothing_is_refused(pieces: tuple[Piece, ...]) -> None:
 
 @given(st.floats(-1e4, 1e4))
 def test_wrapped_angles_point_the_same_way(angle: float) -> None:
-    wrapped = wrap_angle(angle)
-    assert -np.pi < wrapped <= np.pi
-    assert np.cos(wrapped) == pytest.approx(np.cos(angle), abs=1e-9)
-    assert np.sin(wrapped) == pytest.approx(np.sin(angle), abs=1e-9)
+    turned = wrap_angle(angle)
+    assert -np.pi < turned <= np.pi
+    assert np.cos(turned) == pytest.approx(np.cos(angle), abs=1e-9)
+    assert np.sin(turned) == pytest.approx(np.sin(angle), abs=1e-9)
+    assert wrapped(angle) == float(turned)

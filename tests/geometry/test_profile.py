@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from roadgpt.geometry import GradeProfile
+from roadgpt.geometry import CubicProfile, GradeProfile
 
 
 @st.composite
@@ -36,6 +36,20 @@ def test_a_parabola_between_two_grades_is_the_textbook_one() -> None:
     assert profile.grade(40.0) == pytest.approx(0.0)
     assert profile.height(60.0) == pytest.approx(0.6)
     assert profile.vertical_curvature(30.0) == pytest.approx(-0.001)
+
+
+@given(
+    st.lists(st.tuples(*[st.floats(-2, 2)] * 4), min_size=1, max_size=4), st.floats(-3, 13), st.floats(-1, 1)
+)
+def test_a_cubic_from_another_station_is_the_same_curve(
+    rows: list[tuple[float, float, float, float]], s: float, ahead: float
+) -> None:
+    """numpy.polynomial is the second opinion; the first cubic also applies before its station."""
+    profile = CubicProfile(tuple(4.0 * n for n in range(len(rows))), tuple(rows))
+    n = min(max(int(s // 4), 0), len(rows) - 1)
+    expected = np.polynomial.Polynomial(rows[n])(s - 4 * n + ahead)
+    assert np.polynomial.Polynomial(profile.cubic(s))(ahead) == pytest.approx(expected, abs=1e-8)
+    assert profile.cubics([s]).tolist() == [list(profile.cubic(s))]
 
 
 @pytest.mark.parametrize(

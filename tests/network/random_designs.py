@@ -127,15 +127,22 @@ def _place(rng: np.random.Generator, lanes: dict[str, Any], is_rightmost: bool) 
     length = {"length": float(rng.uniform(10, 150))} if rng.random() < 0.7 else {}
     if what == "main":
         kind = str(rng.choice(["merge", "diverge"]))
-        return {"kind": kind, "take": "main", **length}, lanes, is_rightmost
+        return {"kind": kind, "take": "main", **length, **_side(lanes)}, lanes, is_rightmost
     if what == "from ramp":
         behind = _lanes(rng)
-        return {"kind": "merge", "take": "ramp", "lanes": behind, **length}, behind, False
+        side = _side(behind)
+        return {"kind": "merge", "take": "ramp", "lanes": behind, **length, **side}, behind, False
     if what == "to ramp":
         behind = {**lanes, "forward": 1, "backward": 0}
-        return {"kind": "diverge", "take": "ramp", **length}, behind, True
+        return {"kind": "diverge", "take": "ramp", **length, **_side(lanes)}, behind, True
     if what == "lane_change":
         return {"kind": what, "side": "left"}, lanes, False
     side = str(rng.choice(["left", "right"]))
     behind = {**lanes, "forward": forward + (1 if what == "lane_gain" else -1)}
     return {"kind": what, "side": side, **length}, behind, False
+
+
+def _side(lanes: dict[str, Any]) -> dict[str, str]:
+    """The side of a ramp of a road with these lanes: of half of the one-way roads the left."""
+    is_left = not lanes["backward"] and round(1e6 * lanes["width"]) % 2
+    return {"side": "left"} if is_left else {}

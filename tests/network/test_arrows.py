@@ -63,7 +63,7 @@ def walked(network: Network) -> Shown:
             continue
         side = "left" if turn > 25 else "right" if turn < -25 else "straight"
         if junction.kind == "diverge" and abs(turn) > 2:
-            side = "left" if network.left_hand else "right"
+            side = "left" if turn > 0 else "right"
         lanes = [lane for lane in ids_of(arm.profile) if leads_to(network, way.incoming, lane)]
         others = [lane for lane in ids_of(arm.profile) if lane not in lanes]
         if len(lanes) > 1 or not others:

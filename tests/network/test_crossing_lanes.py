@@ -102,6 +102,22 @@ def test_usual_junctions(arms: Arms, expected: dict[int, list[tuple[int, int]]])
     assert {to: list(way) for to, way in ways(arms).items()} == expected
 
 
+@pytest.mark.parametrize("directions", [(180.0, 270.0, 360.0), (170.0, 275.0, 10.0, 95.0)])
+@pytest.mark.parametrize("lanes", [1, 2, 3, 4])
+def test_between_roads_with_as_many_lanes_every_lane_is_left_and_reached(
+    directions: tuple[float, ...], lanes: int
+) -> None:
+    """Whatever one may do in a town: no lane of a T-junction or of crossroads is a trap or stays empty."""
+    left, reached = set(), set()
+    for start in range(len(directions)):
+        turned = [(angle, lanes, lanes) for angle in (*directions[start:], *directions[:start])]
+        for to, way in ways(turned).items():
+            left |= {(start, i) for i, _ in way}
+            reached |= {((start + to) % len(directions), j) for _, j in way}
+    everything = {(arm, lane) for arm in range(len(directions)) for lane in range(lanes)}
+    assert (left, reached) == (everything, everything)
+
+
 def test_lanes_of_a_star_are_shared_out() -> None:
     arms = [(180.0, 3, 0), *((180.0 + turned, 0, 3) for turned in (72.0, 144.0, 216.0, 288.0))]
     led = Counter(i for way in ways(arms).values() for i, _ in way)

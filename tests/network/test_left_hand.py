@@ -219,6 +219,7 @@ PLANS_WITH_SIDES = (
     "star slight_right crosswalk",
     "roundabout mini back",
     "diverge ramp side=left",
+    "merge ramp side=right // | lanes=3 oneway",
     "merge main len=90",
     "map columns=2 rows=1 lights",
     "map crossroads x2; roundabout",
@@ -253,8 +254,8 @@ def test_requirements_mirrored_twice_are_the_same(line: str) -> None:
     [
         ("turn left", "traffic on the left of a road without junctions cannot be built yet"),
         (
-            "merge ramp side=right // | motorway || left_hand",
-            "a ramp on the right with traffic on the left cannot",
+            "| against=1 // diverge ramp side=right || left_hand",
+            "a ramp on the right would cross the oncoming lanes of its road",
         ),
     ],
 )

@@ -5,10 +5,11 @@ import math
 import numpy as np
 import pytest
 import shapely
-from tests.network.random_designs import random_design
+from tests.network.random_designs import random_design, random_lanes_design
 
 from roadgpt.network import Network, Route, made_from, read_any_design
 from roadgpt.network.markings import STOP_LINE, signs, strokes
+from roadgpt.network.paved import ribbon
 from roadgpt.network.surface import NetworkSurface, free_ends, triangulated
 from roadgpt.road import CrossSection, World
 from roadgpt.road.profile import LINE
@@ -16,8 +17,9 @@ from roadgpt.road.profile import LINE
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
 
 
-def route_of(junction: dict[str, object], **world: object) -> Route:
+def route_of(junction: dict[str, object], lanes: dict[str, object] | None = None, **world: object) -> Route:
     data = {
+        **({} if lanes is None else {"lanes": lanes}),
         "starting_point": [40, 60, 2],
         "theta": 0,
         "road_segment1": STRAIGHT,
@@ -154,9 +156,42 @@ def test_a_crosswalk_leads_over_each_arm_behind_its_stop_line(kind: str) -> None
         contact = shapely.Point(road.at(s)[:2])
         near = sorted(line.distance(contact) for line in lines)[:2]
         assert near == pytest.approx([math.hypot(1.0, 0.5)] * 2, abs=1e-6)  # half a metre from mid-road
+    walked = shapely.union_all(lines).buffer(0.9)
+    lanes = {
+        each: shapely.union_all([shapely.LineString(x.points) for x in strokes(each) if x.kind == "lane"])
+        for each in (network, without)
+    }
+    assert not lanes[network].intersects(walked)
+    assert lanes[without].intersects(walked)
     (stopped,) = (passage.stop_line for passage in route.passages)
     assert stopped is not None
     assert route.passages[0].start - stopped == pytest.approx(1 + 3 + 1 + 0.5)
+
+
+@pytest.mark.parametrize("kind", ["merge", "diverge"])
+def test_the_line_between_the_lanes_of_a_motorway_goes_on_beside_a_ramp(kind: str) -> None:
+    route = route_of({"kind": kind, "take": "main", "length": 60}, lanes={"forward": 2, "backward": 0})
+    lanes = [x.points[:, :2] for x in strokes(route.network) if x.kind == "lane"]
+    painted = shapely.union_all(
+        [shapely.LineString(points).buffer(0.02, cap_style="flat") for points in lanes]
+    )
+    (passage,) = route.passages
+    s = np.arange(passage.start, passage.end, 0.05)
+    between = shapely.points(route.at(s, route.profile.lane(s)[0])[:, :2])
+    assert shapely.contains(painted, between).mean() == pytest.approx(4 / 12, abs=0.08)
+
+
+def test_no_island_where_roads_cross_is_smaller_than_7_square_metres() -> None:
+    found = made_from(read_any_design(random_lanes_design(0))[0], World())
+    assert isinstance(found, Route)
+    network = found.network
+    covered = shapely.union_all([ribbon(each.road) for each in network.roads], grid_size=1e-4)
+    assert 1 < min(shapely.Polygon(ring).area for ring in covered.interiors) < 7
+    areas = NetworkSurface.of(network).areas
+    islands = [*map(shapely.Polygon, network.paved.interiors), *(x for area in areas for x in area.kerbed)]
+    assert all(each.area > 7 for each in islands)
+    paved = shapely.union_all([area.paved for area in areas])
+    assert shapely.difference(network.paved, covered).difference(paved).area < 1e-3
 
 
 @pytest.mark.parametrize("radius", [7.0, 16.0])

@@ -10,6 +10,11 @@ from roadgpt.errors import UsageError
 from roadgpt.network import MapDesign, NetworkDesign, Route
 from roadgpt.road import World
 
+LANES_DIFFER = (
+    "at a junction, lanes of one road would lead nowhere or nothing would lead to them, because the roads "
+    "have different numbers of lanes"
+)
+"""The reason for which drafts fail whose roads have more lanes than the other roads at a junction take."""
 Draft = TypeVar("Draft", NetworkDesign, MapDesign)
 
 
@@ -43,7 +48,8 @@ def first_accepted(
         else:
             if not findings:
                 return draft
-            failed[findings[0].sentence] += 1
+            is_lane = findings[0].rule == "unreachable"
+            failed[LANES_DIFFER if is_lane else findings[0].sentence] += 1
         if built == most:
             break
     return None

@@ -9,10 +9,18 @@ import numpy as np
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
-from roadgpt.brief.junctions import ARMS, SIZES, JunctionClause, PlainKind, side_of
+from roadgpt.brief.junctions import (
+    ARMS,
+    SIZES,
+    JunctionClause,
+    PlainKind,
+    bends_as,
+    side_of,
+)
 from roadgpt.brief.words import Range, overlap
 from roadgpt.network import JunctionDesign
 from roadgpt.network.design import ASTERN, ArmDesign
+from roadgpt.network.growing import controls_of
 from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smallest_radius
 
 Rng = np.random.Generator
@@ -65,7 +73,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
         if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):
             continue
         kerb = float(rng.uniform(*KERBS))
-        return JunctionDesign(
+        drawn = JunctionDesign(
             after=after,
             kind=kind,
             take=taken + 1,
@@ -76,7 +84,17 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
             crosswalk=clause.crosswalk,
             arms=arms,
         )
+        return _with_stops(drawn) if clause.others_stop else drawn
     return None
+
+
+def _with_stops(junction: JunctionDesign) -> JunctionDesign:
+    """Returns a junction whose roads that give way have stop signs."""
+    arms = tuple(
+        arm.model_copy(update={"control": "stop"}) if control == "yield" else arm
+        for arm, control in zip(junction.all_arms, controls_of(junction)[1:], strict=True)
+    )
+    return junction.model_copy(update={"arms": arms})
 
 
 def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
@@ -84,7 +102,9 @@ def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
     if asked.kind != "junction":
         return cast(PlainKind, asked.kind)
     arms = span(asked.arms)
-    kinds: list[PlainKind] = [kind for kind in ANY if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
+    is_bent = asked.take in ("sharp_left", "sharp_right", "slight_left", "slight_right")
+    fit = [kind for kind in ANY if not is_bent or kind in ("y_junction", "star")]
+    kinds = [kind for kind in fit if arms.lo <= ARMS[kind].hi and arms.hi >= ARMS[kind].lo]
     return kinds[int(rng.integers(len(kinds)))]
 
 
@@ -162,7 +182,9 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
     """Returns the index of the arm in the required direction."""
     take = clause.take
     if clause.kind == "y_junction":
-        return {"left": len(angles) - 1, "right": 0}.get(take or "")
+        side = (take or "").removeprefix("slight_")
+        found = {"left": len(angles) - 1, "right": 0}.get(side)
+        return found if found is not None and bends_as(take, angles[found]) else None
     sides = [side_of(angle) for angle in angles]
     lefts = [n for n, angle in enumerate(angles) if angle > CLEAR]
     rights = [n for n, angle in enumerate(angles) if angle < -CLEAR]
@@ -170,12 +192,11 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
         ahead = [n for n, angle in enumerate(angles) if abs(angle) <= STRAIGHT]
         return ahead[0] if len(ahead) == 1 else None
     if take in ("left", "right"):
-        found = lefts if take == "left" else rights
-        is_only = len(found) == 1 and sides.count(take) == 1
-        return found[0] if is_only else None
-    if take in ("sharp_left", "slight_left"):
-        return (lefts[-1] if take == "sharp_left" else lefts[0]) if lefts else None
-    return (rights[0] if take == "sharp_right" else rights[-1]) if rights else None
+        same = lefts if take == "left" else rights
+        return same[0] if len(same) == 1 and sides.count(take) == 1 else None
+    same = sorted(lefts if take in ("sharp_left", "slight_left") else rights, key=lambda n: abs(angles[n]))
+    same = [n for n in same if bends_as(take, angles[n])]
+    return (same[-1] if take in ("sharp_left", "sharp_right") else same[0]) if same else None
 
 
 def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: float) -> float:

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import RAMPS, JunctionClause
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import MOST_LANES, Range, nearest
+from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.lane_design import (
     ACCELERATION,
     TAPER,
@@ -28,7 +29,7 @@ SLACK = 1.0  # m more than the least length that is required
 
 
 def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
-    """Returns a merge or an exit that meets its requirements.
+    """Returns a merge or an exit that meets its requirements, with traffic on the right.
 
     Args:
         asked: the requirements.
@@ -39,8 +40,9 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     length = min(ACCELERATION, max(room, LEAST_BESIDE))
     if asked.length is not None:
         length = max(_length(asked.length) - WIDE_IN_TAPER * RAMP_TAPER, LEAST_LANE)
+    side = "left" if asked.side == "left" else None
     return RampDesign.model_validate(
-        {"after": 1, "kind": asked.kind, "take": take, "length": round(length, 1)}
+        {"after": 1, "kind": asked.kind, "take": take, "length": round(length, 1), "side": side}
     )
 
 
@@ -64,16 +66,17 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """Returns the lanes of each road of a route, before, between and behind its junctions.
 
     Where nothing is required, a road has one lane in each direction, and what a ramp joins or leaves is one
-    carriageway of a motorway.
+    carriageway of a motorway; a road that continues one with three lanes or more has as many.
 
     Args:
         brief: the requirements.
         width: width in metres of each lane.
     """
-    forward = _forward(brief)
+    roads = _continued(brief)
+    forward = _forward(roads, brief.junctions)
     has_ramps = any(junction.kind in RAMPS for junction in brief.junctions)
     found = []
-    for count, road in zip(forward, brief.stretches, strict=True):
+    for count, road in zip(forward, roads, strict=True):
         one_way = (has_ramps or road.motorway) and not road.divided
         backward = 0 if one_way else count if road.divided else 1
         if road.against is not None:
@@ -86,9 +89,38 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     return found
 
 
-def _forward(brief: Brief) -> list[int]:
+def _continued(brief: Brief) -> list[Brief]:
+    """Returns the requirements for the roads; where those for lanes are left open, they are those of the road
+    that continues it across a junction, if it has so many lanes that fewer would lead nowhere.
+    """
+    roads, places = list(brief.stretches), brief.junctions
+    for n, place in enumerate(places):
+        if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
+            roads[n + 1] = _with_lanes_of(roads[n], roads[n + 1])
+    for n, place in reversed(list(enumerate(places))):
+        if _leads_on(place) and (n == 0 or places[n - 1].kind not in (*RAMPS, *LANE_KINDS, "roundabout")):
+            roads[n] = _with_lanes_of(roads[n + 1], roads[n])
+    return roads
+
+
+def _leads_on(place: JunctionClause) -> bool:
+    """Returns whether the lanes of the road before a junction lead to those of the road behind it."""
+    return place.kind == "y_junction" or (place.take == "straight" and place.kind != "roundabout")
+
+
+def _with_lanes_of(known: Brief, road: Brief) -> Brief:
+    """Returns the requirements for a road, with those for lanes of another one where they are left open."""
+    against = known.lanes if known.divided and known.against is None else known.against
+    update = {
+        name: amount
+        for name, amount in (("lanes", known.lanes), ("against", against))
+        if getattr(road, name) is None and amount is not None and span(amount).lo > USUALLY_FED
+    }
+    return road.model_copy(update=update)
+
+
+def _forward(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> list[int]:
     """Returns the number of lanes in the direction of the route on each road."""
-    roads, places = brief.stretches, brief.junctions
     found: list[int] = []
     for n, road in enumerate(roads):
         before = places[n - 1] if n else None

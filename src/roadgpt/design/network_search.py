@@ -17,7 +17,7 @@ from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
-from roadgpt.design.first_accepted import first_accepted
+from roadgpt.design.first_accepted import LANES_DIFFER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.lane_draft import SHORT_ROAD, drawn_change, drawn_ramp, lanes_of_roads
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
@@ -315,4 +315,7 @@ class NetworkSearch:
                 f"{count} and the roads between them found no place on a map of {size:g} m; ask for fewer or "
                 "shorter roads, or give a larger map with --map-size"
             )
-        return f"no draft of this route was accepted: {why}; leave something out"
+        what = (
+            "give the roads at each junction as many lanes" if why == LANES_DIFFER else "leave something out"
+        )
+        return f"no draft of this route was accepted: {why}; {what}"

@@ -15,6 +15,12 @@ def check_built(brief: Brief) -> None:
     Raises:
         DesignError: It cannot be built yet; the message names each such thing.
     """
+    if any(_crosses_oncoming(brief, n) for n in range(len(brief.junctions))):
+        side = "right" if brief.left_hand else "left"
+        raise DesignError(
+            f"a ramp on the {side} would cross the oncoming lanes of its road, and bridges cannot be built "
+            "yet; ask for a one-way road or for a ramp on the other side"
+        )
     found = list(dict.fromkeys(_unbuilt(brief)))
     if found:
         *others, last = found
@@ -26,15 +32,22 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
     if brief.left_hand and not brief.junctions and brief.map is None:
         yield "traffic on the left of a road without junctions"
     for n, junction in enumerate(brief.junctions):
-        yield from _of_junction(junction, brief.left_hand, *brief.stretches[n : n + 2])
+        yield from _of_junction(junction, *brief.stretches[n : n + 2])
     if brief.divided:
         yield "a median of a single road"
 
 
-def _of_junction(junction: JunctionClause, left_hand: bool, before: Brief, after: Brief) -> Iterator[str]:
+def _crosses_oncoming(brief: Brief, number: int) -> bool:
+    """Returns whether a junction is a ramp between the directions of a road with oncoming lanes."""
+    ramp, roads = brief.junctions[number], brief.stretches[number : number + 2]
+    if ramp.kind not in RAMPS or ramp.side != ("right" if brief.left_hand else "left"):
+        return False
+    main = roads if ramp.take == "main" else [roads[ramp.kind == "merge"]]
+    return any(span(road.against).lo > 0 or road.divided for road in main)
+
+
+def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
     """Yields what cannot be built of a junction with the roads before and behind it."""
-    if junction.kind in RAMPS and junction.side == ("right" if left_hand else "left"):
-        yield "a ramp on the right with traffic on the left" if left_hand else "a ramp on the left"
     if junction.kind in RAMPS and junction.take != "main":
         ramp = before if junction.kind == "merge" else after
         if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:

@@ -1,11 +1,12 @@
 """Defines the protocols that all plane curves and all elevation profiles implement."""
 
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Angle = TypeVar("Angle", float, Array)
 
 
 class PlanCurve(Protocol):
@@ -47,4 +48,9 @@ class ElevationProfile(Protocol):
 
 def wrap_angle(angle: ArrayLike) -> Array:
     """Returns an angle in radians, wrapped to (-pi, pi]."""
-    return np.pi - np.mod(np.pi - np.asarray(angle, float), 2 * np.pi)
+    return np.asarray(wrapped(np.asarray(angle, float)))
+
+
+def wrapped(angle: Angle) -> Angle:
+    """Returns what ``wrap_angle`` does; for one number, without the overhead of arrays."""
+    return np.pi - (np.pi - angle) % (2 * np.pi)

@@ -1,15 +1,21 @@
 """Defines two types of elevation profile: constant grades joined by parabolas, and piecewise cubics."""
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from roadgpt.geometry.curve import Array
+
+Cubic = tuple[float, float, float, float]
+"""The coefficients (a, b, c, d) of a + b u + c u^2 + d u^3."""
+Number = TypeVar("Number", float, Array)
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +53,7 @@ class GradeProfile:
     def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
         s = np.asarray(s, float)
         start = self._table[0]
-        index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
+        index = np.maximum(start.searchsorted(s, side="right") - 1, 0)
         return s - start[index], index
 
     def height(self, s: ArrayLike) -> Array:
@@ -84,7 +90,7 @@ class CubicProfile:
     """
 
     stations: tuple[float, ...]
-    coefficients: tuple[tuple[float, float, float, float], ...]
+    coefficients: tuple[Cubic, ...]
 
     def __post_init__(self) -> None:
         if not self.stations or len(self.stations) != len(self.coefficients):
@@ -109,7 +115,8 @@ class CubicProfile:
 
     @cached_property
     def _table(self) -> tuple[Array, Array]:
-        return np.array(self.stations), np.array(self.coefficients)
+        """Returns the stations ``(n,)`` and the coefficients of the cubics, ``(4, n)``."""
+        return np.array(self.stations), np.array(self.coefficients).T.copy()
 
     def _place(self, s: ArrayLike) -> tuple[Array, Array]:
         """Returns, for each ``s``, the distance from the start of the cubic that applies there, and the
@@ -117,8 +124,8 @@ class CubicProfile:
         """
         s = np.asarray(s, float)
         start, table = self._table
-        index = np.clip(np.searchsorted(start, s, side="right") - 1, 0, len(start) - 1)
-        return s - start[index], np.moveaxis(table[index], -1, 0)
+        index = np.maximum(start.searchsorted(s, side="right") - 1, 0)
+        return s - start[index], table[:, index]
 
     @cached_property
     def negative(self) -> "CubicProfile":
@@ -132,7 +139,13 @@ class CubicProfile:
         The cubic that applies at each station is rewritten as a function of the distance from that station.
         """
         u, table = self._place(s)
-        return shifted(np.moveaxis(table, 0, -1), u)
+        a, b, c, d = table
+        return np.stack(_moved(a, b, c, d, u), axis=-1)
+
+    def cubic(self, s: float) -> Cubic:
+        """Returns what ``cubics`` does, at one station and without the overhead of arrays."""
+        n = max(bisect_right(self.stations, s) - 1, 0)
+        return _moved(*self.coefficients[n], s - self.stations[n])
 
     def extremes(self) -> tuple[float, float]:
         """Returns the smallest and the largest height in metres between the first and the last station."""
@@ -176,7 +189,10 @@ def shifted(cubics: Array, u: ArrayLike) -> Array:
 
     The constant coefficient comes first.
     """
-    u = np.asarray(u, float)
-    a, b, c, d = np.moveaxis(cubics, -1, 0)
-    rows = [a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d]
-    return np.stack(rows, axis=-1)
+    a, b, c, d = (cubics[..., n] for n in range(4))
+    return np.stack(_moved(a, b, c, d, np.asarray(u, float)), axis=-1)
+
+
+def _moved(a: Number, b: Number, c: Number, d: Number, u: Number) -> tuple[Number, Number, Number, Number]:
+    """Returns the coefficients of a cubic with its origin moved forward by ``u``."""
+    return a + u * (b + u * (c + u * d)), b + u * (2 * c + 3 * u * d), c + 3 * u * d, d

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from roadgpt.brief.junctions import RAMPS, Way, side_of
 from roadgpt.geometry.curve import Array, wrap_angle
 from roadgpt.network.network import Arm, Connection, Junction, Network, NetworkRoad, RoadEnd
-from roadgpt.network.passages import CROSSWALK, GAP, STOP_LINE, line_before
+from roadgpt.network.passages import CROSSED, STOP_LINE, line_before
 from roadgpt.network.surface import triangulated
 
 LENGTH = 5.0  # m (Germany, RMS-1, for limits up to 50 km/h)
 AHEAD = 10.0  # m, from the tip of an arrow to the stop line: two waiting cars do not cover all of it
-FREE = sum(CROSSWALK) + GAP + STOP_LINE  # m, behind an arrow, for what is painted at the other end
+FREE = CROSSED + STOP_LINE  # m, behind an arrow, for what is painted at the other end
 BESIDE = 0.25  # m, least distance from an arrow to the edges of its lane
 CHORD = 0.5  # m, longest side of the outline, so that it follows a bend
 

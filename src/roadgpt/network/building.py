@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.network.network import Continuation, Junction, Network, NetworkRoad, RoadEnd, Roundabout
@@ -48,12 +49,12 @@ class Stub:
     station: float
     """The station in metres of the road's end."""
 
-    @property
+    @cached_property
     def into(self) -> tuple[Lane, ...]:
         """The driving lanes that lead into the junction, from the centre line outwards."""
         return _driving(self.profile.right if self.end.contact == "end" else self.profile.left)
 
-    @property
+    @cached_property
     def out_of(self) -> tuple[Lane, ...]:
         """The driving lanes that lead out of the junction, from the centre line outwards."""
         return _driving(self.profile.left if self.end.contact == "end" else self.profile.right)
@@ -100,7 +101,7 @@ def _driving(lanes: Sequence[Lane]) -> tuple[Lane, ...]:
 
 def width_at(width: Width, s: float) -> float:
     """Returns a width in metres at a station."""
-    return float(width.height(s)) if isinstance(width, CubicProfile) else width
+    return float(width.cubic(s)[0]) if isinstance(width, CubicProfile) else width
 
 
 def level(length: float, z: float) -> GradeProfile:
@@ -142,6 +143,7 @@ def connecting_road(
     pieces: Sequence[Piece],
     widths: Sequence[Change],
     offset: Change = (0.0, 0.0),
+    between: Marking = "none",
 ) -> Road:
     """Returns a level connecting road.
 
@@ -151,7 +153,8 @@ def connecting_road(
         pieces: The lines, arcs and clothoids of its reference line.
         widths: The width of each of its lanes, from left to right.
         offset: The offset of the left edge of its leftmost lane from the reference line.
+        between: The line between two lanes.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))
-    return Road(plan, level(plan.length, z), profile=one_way(widths, plan.length, offset))
+    return Road(plan, level(plan.length, z), profile=one_way(widths, plan.length, offset, between))

@@ -10,11 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from roadgpt.brief.junctions import Control
-from roadgpt.geometry.curve import wrap_angle
+from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Builder, Stub, connecting_road
 from roadgpt.network.crossing_lanes import LaneWay, lane_ways
 from roadgpt.network.network import Arm, Connection, Junction, Kind, LaneLink
 from roadgpt.network.turning import STRAIGHT, curve_between, tangent_length
+from roadgpt.road.profile import Marking
 
 NEAREST = 2.0  # m, from the node to a contact
 OPPOSITE = math.radians(2.0)  # of a straight line: between arms that are so nearly opposite, there is no kerb
@@ -100,6 +101,7 @@ def connected(
     ends: tuple[Stub, Stub],
     distances: tuple[float, float],
     way: LaneWay,
+    between: Marking = "none",
 ) -> Connection:
     """Adds a connecting road between two arms whose reference lines meet at a node; returns the connection.
 
@@ -110,11 +112,12 @@ def connected(
         ends: The arm on which one arrives, and the one on which one goes on.
         distances: The distance in metres from the node to the contacts of these arms.
         way: The lanes that continue each other.
+        between: The line between two of these lanes.
     """
     start, end = ends
     x, y, z = node
     heading = start.direction + math.pi
-    turn = float(wrap_angle(end.direction - heading))
+    turn = wrapped(end.direction - heading)
     contact = (
         x + distances[0] * math.cos(start.direction),
         y + distances[0] * math.sin(start.direction),
@@ -124,6 +127,6 @@ def connected(
     widths = [(start.width_of(start.into[i]), end.width_of(end.out_of[j])) for i, j in way]
     first_in, first_out = way[0]
     offset = (-start.inside_into(first_in), -end.inside_out_of(first_out))
-    road = builder.add(connecting_road(contact, heading, pieces, widths, offset), junction)
+    road = builder.add(connecting_road(contact, heading, pieces, widths, offset, between), junction)
     lanes = [LaneLink(start.id_into(i), -1 - n, end.id_out_of(j)) for n, (i, j) in enumerate(way)]
     return Connection(road, start.end, end.end, tuple(lanes))

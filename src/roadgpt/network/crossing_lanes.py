@@ -2,16 +2,18 @@
 
 Traffic that turns to the rightmost arm keeps to the rightmost lane, traffic that turns to the leftmost arm to
 the leftmost lane; other ways on have all lanes, as many as both roads have. Where a lane would lead nowhere,
-every way has lanes of its own. Ways from one arm never cross.
+every way has lanes of its own. Traffic that turns has several lanes where nothing else leads to all lanes of
+a road. Ways from one arm never cross.
 """
 
 import math
 from collections.abc import Iterator, Sequence
 
 from roadgpt.brief.junctions import side_of
-from roadgpt.geometry.curve import wrap_angle
+from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Stub
 
+USUALLY_FED = 2  # lanes of a road to which one turns: lanes of one turn to the left and one to the right
 LaneWay = tuple[tuple[int, int], ...]
 """Pairs of lanes that continue each other, from left to right: indices of a lane that leads into the junction
 and of a lane that leads out of it, counted from 0 at the centre line."""
@@ -27,32 +29,52 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
     count = len(stubs)
     others = [(start + n) % count for n in range(1, count)]
     exits = [j for j in others if stubs[start].into and stubs[j].out_of]
+    if not exits:
+        return
     turns = [side_of(_turn(stubs[start], stubs[j])) for j in exits]
     into, room = len(stubs[start].into), [len(stubs[j].out_of) for j in exits]
-    turns_right = bool(exits) and turns[0] == "right" and len(exits) > 1
-    turns_left = bool(exits) and turns[-1] == "left" and len(exits) > 1
-    spans = _usual_spans(into, room, turns_right, turns_left)
+    turns_right = turns[0] == "right" and len(exits) > 1
+    turns_left = turns[-1] == "left" and len(exits) > 1
+    left, right = _turning_lanes(stubs, exits[-1])[0], _turning_lanes(stubs, exits[0])[1]
+    if left + right > into + 1:
+        left, right = 1, 1
+    spans = _usual_spans(into, room, right if turns_right else 0, left if turns_left else 0)
     if len({n for span in spans for n in span}) < min(into, sum(room)) and len(exits) <= into:
-        spans = _spans_of_their_own(into, room, turns_right, turns_left)
+        spans, left = _spans_of_their_own(into, room, turns_right, turns_left), 1
     for n, j in enumerate(exits):
         lanes = spans[n]
-        beside = room[n] - len(lanes) if turns_right and n == 0 else 0
+        beside = min(left - 1, room[n] - len(lanes)) if turns_left and n < len(exits) - 1 else 0
+        if turns_right and n == 0:
+            beside = room[n] - len(lanes)
         yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
 
 
-def _usual_spans(into: int, room: Sequence[int], turns_right: bool, turns_left: bool) -> list[range]:
+def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
+    """Returns how many lanes turn left and how many turn right to an arm: one each, unless no way leads
+    straight to it and it has more lanes than two.
+    """
+    room = len(stubs[end].out_of)
+    others = [stub for n, stub in enumerate(stubs) if n != end and stub.into]
+    if room <= USUALLY_FED or any(side_of(_turn(stub, stubs[end])) == "straight" for stub in others):
+        return 1, 1
+    return room - room // 2, room // 2
+
+
+def _usual_spans(into: int, room: Sequence[int], turns_right: int, turns_left: int) -> list[range]:
     """Returns the lanes that lead to each exit, where exits may share lanes.
 
     Args:
         into: The number of lanes that lead into the junction.
         room: The number of lanes of each exit, from the right to the left.
-        turns_right: Whether the first exit is for traffic that turns right.
-        turns_left: Whether the last exit is for traffic that turns left.
+        turns_right: The number of lanes that lead to the first exit, if traffic turns right to it; or else 0.
+        turns_left: The number of lanes that lead to the last exit, if traffic turns left to it; or else 0.
     """
-    through = len(room) - turns_right - turns_left
+    through = len(room) - bool(turns_right) - bool(turns_left)
     # without a way straight on, those to the left and to the right share all lanes
-    left = 1 if through else max(into - into // 2, 1)
-    right = 1 if through else max(into // 2, 1)
+    left = turns_left if through else max(into - into // 2, 1)
+    right = turns_right if through else max(into // 2, 1)
+    # each of them shares one lane with the ways between them
+    inner, outer = max(left - 1, 0), into - max(right, 1)
     found = []
     for n, most in enumerate(room):
         if turns_right and n == 0:
@@ -60,8 +82,8 @@ def _usual_spans(into: int, room: Sequence[int], turns_right: bool, turns_left: 
         elif turns_left and n == len(room) - 1:
             found.append(range(min(left, most)))
         else:
-            place = len(room) - 1 - turns_left - n  # 0 for the leftmost way on
-            first, last = (round(k * (into - 1) / through) for k in (place, place + 1))
+            place = len(room) - 1 - bool(turns_left) - n  # 0 for the leftmost way on
+            first, last = (inner + round(k * (outer - inner) / through) for k in (place, place + 1))
             found.append(range(first, min(last + 1, first + most)))
     return found
 
@@ -80,4 +102,4 @@ def _spans_of_their_own(into: int, room: Sequence[int], turns_right: bool, turns
 
 
 def _turn(start: Stub, end: Stub) -> float:
-    return math.degrees(float(wrap_angle(end.direction - start.direction - math.pi)))
+    return math.degrees(wrapped(end.direction - start.direction - math.pi))

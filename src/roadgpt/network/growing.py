@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
-from roadgpt.geometry.curve import wrap_angle
+from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
+from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign, PlaceDesign
 from roadgpt.network.lane_design import LanesChangeDesign, RampDesign
 from roadgpt.network.lane_legs import legs_along
@@ -25,7 +26,6 @@ from roadgpt.road.road import check_length
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
 LEAST = math.radians(40.0)  # of an arm that lies opposite another one
-USUALLY_FED = 2  # lanes of a road onto which one turns: all of them are led to from side roads of one lane
 
 
 def build_route(design: NetworkDesign, world: World) -> Route:
@@ -87,7 +87,8 @@ class _RouteGrowth:
     def _end(self) -> NetworkPose:
         """Returns the pose at the end of the road on which the route has arrived."""
         arrival = self.builder.roads[self.passed[-1]].road
-        x, y, z = arrival.at(arrival.length).tolist()
+        x, y = arrival.plan.at(arrival.length).tolist()
+        z = float(arrival.elevation.height(arrival.length))
         return NetworkPose((x, y, z), float(arrival.heading(arrival.length)))
 
     def pass_place(self, number: int, place: PlaceDesign) -> None:
@@ -198,7 +199,7 @@ def _continuing(junction: JunctionDesign) -> int | None:
         return None
     angles = [arm.angle for arm in junction.all_arms]
     behind = math.radians(angles[junction.taken] + 180)
-    others = {n: abs(wrap_angle(math.radians(angle) - behind)) for n, angle in enumerate(angles)}
+    others = {n: abs(wrapped(math.radians(angle) - behind)) for n, angle in enumerate(angles)}
     others.pop(junction.taken)
     nearest = min(others, key=lambda n: others[n], default=None)
     return nearest if nearest is not None and others[nearest] < LEAST else None

@@ -7,12 +7,14 @@ A lane change is a smooth curve from one lane to the next, within part of the ro
 """
 
 from collections.abc import Iterable, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.elevation import Cubic
 from roadgpt.road import Road
 from roadgpt.road.profile import Lane, Width, as_cubics
 
@@ -91,24 +93,27 @@ def added(terms: Sequence[Term], length: float) -> Width:
     for _, width in terms:
         if isinstance(width, CubicProfile):
             inside |= {s for s in width.stations if 0 < s < length - ROUNDING}
-    ordered = np.array(sorted(inside))
+    ordered = sorted(inside)
     # of stations that differ by rounding only, the last one: from there on, every width has its next cubic
-    stations = ordered[np.append(np.diff(ordered) > ROUNDING, True)]
+    stations = [*(s for s, after in pairwise(ordered) if after - s > ROUNDING), ordered[-1]]
     total = np.zeros((len(stations), 4))
     for factor, width in terms:
-        total += factor * cubics_at(width, stations)
+        total += factor * np.array(cubics_at(width, stations))
     return profile_of(stations, total)
 
 
-def cubics_at(width: Width, stations: Array) -> Array:
-    """Returns the coefficients ``(n, 4)`` of a width as cubics that begin at ``stations``, ``(n,)``."""
-    return as_cubics(width).cubics(stations)
+def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
+    """Returns a width as cubics that begin at some stations; there are few of them."""
+    if not isinstance(width, CubicProfile):
+        return [(float(width), 0.0, 0.0, 0.0)] * len(stations)
+    cubics = as_cubics(width)
+    return [cubics.cubic(s) for s in stations]
 
 
-def profile_of(stations: Array, table: Array) -> CubicProfile:
-    """Returns cubics with these stations ``(n,)`` and coefficients ``(n, 4)``."""
+def profile_of(stations: Sequence[float], table: Array) -> CubicProfile:
+    """Returns cubics with these stations and coefficients ``(n, 4)``."""
     rows = [(a, b, c, d) for a, b, c, d in table.tolist()]
-    return CubicProfile(tuple(stations.tolist()), tuple(rows))
+    return CubicProfile(tuple(stations), tuple(rows))
 
 
 def _through(values: Sequence[Width], length: float, stations: Iterable[float]) -> Width:
@@ -151,4 +156,4 @@ def _blended(one: Width, other: Width, knots: Array) -> Width:
     table = np.concatenate(
         (before.cubics(np.array(early)), np.stack(rows, axis=-1), after.cubics(np.array([at_end, *late])))
     )
-    return profile_of(np.array([*early, *knots, *late]), table)
+    return profile_of([*early, *knots.tolist(), *late], table)

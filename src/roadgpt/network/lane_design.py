@@ -41,7 +41,7 @@ class LanesDesign(FrozenFields):
 
 
 class RampDesign(FrozenFields):
-    """A place where a ramp joins a road, or leaves it: on the right, or on the left with traffic there."""
+    """A place where a ramp joins a road, or leaves it."""
 
     after: After
     """Number of segments of the route before it."""
@@ -50,12 +50,15 @@ class RampDesign(FrozenFields):
     """Where the route comes from (merge) or goes to (diverge)."""
     length: LaneLength = ACCELERATION
     """Length in metres of the lane for acceleration or deceleration, without its taper."""
+    side: Side | None = None
+    """The side of the ramp; None for the side on which traffic drives."""
     lanes: LanesDesign | None = None
     """The lanes of the road behind it; None for the usual ones."""
 
     def mirrored(self) -> "RampDesign":
-        """Returns the same: a ramp lies on the side on which traffic drives."""
-        return self
+        """Returns the ramp with left and right exchanged."""
+        side = None if self.side is None else OTHER_DIRECTION[self.side]
+        return self.model_copy(update={"side": side})
 
 
 class LanesChangeDesign(FrozenFields):

@@ -9,7 +9,7 @@ from typing import cast
 from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.errors import UsageError
 from roadgpt.geometry import Piece, PieceCurve
-from roadgpt.geometry.curve import wrap_angle
+from roadgpt.geometry.curve import wrapped
 from roadgpt.geometry.pieces import joined
 from roadgpt.network.building import Builder, Stub
 from roadgpt.network.crossing import build_crossing
@@ -81,7 +81,7 @@ def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     if node.control in ("lights", "none"):
         return (node.control,) * count
     pairs = [(i, j) for i in range(count) for j in range(i)]
-    main = max(pairs, key=lambda pair: abs(float(wrap_angle(directions[pair[0]] - directions[pair[1]]))))
+    main = max(pairs, key=lambda pair: abs(wrapped(directions[pair[0]] - directions[pair[1]])))
     minor: Control = "yield" if node.control == "priority" else node.control
     return tuple("priority" if n in main else minor for n in range(count))
 
@@ -142,7 +142,7 @@ class _MapGrowth:
             needed, following = after, tuple[Piece, ...]()
             if n < len(nodes) - 1:
                 turn = self.design.direction(other, nodes[n + 1]) - self.design.direction(one, other)
-                needed, following = self._bend(other, float(wrap_angle(turn)))
+                needed, following = self._bend(other, wrapped(turn))
             distance = math.hypot(to_x - x, to_y - y)
             free = distance - taken - needed
             if free < (SHORTEST if len(nodes) == 2 else 0.0):

@@ -1,8 +1,8 @@
 """Says what is painted on the roads of a network, and which signs and lights stand at its junctions.
 
-Outside junctions, the lines are those of each road's profile. Inside junctions there are only edge lines,
-along the kerbs. An arm at which traffic has to stop or to give way has a line at the end of its road; at a
-roundabout the line lies at the outer edge of the ring.
+The lines along roads are those of each road's profile. Inside junctions there are only edge lines along the
+kerbs, and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop
+or to give way has a line at the end of its road; at a roundabout the line lies at the outer edge of the ring.
 """
 
 from collections.abc import Iterator
@@ -13,10 +13,10 @@ import numpy as np
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
-from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, Roundabout
-from roadgpt.network.passages import CROSSWALK, STOP_LINE, line_before
-from roadgpt.network.paved import paved_by, ribbon, stations_of
-from roadgpt.network.surface import roads_inside
+from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, RoadEnd, Roundabout
+from roadgpt.network.passages import CROSSED, CROSSWALK, STOP_LINE, line_before
+from roadgpt.network.paved import ribbon, stations_of
+from roadgpt.network.polygon import Area
 from roadgpt.road.profile import DASH, GAP, LINE
 
 BLOCK, BLOCK_GAP = 0.5, 0.25  # m, of a give-way line (Germany, RMS-1)
@@ -39,7 +39,7 @@ class PaintedStroke(NamedTuple):
     points: Array
     """Points ``(n, 3)`` of its middle in metres, at the height of the road."""
     road: int | None = None
-    """The id of the road outside junctions on which it lies; None inside a junction."""
+    """The id of the road along which it leads; None for what lies across a road or along a kerb."""
 
 
 class JunctionSign(NamedTuple):
@@ -54,9 +54,9 @@ class JunctionSign(NamedTuple):
 
 def strokes(network: Network) -> tuple[PaintedStroke, ...]:
     """Returns everything that is painted on the roads of a network."""
-    found = [stroke for member in network.plain_roads for stroke in _of_road(member)]
-    for _, junctions in network.nodes:
-        found += _kerb_lines(network, junctions)
+    found = [stroke for member in network.roads for stroke in _of_road(network, member)]
+    for (_, junctions), paved in zip(network.nodes, network.paved_nodes, strict=True):
+        found += _kerb_lines(network, paved, junctions[0].node[2])
         for junction in junctions:
             found += [stroke for arm in junction.arms for stroke in _of_arm(network, junction, arm)]
     return tuple(found)
@@ -72,30 +72,36 @@ def signs(network: Network) -> tuple[JunctionSign, ...]:
     )
 
 
-def _of_road(member: NetworkRoad) -> Iterator[PaintedStroke]:
-    """Yields the lines along a road outside junctions, or between the lanes of a ring."""
+def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
+    """Yields the lines along a road, or between the lanes of a ring. Inside junctions, only roads beside
+    ramps have lines; crosswalks interrupt the lines between lanes.
+    """
     road, profile = member.road, member.profile
     s = stations_of(road)
+    ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
+    first, last = CROSSED * ends[0], road.length - CROSSED * ends[1]
     for number, line in enumerate(profile.markings(s)):
         is_outer = line.marking == "solid" and number in (0, len(profile.markings(s)) - 1)
-        kind: StrokeKind = "edge" if is_outer else "lane"
-        if line.marking == "solid":
-            yield PaintedStroke(kind, LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
+        if is_outer:
+            yield PaintedStroke("edge", LINE, road.at(s, (line.edges.left + line.edges.right) / 2), member.id)
             continue
-        for start in np.arange(0.0, road.length, DASH + GAP).tolist():
-            end = min(start + DASH, road.length)
+        is_broken = line.marking == "broken"
+        starts = np.arange(0.0, road.length, DASH + GAP).tolist() if is_broken else [0.0]
+        for at in starts:
+            start, end = max(at, first), min(at + DASH if is_broken else road.length, last)
             if end - start < SHORTEST:
                 continue
             along = np.r_[start, s[(s > start) & (s < end)], end]
             edges = profile.markings(along)[number].edges
-            yield PaintedStroke(kind, LINE, road.at(along, (edges.left + edges.right) / 2), member.id)
+            yield PaintedStroke("lane", LINE, road.at(along, (edges.left + edges.right) / 2), member.id)
 
 
-def _kerb_lines(network: Network, junctions: tuple[Junction, ...]) -> Iterator[PaintedStroke]:
-    """Yields the edge lines along the kerbs and islands of a junction; the carriageway lies on their left."""
+def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[PaintedStroke]:
+    """Yields the edge lines along the kerbs and islands of a junction, whose paved area and height are given;
+    the carriageway lies on their left.
+    """
     import shapely
 
-    inside = paved_by([each.road for each in roads_inside(network, junctions)])
     inner = network.paved.buffer(-LINE / 2, join_style="mitre")
     rings = [
         ring
@@ -103,7 +109,6 @@ def _kerb_lines(network: Network, junctions: tuple[Junction, ...]) -> Iterator[P
         for polygon in [shapely.geometry.polygon.orient(part)]
         for ring in (polygon.exterior, *polygon.interiors)
     ]
-    height = junctions[0].node[2]
     for ring in rings:
         for piece in _pieces(shapely.intersection(ring, inside)):
             if piece.length >= SHORTEST:

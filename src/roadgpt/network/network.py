@@ -14,8 +14,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.junctions import Control, PlainKind
+from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.network.paved import outline_of, paved_by
+from roadgpt.network.paved import ISLAND, SLIVER, outline_of, paved_by, without_small_islands
 from roadgpt.network.polygon import Area
 from roadgpt.network.pose import Point, mirrored_point
 from roadgpt.road import Profile, Road
@@ -81,8 +82,9 @@ class NetworkRoad:
 
     def begin_towards(self, contact: Contact, s: float) -> float:
         """Returns the offset in metres at station ``s`` at which the lanes towards an end begin."""
-        left, right = self.profile.sides(s)
-        return float(left if self.side_towards(contact) > 0 else right)
+        offset, (left, right) = self.profile.offset, self.profile.begins
+        line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
+        return line + left if self.side_towards(contact) > 0 else line - right
 
 
 class LaneLink(NamedTuple):
@@ -270,6 +272,11 @@ class Network:
         return {arm.end: junction.id for junction in self.junctions for arm in junction.arms}
 
     @cached_property
+    def crossed(self) -> frozenset[RoadEnd]:
+        """The ends of roads with a crosswalk."""
+        return frozenset(arm.end for each in self.junctions for arm in each.arms if arm.crosswalk)
+
+    @cached_property
     def connection_of(self) -> dict[int, tuple[Junction, Connection]]:
         """For the id of each connecting road, its junction and its connection."""
         return {each.road: (junction, each) for junction in self.junctions for each in junction.connections}
@@ -304,10 +311,30 @@ class Network:
                 found.append((junction.kind, tuple(map(self.junction, ring.junctions))))
         return tuple(found)
 
-    @cached_property
+    @property
     def paved(self) -> Area:
         """The area of all lanes for driving, seen from above, without shoulders."""
-        return paved_by([each.road for each in self.roads])
+        return self._paved[0]
+
+    @property
+    def paved_nodes(self) -> tuple[Area, ...]:
+        """The paved area inside each of the ``nodes``."""
+        return self._paved[1:]
+
+    @cached_property
+    def _paved(self) -> tuple[Area, ...]:
+        """The paved area of all roads, and those inside each of the ``nodes``. Where roads cross, small holes
+        between ways are paved; roundabouts have smaller islands."""
+        nodes = [paved_by([each.road for each in self.inside(junctions)]) for _, junctions in self.nodes]
+        least = [SLIVER if kind == "roundabout" else ISLAND for kind, _ in self.nodes]
+        return without_small_islands(paved_by([each.road for each in self.roads]), nodes, least)
+
+    def inside(self, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
+        """Returns the connecting roads of some junctions and, for those of a roundabout, the pieces of its
+        ring."""
+        ring = self.roundabout_of.get(junctions[0].id)
+        numbers = [each.road for junction in junctions for each in junction.connections]
+        return [self.road(number) for number in (*numbers, *(ring.ring if ring else ()))]
 
     def outline(self, junction: int) -> Array:
         """Returns the outline ``(n, 2)`` in metres of the paved area inside a junction, counter-clockwise.

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
 CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of its stripes (Germany, R-FGUe)
 GAP = 1.0  # m, between a stop line and a crosswalk
+CROSSED = sum(CROSSWALK) + GAP  # m, from a junction with a crosswalk to a stop line
 STOP_LINE = 0.5  # m, width of a stop line, which ends where the junction begins (Germany, RMS-1)
 
 
@@ -55,7 +56,7 @@ def line_before(arm: Arm) -> float:
     """Returns the distance in metres from a junction to the stop line of an arm, which leaves a crosswalk
     free.
     """
-    return sum(CROSSWALK) + GAP if arm.crosswalk else 0.0
+    return CROSSED if arm.crosswalk else 0.0
 
 
 def passages_of(route: "Route") -> tuple[Passage, ...]:

@@ -1,12 +1,16 @@
 """Computes the paved area of roads: the union of their carriageways, seen from above."""
 
+import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.pieces import along_all
 from roadgpt.network.polygon import Area
 from roadgpt.road import Road
 
@@ -17,15 +21,18 @@ SAG = 0.002  # m, between the edge of a bend and the chords of its polygon
 GRID = 1e-4  # m, to which corners are rounded, so that roads that touch are joined
 LONGEST = 8.0  # m, of a chord
 SLIVER = 1.0  # m^2; a smaller hole between ways is paved, as it is too small for an island
+ISLAND = 7.0  # m^2, of the smallest island where roads cross (AASHTO Green Book 9.6.3: 75 square feet)
+NEAR = 1e-3  # m, from a junction to a hole that it encloses
 
 
 def paved_by(roads: Sequence[Road]) -> Area:
     """Returns the area that the carriageways of roads cover together."""
     import shapely
 
-    ribbons = [ribbon(road) for road in roads]
+    whole = ribbons(roads)
     # where a road turns more tightly than it is wide, its ribbon crosses itself
-    whole = [each if each.is_valid else shapely.make_valid(each) for each in ribbons]
+    crossed = ~shapely.is_valid(whole)
+    whole[crossed] = shapely.make_valid(whole[crossed])
     return filled(shapely.union_all(whole, grid_size=GRID))
 
 
@@ -35,26 +42,86 @@ def filled(area: Area) -> Area:
 
     parts = []
     for part in shapely.get_parts(area):
-        holes = [hole for hole in part.interiors if shapely.Polygon(hole).area > SLIVER]
-        parts.append(shapely.Polygon(part.exterior, holes))
+        rings = shapely.get_rings(part)
+        holes = rings[1:][shapely.area(shapely.polygons(rings[1:])) > SLIVER]
+        parts.append(shapely.Polygon(rings[0], holes))
     return parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
 
 
-def ribbon(road: Road) -> "Polygon":
-    """Returns the polygon of a road's carriageway, which begins along the right edge.
+def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[float]) -> tuple[Area, ...]:
+    """Returns the paved area of a network and those of its junctions, where small islands are paved.
 
-    The ends of the line between its lanes are corners of it, because lanes of other roads may end there:
-    rounding would otherwise leave a gap between this road and a corner of another road on its end. The road
-    has no superelevation.
+    An island may lie between the ways of a junction and the end of a road, so it is a hole of the network but
+    not of the junction.
+
+    Args:
+        whole: The paved area of the network.
+        nodes: The paved areas of its junctions.
+        least: The area in square metres of the smallest island of each of them.
     """
-    from shapely import Polygon
+    import shapely
 
-    s = stations_of(road)
-    assert road.profile is not None
-    edges, centre, heading = road.profile.edges(s), road.plan.at(s), road.plan.heading(s)
+    parts, paved = [], [[node] for node in nodes]
+    for part in shapely.get_parts(whole):
+        holes = []
+        for ring in part.interiors:
+            hole = shapely.Polygon(ring)
+            close = (n for n, node in enumerate(nodes) if hole.area < least[n] and hole.dwithin(node, NEAR))
+            if (at := next(close, None)) is None:
+                holes.append(ring)
+            else:
+                paved[at].append(hole)
+        parts.append(shapely.Polygon(part.exterior, holes))
+    new = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
+    return (
+        new,
+        *(each[0] if len(each) == 1 else shapely.union_all(each, grid_size=GRID) for each in paved),
+    )
+
+
+def ribbon(road: Road) -> "Polygon":
+    """Returns the polygon of a road's carriageway; see ``ribbons``."""
+    found: Polygon = ribbons([road])[0]
+    return found
+
+
+def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
+    """Returns the polygons of the carriageways of roads, which begin along their right edges.
+
+    The ends of the line between its lanes are corners of each, because lanes of other roads may end there:
+    rounding would otherwise leave a gap between this road and a corner of another road on its end. The roads
+    have no superelevation.
+    """
+    import shapely
+
+    if not roads:
+        return np.array([], object)
+    stations = [stations_of(road) for road in roads]
+    centre, heading = along_all([_pieces_of(road) for road in roads], stations)
     to_left = np.stack((-np.sin(heading), np.cos(heading)), axis=-1)
-    left, right, middle = (centre + t[:, None] * to_left for t in (*edges, road.profile.centre(s)))
-    return Polygon(np.concatenate((right, middle[-1:], left[::-1], middle[:1])))
+    rows = [_offsets(road, s) for road, s in zip(roads, stations, strict=True)]
+    left, right, middle = (centre + np.concatenate(t)[:, None] * to_left for t in zip(*rows, strict=True))
+    ends = np.cumsum([len(s) for s in stations]).tolist()
+    corners = [
+        np.concatenate((right[a:b], middle[b - 1 : b], left[a:b][::-1], middle[a : a + 1]))
+        for a, b in pairwise([0, *ends])
+    ]
+    numbers = np.repeat(np.arange(len(roads)), [len(each) for each in corners])
+    found: NDArray[np.object_] = shapely.polygons(
+        shapely.linearrings(np.concatenate(corners), indices=numbers)
+    )
+    return found
+
+
+def _offsets(road: Road, s: Array) -> tuple[Array, Array, Array]:
+    """Returns the offsets of the left edge, the right edge and the line between the directions."""
+    assert road.profile is not None
+    return *road.profile.edges(s), road.profile.centre(s)
+
+
+def _pieces_of(road: Road) -> PieceCurve:
+    assert isinstance(road.plan, PieceCurve)
+    return road.plan
 
 
 def stations_of(road: Road) -> Array:
@@ -62,14 +129,14 @@ def stations_of(road: Road) -> Array:
     most; every change of its curvature and of its lanes is among them.
     """
     profile = road.profile
-    assert isinstance(road.plan, PieceCurve)
     assert profile is not None
     stops, at = [0.0], 0.0
-    for piece in road.plan.pieces:
-        bend = max(abs(piece.k0), abs(piece.k1))
-        step = LONGEST if bend == 0 else min(LONGEST, np.sqrt(8 * SAG / (bend * (1 + bend * profile.reach))))
-        count = max(1, int(np.ceil(piece.length / step))) if bend else 1
-        stops += (at + piece.length * np.arange(1, count + 1) / count).tolist()
+    for piece in _pieces_of(road).pieces:
+        bend, count = max(abs(piece.k0), abs(piece.k1)), 1
+        if bend:
+            step = min(LONGEST, math.sqrt(8 * SAG / (bend * (1 + bend * profile.reach))))
+            count = max(1, math.ceil(piece.length / step))
+        stops += [at + piece.length * n / count for n in range(1, count + 1)]
         at += piece.length
     own = [s for s in _changes(road) if 0 < s < at]
     return np.unique(np.round(np.r_[stops, own], 9)) if own else np.array(stops)

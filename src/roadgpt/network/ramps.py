@@ -1,10 +1,11 @@
-"""Builds merges and exits: a ramp that joins or leaves a road on its right, with a lane of its own.
+"""Builds merges and exits: a ramp that joins or leaves a road, with a lane of its own.
 
     main road  -----------+--------------------------------------
     ramp  ----------------'  node | lane for acceleration | taper
 
 The reference lines of the main road and of the ramp meet at the node. Behind a merge, and before an exit, the
-main road has one lane more. It ends, or begins, in a taper.
+main road has one lane more. It ends, or begins, in a taper. Traffic drives on the right; on the left of a
+road, a ramp lies between its lanes and its median.
 """
 
 import cmath
@@ -15,6 +16,7 @@ from dataclasses import dataclass, replace
 from roadgpt.geometry import CubicProfile
 from roadgpt.network.building import Builder, Stub, width_at
 from roadgpt.network.crossing import connected
+from roadgpt.network.lane_along import added
 from roadgpt.network.lane_design import RampDesign
 from roadgpt.network.network import Arm, Connection, Continuation, Junction, RoadEnd
 from roadgpt.network.pose import NetworkPose
@@ -41,6 +43,11 @@ def length_at_ramp(ramp: RampDesign) -> float:
     return sum(piece.length for piece in curve_between(CONTACT, CONTACT, turn)) + length_beside(ramp)
 
 
+def is_on_left(ramp: RampDesign) -> bool:
+    """Returns whether a ramp lies on the left of a road on which traffic drives on the right."""
+    return ramp.side == "left"
+
+
 def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
     """Returns sketches of the route at a ramp, and of the road that it does not take.
 
@@ -55,6 +62,8 @@ def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
         other *= cmath.exp(-1j * ANGLE) if by_ramp else cmath.exp(1j * ANGLE)
     elif not by_ramp:
         other *= cmath.exp(-1j * ANGLE)
+    if is_on_left(ramp):
+        ahead, other = ahead.conjugate(), other.conjugate()
     behind = CONTACT + (length if is_merge else 0.0)
     on_route = [*_steps(0.0, 1.0, node), *_steps(node, ahead, behind), node + behind * ahead]
     return on_route, [node + other * d for d in (CONTACT, CONTACT + BESIDE / 2, CONTACT + BESIDE)]
@@ -85,15 +94,24 @@ class RampBuilder:
         by_ramp, length = self.ramp.take == "ramp", length_beside(self.ramp)
         if self.ramp.kind == "merge":
             return self._node.ahead(CONTACT + length)
-        turned = NetworkPose(self._node.point, self.end.heading - ANGLE) if by_ramp else self._node
+        turned = NetworkPose(self._node.point, self.end.heading - self._angle) if by_ramp else self._node
         return turned.ahead(CONTACT)
+
+    @property
+    def _is_left(self) -> bool:
+        return is_on_left(self.ramp)
+
+    @property
+    def _angle(self) -> float:
+        """The angle in radians by which a merge turns to the left from the ramp, and an exit to the right."""
+        return -ANGLE if self._is_left else ANGLE
 
     @property
     def _node(self) -> NetworkPose:
         """The node, with the heading of the main road."""
         by_ramp = self.ramp.take == "ramp"
         if self.ramp.kind == "merge":
-            return self.end.ahead(CONTACT, -ANGLE if by_ramp else 0.0)
+            return self.end.ahead(CONTACT, -self._angle if by_ramp else 0.0)
         return self.end.ahead(length_beside(self.ramp) + CONTACT)
 
     def build(self, going_on: int) -> list[int]:
@@ -109,50 +127,54 @@ class RampBuilder:
         width = _width(after)
         length, full = length_beside(self.ramp), self.ramp.length
         lane = CubicProfile.smooth([(0.0, width), (full, width), (length, 0.0)])
-        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane))
+        beside = self._straight(node.ahead(CONTACT), length, _with_lane(after, lane, self._is_left))
         self._continue(beside, going_on)
         if by_ramp:
             main = self._straight(node.ahead(-CONTACT - BESIDE), BESIDE, after)
             ramp = self.arrival
         else:
-            from_ramp = NetworkPose(node.point, node.heading + ANGLE)
-            main, ramp = (
-                self.arrival,
-                self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, _ramp_beside(after)),
-            )
+            from_ramp = NetworkPose(node.point, node.heading + self._angle)
+            made = self._straight(from_ramp.ahead(-CONTACT - BESIDE), BESIDE, self._ramp_beside(after))
+            main, ramp = self.arrival, made
         junction = self.builder.number()
         stubs = [self._stub(main, "end"), self._stub(ramp, "end"), self._stub(beside, "start")]
-        count = len(stubs[0].into)
+        own, lanes = self._lanes_beside(len(stubs[0].into))
         ways = [
-            self._way(junction, stubs[0], stubs[2], [(n, n) for n in range(count)]),
-            self._way(junction, stubs[1], stubs[2], [(0, count)]),
+            self._way(junction, stubs[0], stubs[2], list(enumerate(lanes))),
+            self._way(junction, stubs[1], stubs[2], [(0, own)]),
             *self._back(junction, stubs[2], stubs[0]),
         ]
-        self._close(junction, [stubs[2], stubs[0], stubs[1]], ways)
+        self._close(junction, stubs[2], *(stubs[1::-1] if self._is_left else stubs[:2]), ways=ways)
         return [ways[1 if by_ramp else 0].road, beside]
 
     def _exit(self, going_on: int) -> list[int]:
         by_ramp, node = self.ramp.take == "ramp", self._node
         before, length = _constant(self.before, FAR), length_beside(self.ramp)
         lane = CubicProfile.smooth([(0.0, 0.0), (TAPER, _width(before))])
-        beside = self._straight(self.end, length, _with_lane(before, lane))
+        beside = self._straight(self.end, length, _with_lane(before, lane, self._is_left))
         self._continue(self.arrival, beside)
         if by_ramp:
             main, ramp = self._straight(node.ahead(CONTACT), BESIDE, before), going_on
         else:
-            onto_ramp = NetworkPose(node.point, node.heading - ANGLE)
-            ramp = self._straight(onto_ramp.ahead(CONTACT), BESIDE, _ramp_beside(before))
+            onto_ramp = NetworkPose(node.point, node.heading - self._angle)
+            ramp = self._straight(onto_ramp.ahead(CONTACT), BESIDE, self._ramp_beside(before))
             main = going_on
         junction = self.builder.number()
         stubs = [self._stub(beside, "end"), self._stub(ramp, "start"), self._stub(main, "start")]
-        count = len(stubs[2].out_of)
+        own, lanes = self._lanes_beside(len(stubs[2].out_of))
         ways = [
-            self._way(junction, stubs[0], stubs[2], [(n, n) for n in range(count)]),
-            self._way(junction, stubs[0], stubs[1], [(count, 0)]),
+            self._way(junction, stubs[0], stubs[2], [(lane, n) for n, lane in enumerate(lanes)]),
+            self._way(junction, stubs[0], stubs[1], [(own, 0)]),
             *self._back(junction, stubs[2], stubs[0]),
         ]
-        self._close(junction, stubs, ways)
+        self._close(junction, stubs[0], *(stubs[:0:-1] if self._is_left else stubs[1:]), ways=ways)
         return [beside, ways[1 if by_ramp else 0].road]
+
+    def _lanes_beside(self, count: int) -> tuple[int, range]:
+        """Returns the index of the additional lane beside the lanes of the main road, and their indices
+        there; ``count`` is their number.
+        """
+        return (0, range(1, count + 1)) if self._is_left else (count, range(count))
 
     def _straight(self, start: NetworkPose, length: float, profile: Profile) -> int:
         segment = Segment(distance=length, direction="straight")
@@ -163,7 +185,9 @@ class RampBuilder:
         profiles = [self._profile(each) for each in (before, after)]
         forward = min(each.count[0] for each in profiles)
         left = zip(*(each.against_ids for each in profiles), strict=False)
-        lanes = (*((-n, -n) for n in range(1, forward + 1)), *((a, b) for a, b in left))
+        # an additional lane on the left is the first one
+        first, second = (each.count[0] - forward if self._is_left else 0 for each in profiles)
+        lanes = (*((-n - first, -n - second) for n in range(1, forward + 1)), *((a, b) for a, b in left))
         self.builder.continuations.append(
             Continuation(RoadEnd(before, "end"), RoadEnd(after, "start"), lanes)
         )
@@ -184,11 +208,20 @@ class RampBuilder:
         return [self._way(junction, start, end, lanes)] if lanes else []
 
     def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
-        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions."""
+        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions; the
+        lines between them go on in the junction, which one passes without turning.
+        """
         far = (CONTACT, CONTACT)
-        return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes))
+        return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes), "broken")
 
-    def _close(self, number: int, stubs: Sequence[Stub], ways: Sequence[Connection]) -> None:
+    def _ramp_beside(self, main: Profile) -> Profile:
+        """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
+        width = _width(main)
+        offset = width_at(main.offset, 0.0) + width if self._is_left else float(main.edges(0.0).right)
+        return replace(Profile.of(1, 0, width, main.shoulder_width), offset=offset)
+
+    def _close(self, number: int, *stubs: Stub, ways: Sequence[Connection]) -> None:
+        """Adds the junction; ``stubs`` are its arms in counter-clockwise order."""
         arms = tuple(Arm(stub.end, stub.direction) for stub in stubs)
         made = Junction(number, self.ramp.kind, arms, tuple(ways), self._node.point, 0.0)
         self.builder.junctions.append(made)
@@ -203,19 +236,19 @@ def _constant(profile: Profile, s: float) -> Profile:
     return replace(profile, left=left, right=right, offset=width_at(profile.offset, s))
 
 
-def _ramp_beside(main: Profile) -> Profile:
-    """Returns the cross-section of a ramp that the route does not take: one lane beside the main road."""
-    made = Profile.of(1, 0, _width(main), main.shoulder_width)
-    return replace(made, offset=float(main.edges(0.0).right))
-
-
 def _width(profile: Profile) -> float:
     """Returns the width in metres of the rightmost lane, at the start of the road."""
     return width_at(profile.right[profile.count[0] - 1].width, 0.0)
 
 
-def _with_lane(profile: Profile, width: CubicProfile) -> Profile:
-    """Returns the cross-section with one more lane, on the outside of the lanes on the right."""
+def _with_lane(profile: Profile, width: CubicProfile, is_left: bool) -> Profile:
+    """Returns the cross-section with one more lane on the outside of the lanes on the right, or on their
+    inside, where it moves the line between the directions.
+    """
+    if is_left:
+        lane = Lane("driving", width, "broken")
+        offset = added([(1, profile.offset), (1, width)], FAR)
+        return replace(profile, right=(lane, *profile.right), offset=offset)
     count = profile.count[0]
     inner = [*profile.right[: count - 1], replace(profile.right[count - 1], marking="broken")]
     return replace(profile, right=(*inner, Lane("driving", width, "solid"), *profile.right[count:]))

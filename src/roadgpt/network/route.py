@@ -10,12 +10,11 @@ from functools import cached_property
 from itertools import accumulate, groupby, pairwise
 from typing import Any, NamedTuple, Self
 
-import numpy as np
-
 from roadgpt.errors import UsageError
 from roadgpt.geometry import CubicProfile, Piece, PieceCurve
+from roadgpt.geometry.elevation import Cubic
 from roadgpt.network.ground import shoulders_on_ground
-from roadgpt.network.lane_along import added, change_windows, cubics_at, lane_along, profile_of
+from roadgpt.network.lane_along import added, change_windows, cubics_at, lane_along
 from roadgpt.network.network import Continuation, Leg, Network, NetworkRoad
 from roadgpt.network.network_json import network_to_json
 from roadgpt.network.passages import Passage, passages_of
@@ -255,10 +254,10 @@ def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Seque
     if all(width == widths[0] and not isinstance(width, CubicProfile) for width in widths):
         return widths[0]
     stations: list[float] = []
-    tables = []
+    rows: list[Cubic] = []
     for width, road, start in zip(widths, roads, starts, strict=False):
         own = width.stations if isinstance(width, CubicProfile) else ()
-        inside = np.array([0.0, *(s for s in own if 0 < s < road.length - 1e-9)])
-        stations += (start + inside).tolist()
-        tables.append(cubics_at(width, inside))
-    return profile_of(np.array(stations), np.concatenate(tables))
+        inside = [0.0, *(s for s in own if 0 < s < road.length - 1e-9)]
+        stations += [start + s for s in inside]
+        rows += cubics_at(width, inside)
+    return CubicProfile(tuple(stations), tuple(rows))

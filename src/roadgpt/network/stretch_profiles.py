@@ -6,6 +6,7 @@ the reference line, so that the reference line leads along the ramp.
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 from roadgpt.brief.words import MOST_LANES
 from roadgpt.errors import UsageError
@@ -13,6 +14,7 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.network.building import width_at
 from roadgpt.network.design import JunctionDesign, NetworkDesign, PlaceDesign
 from roadgpt.network.lane_design import MEDIAN, LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.ramps import is_on_left
 from roadgpt.plural import plural
 from roadgpt.road import Profile, World
 from roadgpt.road.world import OWN
@@ -67,6 +69,8 @@ def profiles_between(
     for n, length in enumerate(lengths):
         before, after = around[n], around[n + 1]
         found[n] = replace(found[n], offset=offsets[n])
+        if isinstance(after, RampDesign):
+            _check_oncoming(n + 1, after, lanes[n : n + 2])
         gain = before if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain" else None
         drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
         found[n] = _tapered(found[n], gain, drop, length)
@@ -79,6 +83,17 @@ def profiles_between(
     return found
 
 
+def _check_oncoming(number: int, ramp: RampDesign, around: Sequence[LanesDesign]) -> None:
+    """Raises UsageError if a ramp on the left would cross oncoming lanes of the road before or behind it."""
+    behind, by_ramp = ramp.kind == "merge", ramp.take == "ramp"
+    main = [around[behind]] if by_ramp else around
+    if is_on_left(ramp) and any(each.backward for each in main):
+        raise UsageError(
+            f"junction {number}: the ramp lies on the side of oncoming traffic and would cross its lanes; "
+            'give the road that it joins or leaves "backward": 0, or leave its side out'
+        )
+
+
 def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> list[float]:
     """Returns the offset of the line between the directions from the reference line of each road.
 
@@ -89,10 +104,10 @@ def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> lis
         before = places[n - 1] if n else None
         if n == 0 or isinstance(before, JunctionDesign):
             found.append(_first_offset(places[n:], lanes[n:]))
-        elif _is_ramp(before, "merge"):
-            found.append(found[-1] + lanes[n].forward * lanes[n].width)
-        elif _is_ramp(before, "diverge"):
-            found.append(found[-1] - lanes[n - 1].forward * lanes[n - 1].width)
+        elif isinstance(before, RampDesign) and before.take == "ramp":
+            is_merge = before.kind == "merge"
+            ramp, main = (lanes[n - 1], lanes[n]) if is_merge else (lanes[n], lanes[n - 1])
+            found.append(found[-1] + _beside_ramp(before, ramp, main) * (1 if is_merge else -1))
         else:
             found.append(found[-1])
     return found
@@ -100,12 +115,17 @@ def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> lis
 
 def _first_offset(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> float:
     """Returns the offset with which the reference line leads along the ramp of the next exit."""
-    for place, own in zip(places, lanes, strict=False):
-        if _is_ramp(place, "diverge"):
-            return own.forward * own.width
+    for place, (own, behind) in zip(places, pairwise(lanes), strict=False):
+        if isinstance(place, RampDesign) and _is_ramp(place, "diverge"):
+            return _beside_ramp(place, behind, own)
         if isinstance(place, JunctionDesign) or _is_ramp(place, "merge"):
             break
     return 0.0
+
+
+def _beside_ramp(place: RampDesign, ramp: LanesDesign, main: LanesDesign) -> float:
+    """Returns the offset of the line between the directions of a road from that of a ramp beside it."""
+    return -ramp.width if is_on_left(place) else main.forward * main.width
 
 
 def _is_ramp(place: PlaceDesign | None, kind: str) -> bool:

@@ -59,7 +59,10 @@ class NetworkSurface:
         roads = roads_outside(network)
         width = max((each.shoulder for each in network.roads), default=0.0)
         beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
-        areas = tuple(_area_of(network, kind, junctions, width, beside) for kind, junctions in network.nodes)
+        areas = tuple(
+            _area_of(network, node, paved, width, beside)
+            for node, paved in zip(network.nodes, network.paved_nodes, strict=True)
+        )
         return cls(roads, areas, width)
 
     @property
@@ -71,14 +74,6 @@ class NetworkSurface:
 def roads_outside(network: Network) -> tuple[NetworkRoad, ...]:
     """Returns the roads that belong to no junction and to no roundabout."""
     return tuple(each for each in network.plain_roads if each.id not in network.roundabout_of)
-
-
-def roads_inside(network: Network, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
-    """Returns the connecting roads of some junctions and, for those of a roundabout, the pieces of its
-    ring."""
-    ring = network.roundabout_of.get(junctions[0].id)
-    numbers = [each.road for junction in junctions for each in junction.connections]
-    return [network.road(number) for number in (*numbers, *(ring.ring if ring else ()))]
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
@@ -97,12 +92,12 @@ def _with_shoulders(member: NetworkRoad) -> Road:
 
 
 def _area_of(
-    network: Network, kind: Kind, junctions: tuple[Junction, ...], width: float, beside: Area
+    network: Network, node: tuple[Kind, tuple[Junction, ...]], paved: Area, width: float, beside: Area
 ) -> JunctionSurface:
     """Returns the surface of one junction; ``beside`` is the area of all roads with their shoulders."""
     import shapely
 
-    paved = paved_by([each.road for each in roads_inside(network, junctions)])
+    kind, junctions = node
     wide = paved.buffer(width, quad_segs=ROUND) if width > 0 else paved
     holes = [shapely.Polygon(hole) for part in shapely.get_parts(paved) for hole in part.interiors]
     kerbed, green = [], []

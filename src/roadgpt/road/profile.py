@@ -96,17 +96,17 @@ class Profile:
     left_hand: bool = False
 
     def __post_init__(self) -> None:
-        lanes = [*self.left, *self.right]
-        if not 0 <= self.driven < len(_driving(self.along)):
+        if not 0 <= self.driven < self.count[0]:
             own = "left" if self.left_hand else "right"
             raise ValueError(f"the driven lane must be one of the driving lanes on the {own}")
         for side in (self.left, self.right):
             if any(lane.kind == "driving" for lane in side[len(_driving(side)) :]):
                 raise ValueError("a driving lane cannot be outside a shoulder")
-        of_station = [*(lane.width for lane in lanes), self.superelevation_angle, self.offset]
+        widths = [lane.width for side in (self.left, self.right) for lane in side]
+        of_station = [*widths, self.superelevation_angle, self.offset]
         if any(any(each.coefficients[-1][1:]) for each in of_station if isinstance(each, CubicProfile)):
             raise ValueError("the last width of a lane, and the last superelevation, must be constant")
-        if any(_extremes(lane.width)[0] < -NEGATIVE for lane in lanes):
+        if widths and min(_extremes(width)[0] for width in widths) < -NEGATIVE:
             raise ValueError("a lane has a negative width")
 
     @classmethod
@@ -165,7 +165,7 @@ class Profile:
         """The oncoming lanes and their shoulder, from the centre line outwards."""
         return self.right if self.left_hand else self.left
 
-    @property
+    @cached_property
     def count(self) -> tuple[int, int]:
         """The number of driving lanes in the direction of the road, and the number of oncoming lanes."""
         return len(_driving(self.along)), len(_driving(self.against))
