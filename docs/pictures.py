@@ -83,8 +83,8 @@ def maps(work: Path) -> Image.Image:
 
 
 def junctions_view(work: Path) -> Image.Image:
-    """Returns the page of a route, in the middle of a junction."""
-    return shot(made(work, "junctions", "junctions.html"), "#t=12&camera=behind")
+    """Returns the page of a route, before a roundabout."""
+    return shot(made(work, "junctions", "junctions.html"), "#t=15&camera=behind")
 
 
 def fault(work: Path) -> Image.Image:

@@ -19,9 +19,12 @@ from roadgpt.run import Run, Setup, prove
 
 
 @cache
-def run_of(shoulder: float = 3.0) -> Run:
+def run_of(shoulder: float = 3.0, lanes: int = 1) -> Run:
     world = World(section=CrossSection(shoulder=shoulder))
-    return prove(made_from(read_network_design(TWO)[0], world), setup=Setup(drives=False), world=world)
+    data = {**TWO, "junction2": {**TWO["junction2"], "ring_lanes": lanes}}
+    if lanes > 1:
+        data["lanes"] = {"forward": lanes, "backward": lanes, "width": 3.5}
+    return prove(made_from(read_network_design(data)[0], world), setup=Setup(drives=False), world=world)
 
 
 @pytest.fixture(scope="module")
@@ -76,9 +79,7 @@ def test_every_line_and_every_sign_is_on_the_page(run: Run, route: Route) -> Non
 
 
 def test_every_arrow_is_on_the_page_with_triangles_seen_from_above() -> None:
-    data = {**TWO, "lanes": {"forward": 2, "backward": 2, "width": 3.5}}
-    data["junction2"] = {**TWO["junction2"], "ring_lanes": 2}
-    run = prove(made_from(read_network_design(data)[0], World()), setup=Setup(drives=False))
+    run = run_of(lanes=2)
     assert isinstance(run.road, Route)
     told, painted = view.scene(run)["network"]["arrows"], arrows(run.road.network)
     assert len(told) == len(painted) > 2
@@ -121,7 +122,9 @@ def page() -> Iterator[chromium.Page]:
 
 @pytest.mark.parametrize("shoulder", [0.0, 3.0])
 def test_a_browser_draws_the_network(page: chromium.Page, tmp_path: Path, shoulder: float) -> None:
-    path = view.write([run_of(shoulder)], tmp_path / "page.html")
+    run = run_of(shoulder, lanes=2)
+    assert isinstance(run.road, Route)
+    path = view.write([run], tmp_path / "page.html")
     page.open(path)
     page.run("roadgpt.player.choose('free')")
     picture = page.picture(".scene")[..., :3]
@@ -133,3 +136,12 @@ def test_a_browser_draws_the_network(page: chromium.Page, tmp_path: Path, should
     assert page.told == []
     is_road = np.abs(plan - np.array([0x62, 0x66, 0x6D]) / 255).max(axis=2) < 0.02
     assert is_road.mean() > 0.015
+    lane = run.road.legs[0]
+    (arrow,) = (each for each in arrows(run.road.network) if (each.end.road, each.lane) == lane[:2])
+    page.run("roadgpt.player.choose('bonnet')")
+    page.run(f"roadgpt.player.moveTo(roadgpt.player.duration * {(arrow.s - 9) / run.road.length})")
+    picture = page.picture(".scene")[..., :3]
+    high, wide = picture.shape[:2]
+    # between the stop line and the car, where the lane has no other paint
+    ahead = picture[int(0.53 * high) : int(0.75 * high), int(0.42 * wide) : int(0.58 * wide)]
+    assert 0.05 < (ahead.min(axis=2) > 0.7).mean() < 0.5

@@ -18,6 +18,7 @@ from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
 from roadgpt.report.overview import pages
 from roadgpt.report.page.failure_site import draw_site, site_of
+from roadgpt.report.plan_view import Frame
 from roadgpt.report.plotting import plot
 from roadgpt.road import CrossSection, World
 from roadgpt.run import Run, Setup, prove, write_run
@@ -138,6 +139,16 @@ def test_the_frame_shows_the_whole_network(above: Figure, route: Route) -> None:
     (x0, y0), (x1, y1) = route.network.bounds()
     assert axes.get_xlim()[0] < x0 < x1 < axes.get_xlim()[1]
     assert axes.get_ylim()[0] < y0 < y1 < axes.get_ylim()[1]
+
+
+def test_a_key_explains_the_signs_that_are_drawn(above: Figure, alone: Run) -> None:
+    entries = {"stop sign", "give-way sign", "priority sign", "traffic lights"}
+    assert {text.get_text() for text in above.texts} & entries == entries - {"traffic lights"}
+    centre = alone.road.network.roundabouts[0].centre  # type: ignore[union-attr]
+    part = birds_eye(alone, frame=Frame(centre[0] - 40, centre[0] + 40, centre[1] - 40, centre[1] + 40))
+    assert {text.get_text() for text in part.texts} & entries == {"give-way sign"}
+    lone = birds_eye(alone, frame=Frame(-500, 500, -500, 500))
+    assert not {text.get_text() for text in lone.texts} & entries
 
 
 def test_from_far_away_all_roads_are_lines(route: Route) -> None:

@@ -109,6 +109,16 @@ def test_stop_lines_are_white(crossing: Scene) -> None:
         assert is_white(seen(crossing, node, (line[0] + shares * (line[1] - line[0]))[:, :2])).all()
 
 
+def test_the_line_between_the_lanes_of_a_ring_is_white() -> None:
+    scene = Scene.of(route_of(kind="roundabout", take="straight", radius=12, ring_lanes=2), World())
+    network = network_of(scene).network
+    (ring,) = network.roundabouts
+    lines = [each.points for each in strokes(network) if each.kind == "lane" and each.road in ring.ring]
+    middles = np.array([line[len(line) // 2 - 1 : len(line) // 2 + 1].mean(axis=0) for line in lines])
+    assert len(middles) >= 3
+    assert is_white(seen(scene, ring.centre, middles[:, :2])).mean() > 0.6
+
+
 def test_islands_are_not_asphalt(ring: Scene) -> None:
     (roundabout,) = network_of(ring).network.roundabouts
     x, y, _ = roundabout.centre

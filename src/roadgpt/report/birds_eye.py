@@ -1,6 +1,6 @@
 """Draws the bird's-eye view of a road, to scale and with north at the top."""
 
-from typing import Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib import colormaps
@@ -16,9 +16,11 @@ from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, new_figure
 from roadgpt.report.labels import Labels
+from roadgpt.report.network_view import SIGN_NAMES, sign_style, signs_shown
 from roadgpt.report.places import MarkedPlace, places_of
 from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, plan_points
 from roadgpt.report.text_width import inches
+from roadgpt.road import Road
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Severity, severity
 
@@ -33,7 +35,7 @@ SLOWEST = 10.0  # km/h; the scale of colours reaches at least this speed
 
 RIM = 8.0  # points, width of the rim around the path
 KEY_SIZE, FOOT = 9, 0.14  # points; inches above the foot of the figure
-SWATCH, GAP = 0.25, 0.11  # inches
+SWATCH, DOT, GAP = 0.25, 0.06, 0.11  # inches
 OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
 
 # plasma without its lightest end, which has too little contrast on asphalt
@@ -56,12 +58,13 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     across = SIDE * min(1.0, frame.width / frame.height)
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
-    found = severities(run.drive)
-    foot = BOTTOM + (KEY if {*found} & {*OUTSIDE} else 0.0)
+    rows = [row for row in (_outside_key(run.drive), _sign_key(road, frame, frame.width / across)) if row]
+    foot = BOTTOM + KEY * len(rows)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
     header.write(figure)
-    _draw_key(figure, LEFT, found)
+    for number, row in enumerate(reversed(rows)):
+        _draw_key(figure, FOOT + KEY * number, row)
     _ground(axes, frame, world.site.map_size)
     draw_road(axes, road, world, frame.width / across)
     draw_ends(axes, road, world)
@@ -167,14 +170,41 @@ def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
         axes.add_collection(rim)
 
 
-def _draw_key(figure: Figure, left: float, found: list[Severity]) -> None:
-    """Draws the key to the rim's colours at the foot of a figure, ``left`` inches from its left border."""
+class KeyEntry(NamedTuple):
+    """One entry of a key: a sample and what it means."""
+
+    text: str
+    width: float
+    """Width of the sample in inches."""
+    style: dict[str, Any]
+    """How matplotlib draws a line from the left of the sample to its right."""
+
+
+def _outside_key(drive: Drive | None) -> list[KeyEntry]:
+    """Returns the key to the rim's colours."""
+    found = severities(drive)
+    return [
+        KeyEntry(f"{name} its lane", SWATCH, {"lw": RIM, "color": SEVERE[name]})
+        for name in OUTSIDE
+        if name in found
+    ]
+
+
+def _sign_key(road: Road, frame: Frame, per_inch: float) -> list[KeyEntry]:
+    """Returns the key to the signs and lights that a frame shows."""
+    found = {sign.control for sign in signs_shown(road, per_inch) if frame.holds(*sign.place[:2])}
+    return [
+        KeyEntry(SIGN_NAMES[control], DOT, {**sign_style(control), "markevery": [0]})
+        for control in SIGN_NAMES
+        if control in found
+    ]
+
+
+def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
+    """Draws a row of a key, ``above`` inches above the foot of a figure."""
     wide, high = figure.get_size_inches()
-    for name in OUTSIDE:
-        if name not in found:
-            continue
-        ends = (left / wide, (left + SWATCH) / wide)
-        figure.add_artist(Line2D(ends, (FOOT / high, FOOT / high), lw=RIM, color=SEVERE[name]))
-        text = f"{name} its lane"
-        figure.text((left + SWATCH + GAP) / wide, FOOT / high, text, size=KEY_SIZE, color=SOFT, va="center")
-        left += SWATCH + 3 * GAP + inches(text, KEY_SIZE)
+    left, y = LEFT, above / high
+    for text, width, style in entries:
+        figure.add_artist(Line2D((left / wide, (left + width) / wide), (y, y), **style))
+        figure.text((left + width + GAP) / wide, y, text, size=KEY_SIZE, color=SOFT, va="center")
+        left += width + 3 * GAP + inches(text, KEY_SIZE)

@@ -1,5 +1,7 @@
 """Draws a network from above, to scale: the paved area, markings, islands, and the route as a tint."""
 
+from typing import Any
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
@@ -7,6 +9,7 @@ from matplotlib.markers import MarkerStyle
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 
+from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.arrows import arrows
@@ -15,6 +18,7 @@ from roadgpt.network.markings import JunctionSign, signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.report.text_width import POINTS
+from roadgpt.road import Road
 
 VERGE, ASPHALT, PAINT = "#dcd9c3", "#b9bdc3", "#ffffff"
 TINT, ARROW = "#8fb3d6", "#0072b2"
@@ -23,8 +27,11 @@ FAR_ASPHALT, FAR_ROUTE = "#a7adb5", "#4d86b8"
 LINE_POINTS, STOP_POINTS = 1.1, 2.2  # points, least width of a line on paper
 SIGNS = {"stop": "#c1272d", "yield": "#c1272d", "priority": "#e0a800", "lights": "#2b2f36"}
 SHAPES = {"stop": "8", "yield": "v", "priority": "D", "lights": "s"}
+SIGN_NAMES = {
+    "stop": "stop sign", "yield": "give-way sign", "priority": "priority sign", "lights": "traffic lights",
+}  # fmt: skip
 SIGN_SIZE = 4.2  # points
-NEAR = 30.0  # m per inch; signs are not drawn on smaller scales
+NEAR = 50.0  # m per inch; signs are not drawn on smaller scales
 ARROWS, ARROW_POINTS = 20.0, 7.0  # m between the arrows on the route; points
 HEAD = Path([(1.0, 0.0), (-0.7, 0.75), (-0.3, 0.0), (-0.7, -0.75), (1.0, 0.0)], closed=True)
 ARROW_INCHES = 0.5  # least distance between arrows
@@ -58,9 +65,8 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
             )
     outlines = [each.points[:, :2] for each in arrows(network)]
     axes.add_collection(PolyCollection(outlines, facecolors=PAINT, edgecolors="none", zorder=3))
-    if per_inch <= NEAR:
-        for sign in signs(network):
-            _draw_sign(axes, sign)
+    for sign in signs_shown(route, per_inch):
+        axes.plot(*sign.place[:2], **sign_style(sign.control), zorder=4)
 
 
 def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
@@ -115,10 +121,15 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
         )
 
 
-def _draw_sign(axes: Axes, sign: JunctionSign) -> None:
-    colour = SIGNS[sign.control]
-    hollow = "white" if sign.control == "yield" else colour
-    axes.plot(
-        *sign.place[:2], SHAPES[sign.control], ms=SIGN_SIZE, mfc=hollow, mec=colour, mew=1.0, zorder=4,
-        ls="none",
-    )  # fmt: skip
+def signs_shown(road: Road, per_inch: float) -> tuple[JunctionSign, ...]:
+    """Returns the signs and lights of a road that are drawn where ``per_inch`` metres are one inch."""
+    return signs(road.network) if isinstance(road, Route) and per_inch <= NEAR else ()
+
+
+def sign_style(control: Control) -> dict[str, Any]:
+    """Returns how matplotlib draws the sign or light of a junction."""
+    colour = SIGNS[control]
+    return {
+        "marker": SHAPES[control], "ms": SIGN_SIZE, "mfc": "white" if control == "yield" else colour,
+        "mec": colour, "mew": 1.0, "ls": "none",
+    }  # fmt: skip

@@ -13,7 +13,7 @@ import numpy as np
 
 from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
 from roadgpt.geometry.curve import Array
-from roadgpt.network import NetworkRoad, Route
+from roadgpt.network import Network, NetworkRoad, RoadEnd, Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import signs, strokes
 from roadgpt.network.polygon import Area
@@ -60,14 +60,14 @@ class StationAxis:
     lanes: LaneBoundaries
 
     @classmethod
-    def of(cls, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
-        """Returns the axis of roads; ``widest`` is the extent in metres of the widest junction."""
+    def of(cls, network: Network, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
+        """Returns the axis of some roads; ``widest`` is the extent in metres of the widest junction."""
         starts, rows, at = {}, [], 0.0
         for each in roads:
             # a broken line begins with a dash at the start of each road
             length = PERIOD * (math.ceil(each.road.length / PERIOD) + 1)
             starts[each.id] = at
-            rows.append(_three(each, np.minimum(np.arange(length), each.road.length)))
+            rows.append(_three(network, each, np.minimum(np.arange(length), each.road.length)))
             at += length
         plain, wide = at, math.ceil(widest) + 2
         rows.append(np.tile([FAR, 0.9 * FAR, -FAR], (wide, 1)))
@@ -79,18 +79,21 @@ class StationAxis:
         return cls(starts, plain, plain + wide, lanes)
 
 
-def _three(member: NetworkRoad, s: Array) -> Array:
+def _three(network: Network, member: NetworkRoad, s: Array) -> Array:
     """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge.
 
     The lines within a carriageway with other lanes are drawn apart; its centre line is the left edge.
     """
     found = [t for _, t in member.profile.boundaries(s)]
-    centre = np.zeros_like(s) if _has_broken_line_only(member) else found[0]
+    centre = np.zeros_like(s) if _has_broken_line_only(network, member) else found[0]
     return np.stack([found[0], centre, found[-1]], axis=1)
 
 
-def _has_broken_line_only(member: NetworkRoad) -> bool:
-    """Returns whether the only line within the carriageway is a broken one along the reference line."""
+def _has_broken_line_only(network: Network, member: NetworkRoad) -> bool:
+    """Returns whether the only line within the carriageway is a broken one along the reference line, which no
+    crosswalk interrupts."""
+    if network.crossed & {RoadEnd(member.id, "start"), RoadEnd(member.id, "end")}:
+        return False
     profile = member.profile
     inner = profile.markings(np.zeros(1))[1:-1]
     middle = [float(line.edges.left[0] + line.edges.right[0]) for line in inner]
@@ -108,12 +111,12 @@ def network_patches(
         out += _junction(area, axis)
         if parts.shoulder > 0:
             out += _banks(area, terrain)
-    drawn_apart = {each.id for each in parts.roads if not _has_broken_line_only(each)}
+    by_road = {each.id for each in parts.roads if _has_broken_line_only(route.network, each)}
     for stroke in strokes(route.network):
         if stroke.kind == "edge" and stroke.road is None:
             out.append(_kerb_line(stroke.points, axis.kerb))
         elif stroke.kind in ("stop", "give_way", "crosswalk") or (
-            stroke.kind == "lane" and stroke.road in drawn_apart
+            stroke.kind == "lane" and stroke.road not in by_road
         ):
             out.append(_painted(stroke.points, stroke.width))
     for arrow in arrows(route.network):

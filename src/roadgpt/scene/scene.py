@@ -79,7 +79,7 @@ class Scene:
         parts, land = NetworkSurface.of(route.network), land_of(route, world)
         terrain = LitTerrain(land)
         widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
-        axis = StationAxis.of(parts.roads, widest)
+        axis = StationAxis.of(route.network, parts.roads, widest)
         ground = Mesh.of([*network_patches(route, parts, axis, terrain), *terrain.patches()])
         lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
         return cls(route, world, land, ground, plant(lines[:, :2], parts.reach, land), axis.lanes)

@@ -10,7 +10,7 @@ from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
 from roadgpt.network.markings import PaintedStroke, signs, strokes
 from roadgpt.network.polygon import Area
-from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, roads_inside, triangulated
+from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.view.columns import MILLIMETRES, road_columns, rounded
 from roadgpt.road.land import LONGEST_STEP
@@ -35,7 +35,7 @@ def network_values(route: Route) -> dict[str, Any]:
         UsageError: A number of a road is not finite.
     """
     network, parts = route.network, NetworkSurface.of(route.network)
-    inside = [each for _, junctions in network.nodes for each in roads_inside(network, junctions)]
+    inside = [each for _, junctions in network.nodes for each in network.inside(junctions)]
     lines = [each.road.centreline(LONGEST_STEP) for each in inside]
     roads = []
     for each in parts.roads:

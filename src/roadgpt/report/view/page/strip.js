@@ -1,6 +1,7 @@
 // A strip: one quantity over the distance along the road, with the car on it.
 
 const LEFT = 34, RIGHT = 12, TOP = 26, BOTTOM = 20; // pixels around the graph
+const NAMED = 16; // pixels at the top of the graph for the names of junctions
 const NARROW = 200; // pixels, below which a value has no room beside its name for more than itself
 
 // what: s, values; least: span of the axis; floor: value it starts from; limit: a line with a name;
@@ -16,7 +17,10 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
     let [low, top] = extent([...extent(what.values), ...limits], what.least);
     const air = (top - low) * 0.08;
     low = what.floor === undefined ? low - air : what.floor;
-    Object.assign(view, { low, high: top + air, wide: Math.max(1, wide - LEFT - RIGHT), tall: Math.max(1, high - TOP - BOTTOM) });
+    const tall = Math.max(1, high - TOP - BOTTOM);
+    const hasNames = what.names && scene.network && scene.network.stretches.length > 0 && tall > 2 * NAMED;
+    const above = hasNames ? Math.max(air, ((top - low) * NAMED) / (tall - NAMED)) : air;
+    Object.assign(view, { low, high: top + above, wide: Math.max(1, wide - LEFT - RIGHT), tall });
   }
 
   function axes(pen, { high }) {
