@@ -1,10 +1,11 @@
 """Which share of routes through junctions the drivers keep, by speed limit and friction, and how fast it is.
 
-    python benchmarks/bench_network_drives.py [ROUTES] [DRIVER ...]
+    python benchmarks/bench_network_drives.py [ROUTES] [DRIVER ...] [--drawn]
 
 The routes have one to four T- and Y-junctions, crossroads, stars and roundabouts; they are those designs of
-``tests/network/random_designs.py`` whose roads do not overlap. Speed is simulated time per CPU time of the
-whole drive, with all that is prepared for it.
+``tests/network/random_designs.py`` whose roads do not overlap. With ``--drawn`` they are drawn from the
+grammars of descriptions instead, with lanes, ramps, signs, grades and traffic on the left. Speed is simulated
+time per CPU time of the whole drive, with all that is prepared for it.
 """
 
 import sys
@@ -19,6 +20,7 @@ import shapely
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+from drawn_routes import drawn_routes
 from network.random_designs import random_design
 from roadgpt.drive import simulate
 from roadgpt.network import Network, Route, build_route, read_network_design
@@ -55,13 +57,13 @@ def routes(number: int) -> Iterator[Route]:
             yield route.on_ground()
 
 
-def drive_all(them: Sequence[Route], driver: str, limit: float, friction: float) -> None:
+def drive_all(them: Sequence[tuple[Route, World]], driver: str, limit: float, friction: float) -> None:
     """Prints how many routes a driver keeps under one speed limit and friction."""
-    world = World().changed(speed_limit=limit / 3.6, friction=friction)
     causes: Counter[str] = Counter()
     incidents: Counter[str] = Counter()
     speeds = []
-    for n, route in enumerate(them):
+    for n, (route, usual) in enumerate(them):
+        world = usual.changed(speed_limit=limit / 3.6, friction=friction)
         begun = time.process_time()
         drive = simulate(route, world, driver)
         speeds.append(drive.duration / (time.process_time() - begun))
@@ -81,11 +83,12 @@ def drive_all(them: Sequence[Route], driver: str, limit: float, friction: float)
 
 def main(number: int = 500, *drivers: str) -> None:
     """Prints a line for each driver, speed limit and friction."""
-    them = list(routes(number))
-    kinds = Counter(kind for route in them for kind, _ in route.network.nodes)
-    lengths = [route.length for route in them]
+    drawn = ((each.route.on_ground(), each.world) for each in drawn_routes(number, seed=1))
+    them = list(drawn if "--drawn" in sys.argv else ((route, World()) for route in routes(number)))
+    kinds = Counter(kind for route, _ in them for kind, _ in route.network.nodes)
+    lengths = [route.length for route, _ in them]
     print(f"{number} routes, {np.median(lengths):.0f} m (median), junctions: {dict(kinds.most_common())}")
-    simulate(them[0], World(), "reference")  # compiles
+    simulate(*them[0], "reference")  # compiles
     for driver in drivers or DRIVERS:
         for limit in LIMITS:
             for friction in FRICTIONS:
@@ -93,5 +96,5 @@ def main(number: int = 500, *drivers: str) -> None:
 
 
 if __name__ == "__main__":
-    given = [each for each in sys.argv[1:] if each != "-v"]
+    given = [each for each in sys.argv[1:] if each not in ("-v", "--drawn")]
     main(*map(int, given[:1]), *given[1:])
