@@ -44,3 +44,42 @@ def test_traffic_on_the_left_holds_for_routes_and_maps() -> None:
         found = with_whole_drive(read_plan(asked), "we drive on the left")
         assert found.left_hand
         assert read_plan(plan(found)) == found
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "crossroads left with priority to the right, then straight over a fork",
+        "an der Kreuzung links, hier gilt Rechts vor links, dann die Gabelung",
+        "carrefour à gauche, priorité à droite, puis la fourche",
+        "cruce a la izquierda con prioridad a la derecha, luego bifurcación",
+        "all'incrocio, precedenza a destra, vado a sinistra, poi il bivio",
+    ],
+)
+def test_cars_from_the_right_go_first_where_no_sign_is(words: str) -> None:
+    found = with_whole_drive(read_plan("crossroads left yield // y_junction"), words)
+    assert plan(found) == "crossroads left none // y_junction"
+
+
+@pytest.mark.parametrize(
+    ("asked", "words"),
+    [
+        ("crossroads left yield // junction yield", "right before left at the one, give way at the other"),
+        ("crossroads left yield", "crossroads left; it isn't priority to the right there, there is a sign"),
+        ("crossroads left yield", "Kreuzung, links, ohne Rechts vor Links"),
+        ("junction left lights // roundabout yield", "rechts vor links ist hier nirgends"),
+        ("junction left // crossroads", "junction left, then a crossroads with right before left"),
+        ("merge ramp // crossroads none", "join, then a crossroads, right before left everywhere"),
+    ],
+)
+def test_signs_that_the_words_tell_of_stay(asked: str, words: str) -> None:
+    assert with_whole_drive(read_plan(asked), words) == read_plan(asked)
+
+
+def test_cars_from_the_right_go_first_at_every_junction_of_which_that_is_said() -> None:
+    said = "right before left at every one of them"
+    asked = "crossroads // junction left lights // roundabout // t_junction right yield"
+    found = with_whole_drive(read_plan(asked), said)
+    assert plan(found) == "crossroads none // junction left lights // roundabout // t_junction right none"
+    for map_asked in ("map crossroads x3", "map crossroads x3 yield"):
+        assert plan(with_whole_drive(read_plan(map_asked), said)) == "map crossroads x3 none"

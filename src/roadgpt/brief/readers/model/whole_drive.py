@@ -1,8 +1,11 @@
-"""What words say of a whole route, and the network left out: traffic on the left, and the centre line."""
+"""What words say of a whole route, and the network left out: traffic on the left, the centre line, and that
+cars from the right go first.
+"""
 
 import re
 
-from roadgpt.brief.left_hand import says_left_hand
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.left_hand import NEGATED, says_left_hand
 from roadgpt.brief.model import Brief, CentreLine
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -33,6 +36,27 @@ PLACED = re.compile(
     r"jusqu|avant|apres|puis|ensuite|hasta|antes|despues|luego|fino|prima|dopo|poi)"
 )
 """Words that say on which part of the route a line is."""
+RIGHT_FIRST = re.compile(
+    r"right[- ]?before[- ]?left|(?:priority|precedence) (?:to|from) the right|give[- ]way to the right|"
+    r"rechts[- ]?vor[- ]?links|rechtsvor(?:tritt|rang)|priorite a (?:la )?droite|"
+    r"(?:precedenza|priorita) a(?:lla)? destra|(?:preferencia|prioridad|preferente) (?:a|de|por) la derecha"
+)
+"""Cars from the right go first: the rule of junctions without signs."""
+SIGNED = re.compile(
+    r"\byields?\b|give[- ]way(?! to the right)|main road|\bgewahr|vorfahrt|wartepflicht|hauptstr|"
+    r"\bced(?:er?|ere|ez|a|o|iamo)\b|principal|"
+    r"\bd(?:o|are|ai|ando|ata?) (?:la )?precedenza(?! a(?:lla)? destra)"
+)
+"""Perhaps some junction has a sign to give way."""
+INSTEAD = re.compile(
+    r"\b(?:\w+n't|instead of|(?:an)?statt|au lieu de|en vez de|invece (?:di|della))(?: \w+)?\s*$"
+)
+UNSIGNED = (*RAMPS, *LANE_KINDS, "roundabout")
+"""Kinds at which cars from the right never go first."""
+AT_ALL = re.compile(
+    r"\b(?:everywhere|throughout|all(?!['’])|both|every|each|uberall|alle[nrm]?|beide[nrm]?|jede[nrm]?|partout|tous|"
+    r"toutes|chaque|tod[ao]s|amb[ao]s|cada|ovunque|dappertutto|tutt[ie]|entramb[ie]|ogni)\b"
+)
 
 
 def with_whole_drive(brief: Brief, words: str) -> Brief:
@@ -40,10 +64,11 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
 
     A single road is returned as it is. A centre line is added where the words say one kind of line and no
     place, no part of the plan has a line, and on every road that has oncoming traffic on the same
-    carriageway.
+    carriageway. Junctions where cars from the right go first get no sign to give way.
     """
     if not brief.junctions and brief.map is None:
         return brief
+    brief = _without_signs(brief, words)
     line = None if any(each.centre for each in brief.stretches) else _line_said(words)
     roads = tuple(
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
@@ -52,6 +77,30 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     return brief.model_copy(
         update={"left_hand": brief.left_hand or says_left_hand(words, by_place=True), "stretches": roads}
     )
+
+
+def _without_signs(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with no signs at junctions where cars from the right go first, unless the words also
+    tell of signs to give way.
+    """
+    said = plain(words)
+    before = [said[: each.start()] for each in RIGHT_FIRST.finditer(said)]
+    is_said = any(not NEGATED.search(each) and not INSTEAD.search(each) for each in before)
+    if not is_said or SIGNED.search(said):
+        return brief
+    if brief.map is not None:
+        control = brief.map.control if brief.map.control not in (None, "yield") else "none"
+        return brief.model_copy(update={"map": brief.map.model_copy(update={"control": control})})
+    is_open = len(brief.junctions) == 1 or AT_ALL.search(said) is not None
+    junctions = tuple(_uncontrolled(each, is_open) for each in brief.junctions)
+    return brief.model_copy(update={"junctions": junctions})
+
+
+def _uncontrolled(junction: JunctionClause, is_open: bool) -> JunctionClause:
+    is_meant = junction.control == "yield" or (is_open and junction.control is None)
+    if not is_meant or junction.kind in UNSIGNED:
+        return junction
+    return junction.model_copy(update={"control": "none"})
 
 
 def _line_said(words: str) -> CentreLine | None:
