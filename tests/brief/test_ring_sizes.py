@@ -32,6 +32,10 @@ def sized(text: str, tokens: str) -> str:
         ("a roundabout with an island 20 m across", "roundabout d= [1]", "roundabout d=20"),
         ("a roundabout, the island is 20 m across", "roundabout", "roundabout"),
         ("a large roundabout, then 30 m", "roundabout large // | len= [1]", "roundabout large // | len=30"),
+        ("Glorieta Ø 40 m, primera salida", "roundabout large exit= 1", "roundabout normal exit=1"),
+        ("rotonda de 40 m de diámetro, no, de 20", "roundabout mini", "roundabout mini"),
+        ("roundabout, 30 m across, no, 60 m across", "roundabout normal", "roundabout large"),
+        ("roundabout of 30 m diameter, no lights", "roundabout large", "roundabout normal"),
         ("a roundabout 200 m across", "roundabout large", "roundabout large"),
     ],
 )

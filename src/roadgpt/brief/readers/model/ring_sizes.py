@@ -11,10 +11,14 @@ from roadgpt.brief.junctions import SIZES
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SIDES, SLOT_TOKENS, TAKES
 
-ACROSS = re.compile(r"across|diam|durchmess|circle")
+ACROSS = re.compile(r"across|diam|durchmess|circle|ø")
 ISLAND = re.compile(
     r"island|insel|ilot|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
 )
+CORRECTED = re.compile(
+    r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|quatsch|pardon|scusa|perdon|rather)\b"
+)
+"""What follows a length that the next words take back."""
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 ROUNDABOUT = "roundabout"
@@ -53,7 +57,8 @@ def _sizes(tokens: Sequence[str], text: SlottedText) -> list[str]:
             continue
         place = words.index(name)
         near = " ".join(words[max(0, place - REACH) : place + REACH + 2])
-        if ACROSS.search(near) and not ISLAND.search(near):
+        is_taken_back = CORRECTED.match(" ".join(words[place + 1 : place + 8])) is not None
+        if ACROSS.search(near) and not ISLAND.search(near) and not is_taken_back:
             found.append(next((size for size, span in SIZES.items() if slot.value < span.hi + 1), ""))
     return found
 
