@@ -16,7 +16,7 @@ ISLAND = re.compile(
     r"island|insel|ilot|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
 )
 CORRECTED = re.compile(
-    r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|quatsch|pardon|scusa|perdon|rather)\b"
+    r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|pardon|scusa|perdon) (?:[,.;:!]|\[unused)"
 )
 """What follows a length that the next words take back."""
 REACH = 4
