@@ -111,10 +111,11 @@ def answers(python: str, script: str, files: dict[str, Network], folder: Path) -
     return dict(json.loads(done.stdout.splitlines()[-1])) if done.stdout.strip() else {}
 
 
-@pytest.mark.parametrize("format_", ["opendrive", "opendrive17"])
-def test_asams_checker_has_nothing_to_say_of_networks(tmp_path: Path, format_: str) -> None:
+@pytest.mark.parametrize(("format_", "each"), [("opendrive", 3), ("opendrive17", 1)])
+def test_asams_checker_has_nothing_to_say_of_networks(tmp_path: Path, format_: str, each: int) -> None:
     python = python_with("qc_opendrive", "venv-qc")
-    files = saved(tmp_path, format_)
+    # the schema of 1.8 takes two seconds a file, so every third file of each kind has to do
+    files = dict([*saved(tmp_path, format_).items()][::each])
     answers(python, CHECK, files, tmp_path)
     for file in files:
         report = ET.parse(f"{file}.xqar").getroot()

@@ -3,25 +3,31 @@
 import re
 from itertools import islice
 
+import pytest
+
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.learn.back_labelling import measured_pairs
+from roadgpt.learn.generator import Pair
 from roadgpt.learn.standard import standard
 
-PAIRS = [*islice(measured_pairs(5), 40)]
+
+@pytest.fixture(scope="module")
+def pairs() -> list[Pair]:
+    return [*islice(measured_pairs(5), 40)]
 
 
-def test_plans_stand_as_plans_are_written_and_their_numbers_are_in_the_text() -> None:
-    for pair in PAIRS:
+def test_plans_stand_as_plans_are_written_and_their_numbers_are_in_the_text(pairs: list[Pair]) -> None:
+    for pair in pairs:
         assert standard(read_plan(pair.plan)) == pair.plan
         numbers = {float(number) for number in re.findall(r"\d+", pair.text)}
         assert {abs(float(number)) for number in re.findall(r"=(-?\d+)", pair.plan)} <= numbers | {0.0}
-    assert sum(tokens_of(pair.plan, slotted(pair.text).slots) is not None for pair in PAIRS) > 30
+    assert sum(tokens_of(pair.plan, slotted(pair.text).slots) is not None for pair in pairs) > 30
 
 
-def test_sides_are_said_as_often_as_they_are_planned() -> None:
-    for pair in PAIRS:
+def test_sides_are_said_as_often_as_they_are_planned(pairs: list[Pair]) -> None:
+    for pair in pairs:
         for side in ("left", "right"):
             said = len(re.findall(side, pair.text))
             planned = sum(
@@ -30,6 +36,6 @@ def test_sides_are_said_as_often_as_they_are_planned() -> None:
             assert said == planned
 
 
-def test_the_same_seed_describes_the_same_roads() -> None:
-    assert [*islice(measured_pairs(5), 5)] == PAIRS[:5]
-    assert [*islice(measured_pairs(6), 5)] != PAIRS[:5]
+def test_the_same_seed_describes_the_same_roads(pairs: list[Pair]) -> None:
+    assert [*islice(measured_pairs(5), 5)] == pairs[:5]
+    assert [*islice(measured_pairs(6), 5)] != pairs[:5]

@@ -19,21 +19,26 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
 from roadgpt.learn.data import NETWORK, is_for_roads_only
 from roadgpt.learn.generator import Pair
-from roadgpt.learn.labels import read_pairs
 from roadgpt.learn.routes import route_of, routes
 from roadgpt.learn.standard import standard
 
 DATA = Path(__file__).parents[2] / "data"
 
 
-def of_networks() -> list[Pair]:
-    pairs, problems = read_pairs((DATA / "networks" / "train").glob("*.jsonl"))
-    assert not problems
-    return pairs
+@pytest.fixture(scope="module")
+def pairs() -> list[Pair]:
+    """Every fourth of the hand-written pairs of routes."""
+    lines = [
+        json.loads(line)
+        for path in sorted((DATA / "networks" / "train").glob("*.jsonl"))
+        for line in path.read_text(encoding="utf-8").splitlines()[::4]
+    ]
+    return [Pair(**line) for line in lines]
 
 
-PAIRS = of_networks()
-PLANS = sorted({pair.plan for pair in PAIRS if not pair.plan.startswith("!")})
+@pytest.fixture(scope="module")
+def plans(pairs: list[Pair]) -> list[str]:
+    return sorted({pair.plan for pair in pairs if not pair.plan.startswith("!")})
 
 
 def other_way(junction: JunctionClause) -> JunctionClause:
@@ -51,22 +56,22 @@ def other_way(junction: JunctionClause) -> JunctionClause:
     )
 
 
-def test_a_mirror_of_a_mirror_is_the_plan_itself() -> None:
-    for line in PLANS:
+def test_a_mirror_of_a_mirror_is_the_plan_itself(plans: list[str]) -> None:
+    for line in plans:
         assert in_mirror_plan(in_mirror_plan(line)) == line
     assert in_mirror_tokens(in_mirror_tokens(TOKENS)) == TOKENS
 
 
-def test_a_mirrored_plan_takes_every_junction_on_the_other_side() -> None:
-    for line in PLANS:
+def test_a_mirrored_plan_takes_every_junction_on_the_other_side(plans: list[str]) -> None:
+    for line in plans:
         brief, seen = read_plan(line), read_plan(in_mirror_plan(line))
         assert [other_way(junction) for junction in brief.junctions] == list(seen.junctions)
         assert len(brief.stretches) == len(seen.stretches)
         assert brief.left_hand == seen.left_hand
 
 
-def test_tokens_and_words_of_a_plan_are_mirrored_alike() -> None:
-    for pair in PAIRS:
+def test_tokens_and_words_of_a_plan_are_mirrored_alike(pairs: list[Pair]) -> None:
+    for pair in pairs:
         slots = slotted(pair.text).slots
         tokens = None if pair.plan.startswith("!") else tokens_of(pair.plan, slots)
         if tokens:
@@ -163,11 +168,16 @@ def test_pairs_that_call_a_junction_unbuilt_are_outdated() -> None:
 
 
 def test_no_pair_of_networks_is_also_one_of_roads() -> None:
-    texts = {" ".join(pair.text.lower().split()) for pair in PAIRS}
-    of_roads = [
-        json.loads(line)["text"]
-        for path in sorted((DATA / "descriptions").rglob("*.jsonl"))
+    networks, roads = (texts_of(DATA / "networks" / "train"), texts_of(DATA / "descriptions"))
+    assert len(networks) > 10_000
+    assert len(roads) > 10_000
+    assert not networks & roads
+
+
+def texts_of(folder: Path) -> set[str]:
+    """The texts in all files of a folder, in lower case."""
+    return {
+        " ".join(json.loads(line)["text"].lower().split())
+        for path in folder.rglob("*.jsonl")
         for line in path.read_text(encoding="utf-8").splitlines()
-    ]
-    assert len(of_roads) > 10_000
-    assert not texts & {" ".join(text.lower().split()) for text in of_roads}
+    }
