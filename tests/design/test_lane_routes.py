@@ -31,6 +31,14 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "merge", "take": "ramp", "side": "right", "accel": [50, None]}],
         "between": [{"lanes": 1, "oneway": True}, {"lanes": [2, None], "oneway": True}],
     },
+    "merge ramp // | len=250 // diverge main // | len=250 // merge ramp // | motorway": {
+        "sequence": [
+            {"kind": "merge", "take": "ramp"},
+            {"kind": "diverge", "take": "main", "after": 250},
+            {"kind": "merge", "take": "ramp", "after": 250},
+        ],
+        "between": [{"lanes": 1}, {"lanes": 1}, {"lanes": 1}, {"lanes": [2, None], "oneway": True}],
+    },
     "| motorway // merge main len=120 //": {
         "sequence": [{"kind": "merge", "take": "main", "accel": 120, "taper": [20, 120]}],
         "between": [{"lanes": [2, None]}, {"lanes": [2, None]}],

@@ -132,11 +132,9 @@ def _forward(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> list[i
 def _first(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> int:
     """Returns the number of lanes of the first road, if it is not said: what the next places need."""
     more = 0
-    for place, road in zip(places, roads[1:], strict=False):
-        if place.kind == "merge" and place.take != "main":
-            return max(1, 1 + more)
+    for n, (place, road) in enumerate(zip(places, roads[1:], strict=False)):
         if place.kind in RAMPS:
-            return max(ON_MOTORWAY, 1 + more)
+            return max(_where_ramps_are(places[n:]), 1 + more)
         if place.kind == "lane_change":
             return max(2, 1 + more)
         if place.kind not in ("lane_drop", "lane_gain"):
@@ -145,6 +143,16 @@ def _first(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> int:
         if road.lanes is not None:
             return max(1, int(_nearest(road.lanes, 1, 1)) + more)
     return max(1, 1 + more)
+
+
+def _where_ramps_are(places: Sequence[JunctionClause]) -> int:
+    """Returns the usual number of lanes of a carriageway: one if it is the ramp of the next merge, or of one
+    that comes after ramps which the route passes on the main road.
+    """
+    for place in places:
+        if place.kind not in RAMPS or place.take != "main":
+            return 1 if place.kind == "merge" else ON_MOTORWAY
+    return ON_MOTORWAY
 
 
 def _behind(
@@ -157,7 +165,7 @@ def _behind(
     if place.kind == "lane_change" or (place.kind in RAMPS and place.take == "main"):
         return before
     if place.kind == "merge":
-        return ON_MOTORWAY
+        return _where_ramps_are(places[n:])
     if place.kind == "diverge":
         return 1
     return _first(roads[n:], places[n:]) if roads[n].lanes is None else before
