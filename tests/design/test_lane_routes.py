@@ -224,6 +224,8 @@ def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
             "a roundabout with fewer lanes than the 3 of a road that it joins cannot .*",
         ),
         ("| lanes=2 // roundabout lanes=1", "a roundabout with fewer lanes than the 2 of a road .*"),
+        ("| lanes=4 // lane_gain", "junction 1: a lane_gain leaves 5 lanes, and a road has 1 to 4; .*"),
+        ("lane_change left // merge ramp", "junction 2: the route comes or goes by the ramp, which has .*"),
     ],
 )
 def test_what_cannot_be_built_yet_is_named(line: str, said: str) -> None:

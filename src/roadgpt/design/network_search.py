@@ -26,7 +26,7 @@ from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
-from roadgpt.errors import DesignError
+from roadgpt.errors import DesignError, UsageError
 from roadgpt.network import NetworkDesign, build_route
 from roadgpt.network.design import PlaceDesign, ends_route
 from roadgpt.network.growing import length_inside
@@ -91,13 +91,17 @@ class NetworkSearch:
             drafts: how many drafts are tried at most.
 
         Raises:
-            DesignError: no draft was accepted; the message says why most of them failed.
+            DesignError: no draft was accepted, and the message says why most of them failed; or no road can
+                have the lanes that are required.
         """
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
         calm = min(NO_HASTE, drafts // 3)
         hastes = (max(0.0, (n - calm) / (drafts - calm)) ** 0.5 for n in range(drafts))
         tried = (self._draft(min(max(haste, least), 1.0)) for haste in hastes)
-        found = first_accepted(tried, build_route, self.brief, self.world, self.failed, BUILT)
+        try:
+            found = first_accepted(tried, build_route, self.brief, self.world, self.failed, BUILT)
+        except UsageError as error:  # no draft can have such lanes
+            raise DesignError(str(error)) from error
         if found is None:
             raise DesignError(self._advice())
         return found
