@@ -69,6 +69,10 @@ def test_cars_from_the_right_go_first_where_no_sign_is(words: str) -> None:
         ("crossroads left yield", "Kreuzung, links, ohne Rechts vor Links"),
         ("junction left lights // roundabout yield", "rechts vor links ist hier nirgends"),
         ("junction left // crossroads", "junction left, then a crossroads with right before left"),
+        (
+            "crossroads straight // crossroads straight none",
+            "two crossroads, all straight over; right before left at the second",
+        ),
         ("merge ramp // crossroads none", "join, then a crossroads, right before left everywhere"),
     ],
 )

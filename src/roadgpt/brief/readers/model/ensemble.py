@@ -60,10 +60,10 @@ def scored_by(
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
     """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
 
-    The network for routes is asked if a word may tell of one. Its plan counts if those for single roads could
-    not write it, unless it is a guess: they know no junctions, and read "crossroads, sharp left" as a bend,
-    however sure they are. Its refusal counts unless they are sure of a plan. What it reads also counts if
-    they name a junction or the like beside the road or as the cause of a refusal.
+    The network for routes is asked if a word may tell of one. Its plan counts if it is no guess and the
+    networks for single roads could not write it: they know no junctions, and read "crossroads, sharp left" as
+    a bend, however sure they are. Its refusal counts unless they are sure of a plan. What it reads counts
+    also if they name a junction or the like beside the road or as the cause of a refusal.
 
     Args:
         roads: the networks for single roads.

@@ -91,7 +91,8 @@ def _without_signs(brief: Brief, words: str) -> Brief:
     if brief.map is not None:
         control = brief.map.control if brief.map.control not in (None, "yield") else "none"
         return brief.model_copy(update={"map": brief.map.model_copy(update={"control": control})})
-    is_open = len(brief.junctions) == 1 or AT_ALL.search(said) is not None
+    parts = [part for part in re.split(r"[.,;:!?\n]", said) if RIGHT_FIRST.search(part)]
+    is_open = len(brief.junctions) == 1 or any(AT_ALL.search(part) for part in parts)
     junctions = tuple(_uncontrolled(each, is_open) for each in brief.junctions)
     return brief.model_copy(update={"junctions": junctions})
 
