@@ -21,6 +21,7 @@ from roadgpt.design.network_search import NetworkSearch
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.export import save
 from roadgpt.network import NetworkDesign, Route, build_route, read_network_design
+from roadgpt.network.lane_design import narrow_part
 from roadgpt.road import Site, World
 
 WIDE = World(site=Site(map_size=600))
@@ -128,6 +129,32 @@ CASES: dict[str, dict[str, Any]] = {
         "lanes": 3,
         "junctions": 0,
     },
+    "| lanes=3 oneway len=200 // lane_drop //": {
+        "sequence": [{"kind": "lane_drop", "from": 3, "to": 2, "after": 200}],
+        "oneway": True,
+        "junctions": 0,
+    },
+    "| lanes=1 len=120 // lane_gain // | len=90 // lane_drop //": {
+        "sequence": [
+            {"kind": "lane_gain", "from": 1, "to": 2, "after": 120},
+            {"kind": "lane_drop", "from": 2, "to": 1, "after": 210},
+        ],
+        "junctions": 0,
+    },
+    "| lanes=2 len=60 // lane_drop // | len=40 // t_junction left": {
+        "sequence": [{"kind": "lane_drop", "after": 60}, {"kind": "T", "take": "left", "after": 100}],
+        "junctions": 1,
+    },
+    "| lanes=2 oneway len=100 // lane_change left // // lane_change right //": {
+        "sequence": [{**LANE_CHANGE, "after": 100}, {"kind": "lane_change", "dir": "right"}],
+        "oneway": True,
+        "junctions": 0,
+    },
+    "| lanes=2 // lane_drop // | oneway centre=solid": {
+        "sequence": [{"kind": "lane_drop"}],
+        "oneway": True,
+        "junctions": 0,
+    },
     "crossroads straight priority others_stop": {
         "sequence": [{"kind": "X", "take": "straight", "control": "priority", "other_control": "stop"}]
     },
@@ -195,6 +222,27 @@ def test_a_lane_that_the_words_count_is_there_on_every_road() -> None:
     route = drafted("| lanes=3 against=1 // crossroads straight // | lanes=2 against=0", 1)
     counts = [member.profile.count for _, member in route.roads]
     assert counts == [(3, 1), (2, 0)]
+
+
+@pytest.mark.parametrize(("width", "part"), [(3.0, 30.0), (4.0, 24.95), (3.5, 27.14)])
+def test_the_narrow_part_of_a_taper_is_where_its_cubic_is_below_the_least_width(
+    width: float, part: float
+) -> None:
+    (share,) = (
+        root.real for root in np.roots([-2, 3, 0, -1.5 / width]) if 0 < root.real < 1 and not root.imag
+    )
+    assert narrow_part(60.0, width) == pytest.approx(60 * share)
+    assert narrow_part(60.0, width) == pytest.approx(part, abs=0.01)
+
+
+def test_what_is_said_of_a_road_before_a_lane_ends_holds_behind_it() -> None:
+    route = drafted("| lanes=3 oneway // lane_drop // lane_change left //", 1)
+    assert [member.profile.count for _, member in route.roads] == [(3, 0), (2, 0), (2, 0)]
+    route = drafted("| lanes=2 against=2 divided // lane_drop //", 1)
+    assert [(member.profile.count, member.profile.median) for _, member in route.roads] == [
+        ((2, 2), 2.0),
+        ((1, 2), 2.0),
+    ]
 
 
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:

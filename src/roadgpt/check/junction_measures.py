@@ -14,6 +14,7 @@ import numpy as np
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route
+from roadgpt.network.lane_design import LEAST_WIDTH
 
 FULL = 0.9  # of the width of a lane, above which it is not yet in its taper
 OUT = 15.0  # m, from a contact to the point that gives the direction of its arm
@@ -21,6 +22,7 @@ T_GAP = (145.0, 215.0)  # degrees, the largest gap between the arms of a T-junct
 T_OTHERS = 55.0  # degrees, least other gap
 Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
 LINE = 35.0  # degrees, that opposite arms of crossroads may be off one line
+STEP = 0.5  # m, between stations at which the width of a lane is measured
 SKEW = 70.0  # degrees; a smaller gap makes crossroads skew
 
 
@@ -82,6 +84,8 @@ class MeasuredLanes:
     kind: LaneKind
     side: Side | None
     """The side of the lane that ends or begins, or to which the route changes."""
+    behind: float = 0.0
+    """How far behind ``s`` the lane ends, begins or is changed, in metres; negative for before it."""
 
 
 def measured_places(route: Route) -> list[MeasuredJunction | MeasuredLanes]:
@@ -102,10 +106,26 @@ def _lane_places(route: Route) -> Iterator[MeasuredLanes]:
             own = two.profile.side
             is_left = (own > 0) == ((own, own) in pairs)
             side: Side = "left" if is_left else "right"
-            yield MeasuredLanes(start, "lane_drop" if after < before else "lane_gain", side)
+            if after < before:
+                yield MeasuredLanes(start, "lane_drop", side, -_narrow_part(one, at_end=True))
+            else:
+                yield MeasuredLanes(start, "lane_gain", side, _narrow_part(two, at_end=False))
         elif len(lanes) > 1:
             is_left = (lanes[1] > lanes[0]) == two.profile.leads_along(lanes[0])
-            yield MeasuredLanes(start, "lane_change", "left" if is_left else "right")
+            middle = two.road.length / len(lanes[1:]) / 2
+            yield MeasuredLanes(start, "lane_change", "left" if is_left else "right", middle)
+
+
+def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
+    """Returns the length in metres at one end of a road in which a lane is too narrow for a car."""
+    length = member.road.length
+    s = np.linspace(0.0, length, math.ceil(length / STEP) + 1)
+    found = 0.0
+    for lane in member.profile.along[: member.profile.count[0]]:
+        if isinstance(lane.width, CubicProfile):
+            wide = s[lane.width.height(s) >= LEAST_WIDTH]
+            found = max(found, length - wide[-1] if at_end else wide[0])
+    return float(found)
 
 
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:

@@ -58,10 +58,22 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
             for text in texts
         ]
     roads = stretches_of(route)
+    moved = [0.0, *map(_moved, found, brief.stretches[1:]), 0.0]
     for n, ((start, road), stretch) in enumerate(zip(roads, brief.stretches, strict=False)):
         if not stretch.is_open:
-            out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1))
+            more = moved[n + 1] - moved[n]
+            out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1), more)
     return (*out, *_length(route, brief))
+
+
+def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
+    """Returns how far behind the end of a road its required length ends, in metres.
+
+    Where the lane is changed, it ends at the road behind if the length of that road is required, too.
+    """
+    if isinstance(place, MeasuredJunction) or (place.kind == "lane_change" and behind.length is not None):
+        return 0.0
+    return place.behind
 
 
 def stretches_of(route: Route) -> list[tuple[float, Road]]:
@@ -77,16 +89,19 @@ def stretches_of(route: Route) -> list[tuple[float, Road]]:
     return [(start, joined_roads([member.road for member in own])) for start, own in found]
 
 
-def _broken(start: float, road: Road, asked: Brief, is_level: tuple[bool, bool]) -> Iterator[Finding]:
+def _broken(
+    start: float, road: Road, asked: Brief, is_level: tuple[bool, bool], more: float
+) -> Iterator[Finding]:
     """Yields a Finding for each requirement that a road does not meet.
 
-    Grades are required of the road as it would be if its ends were not level because they meet junctions.
+    Grades are required of the road as it would be if its ends were not level because they meet junctions. Its
+    length counts from where lanes end, begin or are changed, so it is ``more`` metres longer.
     """
     yield from _broken_lanes(start, road, asked)
     wanted = outline(asked.as_stretch)
     found = measure(without_level_ends(road, is_level).centreline(), wanted.widest)
     heights = road.at(np.array([0.0, road.length]))[:, 2]
-    found = replace(found, climb=float(heights[1] - heights[0]))
+    found = replace(found, climb=float(heights[1] - heights[0]), length=found.length + more)
     for complaint in complaints(found, wanted):
         s = start if complaint.s is None else start + complaint.s
         x, y = road.at(min(s - start, road.length))[:2].tolist()

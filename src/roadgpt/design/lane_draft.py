@@ -1,31 +1,39 @@
 """Chooses the lanes of the roads of a route, within what is required of them."""
 
 from collections.abc import Sequence
+from math import inf
 
-from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.amount import Amount, at_least, between, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.words import MOST_LANES, Range, nearest
+from roadgpt.brief.words import MOST_LANES, ROAD, Range, nearest
 from roadgpt.network.crossing_lanes import USUALLY_FED
+from roadgpt.network.design import PlaceDesign
 from roadgpt.network.lane_design import (
     ACCELERATION,
     TAPER,
     LanesChangeDesign,
     LanesDesign,
     RampDesign,
+    narrow_part,
 )
 from roadgpt.network.ramps import TAPER as RAMP_TAPER
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
 WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
 LEAST_LANE = 17.0  # m, which counts as 28 with its taper: what the rule ``ramp_too_short`` requires
+LEAST_TAPER = 10.0  # m
+MOST_IN_TAPER = 0.6  # of the required length of a road at whose ends lanes end or begin
 LEAST_BESIDE = 20.0  # m, of a lane for acceleration or deceleration whose length is not said
 SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
+SHORTEST_PART = 12.0  # m, of a road before or behind a place where lanes change
 USUAL_ROAD = 90.0  # m, of a road whose length is not said
 DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
 EDGES = 40.0  # m, kept free at the edges of the map
 STEP = 50.0  # m, to which the side of the map is rounded up
 SLACK = 1.0  # m more than the least length that is required
+CHANGE = (40.0, 80.0)  # m, of a road in whose middle the lane is changed, if its length is not said
+CLOSE = 0.5  # of the slack of a required length, within which roads are drafted
 
 
 def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
@@ -46,10 +54,16 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     )
 
 
-def drawn_change(asked: JunctionClause) -> LanesChangeDesign:
-    """Returns a place where lanes change that meets its requirements."""
+def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
+    """Returns a place where lanes change that meets its requirements.
+
+    Args:
+        asked: the requirements.
+        around: those for the roads before and behind it; a short road has no room for the usual taper.
+    """
     side = asked.take or asked.side or "right"
-    length = TAPER if asked.length is None else _length(asked.length)
+    room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
+    length = max(min(TAPER, room), LEAST_TAPER) if asked.length is None else _length(asked.length)
     return LanesChangeDesign.model_validate(
         {"after": 1, "kind": asked.kind, "side": side, "length": round(length, 1)}
     )
@@ -60,6 +74,47 @@ def _length(asked: Amount) -> float:
     if asked.exact or low <= 0:
         return high if low <= 0 else low
     return min(low + SLACK, high)
+
+
+def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float) -> list[Brief]:
+    """Returns the requirements for the roads of a route, with the lengths that the roads themselves need.
+
+    Required lengths count from where a lane ends or begins, which is where it is ``LEAST_WIDTH`` wide, while
+    roads meet where its taper ends or begins. The lane is changed in the middle of the road behind such a
+    place, so this road gets a length if only that of the road before it is required.
+
+    Args:
+        brief: the requirements.
+        places: what the route passes.
+        width: width in metres of each lane.
+    """
+    roads = list(brief.stretches)
+    for n, place in enumerate(places):
+        if not isinstance(place, LanesChangeDesign):
+            continue
+        before, behind = (road.length for road in brief.stretches[n : n + 2])
+        if place.kind != "lane_change":
+            more = narrow_part(place.length, width) * (1 if place.kind == "lane_drop" else -1)
+            roads[n], roads[n + 1] = _longer(roads[n], more), _longer(roads[n + 1], -more)
+        elif before is not None and behind is None:
+            least, most = CHANGE
+            own = min(max(span(before).lo, least), most)
+            roads[n] = _longer(roads[n], -own / 2)
+            roads[n + 1] = roads[n + 1].model_copy(update={"length": between(own - SLACK, own + SLACK)})
+    return roads
+
+
+def _longer(road: Brief, more: float) -> Brief:
+    """Returns the requirements for a road; if its length is required, it is ``more`` metres longer."""
+    if road.length is None:
+        return road
+    low, high = span(road.length).lo, span(road.length).hi
+    if road.length.exact:
+        slack = CLOSE * ROAD["length"].slack(low)
+        low, high = low - slack, high + slack
+    low = max(low + more, SHORTEST_PART)
+    length = at_least(low) if high == inf else between(low, max(high + more, low + SLACK))
+    return road.model_copy(update={"length": length})
 
 
 def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
@@ -95,12 +150,36 @@ def _continued(brief: Brief) -> list[Brief]:
     """
     roads, places = list(brief.stretches), brief.junctions
     for n, place in enumerate(places):
+        if _is_one_road(place):
+            roads[n + 1] = _of_same_road(roads[n], roads[n + 1])
+    for n, place in reversed(list(enumerate(places))):
+        if _is_one_road(place):
+            roads[n] = _of_same_road(roads[n + 1], roads[n])
+    for n, place in enumerate(places):
         if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
             roads[n + 1] = _with_lanes_of(roads[n], roads[n + 1])
     for n, place in reversed(list(enumerate(places))):
         if _leads_on(place) and (n == 0 or places[n - 1].kind not in (*RAMPS, *LANE_KINDS, "roundabout")):
             roads[n] = _with_lanes_of(roads[n + 1], roads[n])
     return roads
+
+
+def _is_one_road(place: JunctionClause) -> bool:
+    """Returns whether the roads before and behind a place are the same road, with other lanes at most."""
+    return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
+
+
+def _of_same_road(known: Brief, road: Brief) -> Brief:
+    """Returns the requirements for a part of a road; what is left open is as on another part of it."""
+    says_against = road.against is not None or road.divided
+    return road.model_copy(
+        update={
+            "against": road.against if says_against else known.against,
+            "divided": road.divided if says_against else known.divided,
+            "centre": known.centre if road.centre is None else road.centre,
+            "motorway": known.motorway or road.motorway,
+        }
+    )
 
 
 def _leads_on(place: JunctionClause) -> bool:

@@ -19,7 +19,13 @@ from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
 from roadgpt.design.first_accepted import LANES_DIFFER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
-from roadgpt.design.lane_draft import SHORT_ROAD, drawn_change, drawn_ramp, lanes_of_roads
+from roadgpt.design.lane_draft import (
+    SHORT_ROAD,
+    counted_from_lanes,
+    drawn_change,
+    drawn_ramp,
+    lanes_of_roads,
+)
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
@@ -141,7 +147,8 @@ class NetworkSearch:
         for number, clause in enumerate(self.brief.junctions):
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
             if clause.kind in LANE_KINDS:
-                found.append(drawn_change(clause).model_copy(update={"lanes": lanes}))
+                around = self.brief.stretches[number : number + 2]
+                found.append(drawn_change(clause, around).model_copy(update={"lanes": lanes}))
                 continue
             if clause.kind in RAMPS:
                 room = self._room_beside(number)
@@ -184,7 +191,7 @@ class NetworkSearch:
         The roads of which nothing is required, or else those of which no length is, are drafted last: they
         make up the length of the whole route.
         """
-        briefs = self.brief.stretches
+        briefs = counted_from_lanes(self.brief, junctions, self.usual.width)
         free = [n for n, brief in enumerate(briefs) if brief.has_free_shape]
         free = free or [n for n, brief in enumerate(briefs) if brief.length is None]
         found: dict[int, Draft] = {}
@@ -194,7 +201,7 @@ class NetworkSearch:
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
                 share = left / sum(each not in found for each in free)
-            draft = self._stretch(self._without_ramps(n, junctions), haste, share, self._shortest(n))
+            draft = self._stretch(_without_ramps(briefs[n], n, junctions), haste, share, self._shortest(n))
             if draft is None:
                 self.failed[UNDRAFTED] += 1
                 return None
@@ -206,21 +213,6 @@ class NetworkSearch:
         around = self.brief.junctions[max(n - 1, 0) : n + 1]
         changes = any(place.kind in LANE_KINDS for place in around) or self.lanes[n].forward > 1
         return SHORTEST_WITH_LANES if changes else SHORTEST
-
-    def _without_ramps(self, n: int, places: Sequence[PlaceDesign]) -> Brief:
-        """Returns the requirements for the part of a road that is not beside a lane of a ramp."""
-        asked = self.brief.stretches[n]
-        around = [(place, "merge") for place in places[max(n - 1, 0) : n]]
-        around += [(place, "diverge") for place in places[n : n + 1]]
-        less = sum(
-            length_beside(place)
-            for place, kind in around
-            if isinstance(place, RampDesign) and place.kind == kind
-        )
-        if asked.length is None or not less:
-            return asked
-        low, high = span(asked.length).lo - less, span(asked.length).hi - less
-        return asked.model_copy(update={"length": between(max(low, 0.0), max(high, SHORT_ROAD))})
 
     def _rest(self, junctions: Sequence[PlaceDesign]) -> float | None:
         """Returns the length in metres that the roads between junctions share; None if it is open."""
@@ -323,3 +315,16 @@ class NetworkSearch:
             "give the roads at each junction as many lanes" if why == LANES_DIFFER else "leave something out"
         )
         return f"no draft of this route was accepted: {why}; {what}"
+
+
+def _without_ramps(asked: Brief, n: int, places: Sequence[PlaceDesign]) -> Brief:
+    """Returns the requirements for the part of the road number ``n`` that is not beside a lane of a ramp."""
+    around = [(place, "merge") for place in places[max(n - 1, 0) : n]]
+    around += [(place, "diverge") for place in places[n : n + 1]]
+    less = sum(
+        length_beside(place) for place, kind in around if isinstance(place, RampDesign) and place.kind == kind
+    )
+    if asked.length is None or not less:
+        return asked
+    low, high = span(asked.length).lo - less, span(asked.length).hi - less
+    return asked.model_copy(update={"length": between(max(low, 0.0), max(high, SHORT_ROAD))})

@@ -8,6 +8,7 @@
 They stand among the junctions, in driving order.
 """
 
+import math
 from typing import Annotated, Literal
 
 from pydantic import Field, StrictBool
@@ -20,6 +21,7 @@ from roadgpt.road.profile import Marking
 ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
 MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, of a lane that ends or begins
+LEAST_WIDTH = 1.5  # m; a lane that ends, ends where it is narrower, because no car can go on in it
 
 After = Annotated[int, Field(ge=1, le=500)]
 LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
@@ -77,3 +79,14 @@ class LanesChangeDesign(FrozenFields):
     def mirrored(self) -> "LanesChangeDesign":
         """Returns the place with left and right exchanged."""
         return self.model_copy(update={"side": OTHER_DIRECTION[self.side]})
+
+
+def narrow_part(taper: float, width: float) -> float:
+    """Returns the length in metres in which a lane that ends or begins is narrower than ``LEAST_WIDTH``.
+
+    Args:
+        taper: The length in metres in which the width changes between 0 and that of the lane, as a cubic
+            whose slope is 0 at both ends.
+        width: The width of the lane in metres, at least ``LEAST_WIDTH``.
+    """
+    return taper * (0.5 - math.sin(math.asin(1 - 2 * LEAST_WIDTH / width) / 3))
