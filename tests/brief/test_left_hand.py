@@ -3,9 +3,10 @@
 import pytest
 
 from roadgpt.brief import read
-from roadgpt.brief.left_hand import says_left_hand
+from roadgpt.brief.left_hand import says_left_hand, with_driving_side
+from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
-from roadgpt.errors import BriefError
+from roadgpt.brief.sentence import sentence
 
 READER = ModelReader()
 
@@ -50,11 +51,26 @@ def test_a_route_is_read_with_it() -> None:
     assert not READER.read("a T-junction, turn right").left_hand
 
 
+@pytest.mark.parametrize(
+    ("words", "beside"),
+    [
+        ("left-hand traffic, three bends", ()),
+        ("Linksverkehr, drei Kurven", ()),
+        ("three bends, traffic on the left, and dense traffic", ("traffic",)),
+    ],
+)
+def test_other_cars_are_named_only_where_the_words_name_them(words: str, beside: tuple[str, ...]) -> None:
+    found = with_driving_side(read_plan("turn x3 | beside(traffic)"), words)
+    assert (found.left_hand, found.beside) == (True, beside)
+
+
 def test_a_single_road_as_in_a_country_is_no_wish_for_its_traffic() -> None:
-    assert len(read("two bends, as in Scotland").clauses) == 1
+    found = read("two bends, as in Scotland")
+    assert len(found.clauses) == 1
+    assert not found.left_hand
 
 
 @pytest.mark.parametrize("words", ["left-hand traffic", "two bends with traffic on the left"])
-def test_a_single_road_with_it_is_refused_and_not_read_as_something_else(words: str) -> None:
-    with pytest.raises(BriefError, match="a road without junctions has no traffic on the left; leave it out"):
-        read(words)
+def test_a_single_road_is_read_with_it(words: str) -> None:
+    assert read(words).left_hand
+    assert sentence(read(words)).endswith("raffic on the left.")

@@ -104,3 +104,14 @@ def test_any_text_is_a_brief_or_a_sentence(line: str) -> None:
     except BriefError:
         return
     assert read_plan(plan(brief)) == brief
+
+
+@pytest.mark.parametrize(
+    ("line", "same"),
+    [
+        ("turn x4 || left_hand", "turn x4 | left_hand"),
+        ("turn x4 | up || left_hand beside(rain)", "turn x4 | up left_hand beside(rain)"),
+    ],
+)
+def test_of_a_single_road_one_line_and_two_ask_the_same(line: str, same: str) -> None:
+    assert read_plan(line) == read_plan(same)

@@ -150,6 +150,13 @@ CASES: dict[str, dict[str, Any]] = {
         "oneway": True,
         "junctions": 0,
     },
+    "| divided lanes=2 against=2 len=500 turns=0": {
+        "sequence": [],
+        **TWO_EACH,
+        "divided": True,
+        "length": 500,
+    },
+    "turn x3 | divided lanes=1 up": {"sequence": [], "divided": True, "turns": 3, "lanes": 1, "grade": "up"},
     "| lanes=2 // lane_drop // | oneway centre=solid": {
         "sequence": [{"kind": "lane_drop"}],
         "oneway": True,

@@ -17,7 +17,7 @@ from typing import Protocol, cast, runtime_checkable
 from roadgpt import plugins
 from roadgpt.brief import beside, motorway
 from roadgpt.brief.feasible import check, is_possible
-from roadgpt.brief.left_hand import says_left_hand
+from roadgpt.brief.left_hand import with_driving_side
 from roadgpt.brief.map_fit import ROAD_WIDTH
 from roadgpt.brief.model import (
     Amount,
@@ -47,7 +47,7 @@ from roadgpt.brief.refusal import (
 from roadgpt.brief.sentence import sentence
 from roadgpt.brief.words import LEAST_RADIUS, STEEPEST, SURE, USUAL_MAP, Range
 from roadgpt.chat import ChatSettings, instantiate, settings_for
-from roadgpt.errors import BriefError, PartError
+from roadgpt.errors import PartError
 
 __all__ = [
     "SURE",
@@ -165,11 +165,8 @@ def read(
         rest = brief.model_copy(update={"beside": tuple(n for n in brief.beside if n not in beside.NETWORKS)})
         raise NotBuiltError(f"{missing}; the road without it", plan(rest), rest)
     is_road = not brief.junctions and brief.map is None
-    if is_road and reader != PLAN and says_left_hand(words):
-        raise BriefError(
-            "a road without junctions has no traffic on the left; leave it out, or say where the road leads,"
-            " such as 'then a T-junction, turn left'"
-        )
+    if reader != PLAN:
+        brief = with_driving_side(brief, words)
     return brief.model_copy(update={"motorway": True}) if is_road and says_motorway(words) else brief
 
 

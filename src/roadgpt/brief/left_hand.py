@@ -2,6 +2,7 @@
 
 import re
 
+from roadgpt.brief.model import Brief
 from roadgpt.brief.words import unaccented
 
 COUNTRIES = (
@@ -27,6 +28,7 @@ BY_PLACE = re.compile(
     rf"\bthis is (?:{COUNTRIES})\b|^(?:in|en|a|au) (?:{COUNTRIES})\b[:,]|"
     r"\bbritish roads|like the (?:british|uk)\b|ponmelo britanico"
 )
+TRAFFIC = re.compile(r"traffic|verkehr|circulation|circulacion|circolazione|trafico")
 NEGATED = re.compile(
     r"\b(?:no|not|without|never|kein|keinen|nicht|ohne|pas de|sans|sin|senza)\b(?:\s\w+)?\s*$"
 )
@@ -43,3 +45,14 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
     said = unaccented(words)
     found = [*SAYS.finditer(said), *(BY_PLACE.finditer(said) if by_place else ())]
     return any(not NEGATED.search(said[: each.start()]) for each in found)
+
+
+def with_driving_side(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with traffic on the left if the words ask for it; "left-hand traffic" alone names no
+    other cars.
+    """
+    if not (brief.left_hand or says_left_hand(words)):
+        return brief
+    has_others = TRAFFIC.search(SAYS.sub(" ", unaccented(words))) is not None
+    beside = tuple(name for name in brief.beside if has_others or name != "traffic")
+    return brief.model_copy(update={"left_hand": True, "beside": beside})

@@ -200,6 +200,21 @@ class Brief(Frozen):
         return f"{sides[0]}+{sides[1]}"
 
     @property
+    def is_of_network(self) -> bool:
+        """Whether a network is required: junctions, a map, a median, or traffic on the left."""
+        return bool(self.junctions or self.map is not None or self.divided or self.left_hand)
+
+    @property
+    def roads(self) -> "tuple[Brief, ...]":
+        """The roads before, between and after the junctions, or the only road, which needs a turn unless
+        other turns are asked for.
+        """
+        if self.stretches:
+            return self.stretches
+        needs_turn = not self.clauses and self.turns is None
+        return (self.model_copy(update={"turns": at_least(1)}) if needs_turn else self,)
+
+    @property
     def has_free_shape(self) -> bool:
         """Whether nothing but lanes and markings is required of the road."""
         lanes = {"lanes": None, "against": None, "divided": False, "centre": None, "motorway": False}

@@ -121,7 +121,9 @@ def read_plan(line: str) -> Brief:
         return _read_network(without_halfway(line))
     if is_map(line):
         return _read_map(line)
-    clauses, _, wishes = line.partition("|")
+    road, _, whole = line.partition(WHOLE)  # of a single road, | and || ask the same
+    clauses, _, own = road.partition("|")
+    wishes = f"{own} {whole}"
     fields: dict[str, object] = {
         "clauses": tuple(_read_clause(part) for part in clauses.split(";") if part.strip())
     }

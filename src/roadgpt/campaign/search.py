@@ -78,10 +78,10 @@ def settings_of(cell: Cell) -> SearchSettings:
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
-    if cell.brief is not None and (cell.brief.junctions or cell.brief.map is not None):
+    if cell.brief is not None and cell.brief.is_of_network:
         raise UsageError(
-            f"the generator '{cell.generator}' searches roads without junctions; leave out --goal and "
-            "--generator, or the junctions"
+            f"the generator '{cell.generator}' searches single roads without medians and with traffic on "
+            "the right; leave out --goal and --generator, or what only networks have"
         )
     try:
         return SearchSettings.model_validate(dict(cell.settings))

@@ -58,8 +58,8 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
             for text in texts
         ]
     roads = stretches_of(route)
-    moved = [0.0, *map(_moved, found, brief.stretches[1:]), 0.0]
-    for n, ((start, road), stretch) in enumerate(zip(roads, brief.stretches, strict=False)):
+    moved = [0.0, *map(_moved, found, brief.roads[1:]), 0.0]
+    for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
         if not stretch.is_open:
             more = moved[n + 1] - moved[n]
             out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1), more)

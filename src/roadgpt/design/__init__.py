@@ -102,12 +102,15 @@ def check_designer(designer: Designer, brief: Brief) -> None:
     """Checks that a designer can make what a Brief asks for.
 
     Raises:
-        DesignError: the Brief has junctions or asks for a map, and the designer makes roads without junctions
-            only, or the Brief asks for something that cannot be built yet.
+        DesignError: the Brief asks for a network, and the designer makes single roads only, or the Brief asks
+            for something that cannot be built yet.
     """
     check_built(brief)
-    if (brief.junctions or brief.map is not None) and not getattr(designer, "makes_junctions", False):
-        raise DesignError("this designer makes roads without junctions; leave --designer out to have some")
+    if brief.is_of_network and not getattr(designer, "makes_junctions", False):
+        raise DesignError(
+            "this designer makes single roads without a median and with traffic on the right; leave "
+            "--designer out"
+        )
 
 
 def designer_of(name: str, chat: ChatSettings | None = None) -> Designer:

@@ -88,11 +88,11 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
         places: what the route passes.
         width: width in metres of each lane.
     """
-    roads = list(brief.stretches)
+    roads = list(brief.roads)
     for n, place in enumerate(places):
         if not isinstance(place, LanesChangeDesign):
             continue
-        before, behind = (road.length for road in brief.stretches[n : n + 2])
+        before, behind = (road.length for road in brief.roads[n : n + 2])
         if place.kind != "lane_change":
             more = narrow_part(place.length, width) * (1 if place.kind == "lane_drop" else -1)
             roads[n], roads[n + 1] = _longer(roads[n], more), _longer(roads[n + 1], -more)
@@ -148,7 +148,7 @@ def _continued(brief: Brief) -> list[Brief]:
     """Returns the requirements for the roads; where those for lanes are left open, they are those of the road
     that continues it across a junction, if it has so many lanes that fewer would lead nowhere.
     """
-    roads, places = list(brief.stretches), brief.junctions
+    roads, places = list(brief.roads), brief.junctions
     for n, place in enumerate(places):
         if _is_one_road(place):
             roads[n + 1] = _of_same_road(roads[n], roads[n + 1])

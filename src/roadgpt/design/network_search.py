@@ -122,7 +122,7 @@ class NetworkSearch:
         if pose is None or segments is None:
             return None
         after = accumulate(map(len, segments))
-        driven = segments[:-1] if ends_route(junctions[-1]) else segments
+        driven = segments[:-1] if any(map(ends_route, junctions)) else segments
         every = tuple(segment for part in driven for segment in part)
         low, high = STARTS_AT
         ground = max(low, self.world.site.z_floor + 1) + self.rng.random() * (high - low)
@@ -147,7 +147,7 @@ class NetworkSearch:
         for number, clause in enumerate(self.brief.junctions):
             lanes = None if self._has_usual_lanes else self.lanes[number + 1]
             if clause.kind in LANE_KINDS:
-                around = self.brief.stretches[number : number + 2]
+                around = self.brief.roads[number : number + 2]
                 found.append(drawn_change(clause, around).model_copy(update={"lanes": lanes}))
                 continue
             if clause.kind in RAMPS:
@@ -175,7 +175,7 @@ class NetworkSearch:
         """Returns the length in metres that a lane for acceleration or deceleration can have."""
         places = self.brief.junctions
         n = number if places[number].kind == "diverge" else number + 1
-        asked = self.brief.stretches[n].length
+        asked = self.brief.roads[n].length
         if asked is None:
             return inf
         is_shared = 0 < n < len(places) and (places[n - 1].kind, places[n].kind) == ("merge", "diverge")
@@ -268,7 +268,7 @@ class NetworkSearch:
             if segments is None:
                 self.failed.update(search.failed)
                 return None
-            if self.brief.stretches[n].climb is not None:
+            if self.brief.roads[n].climb is not None:
                 is_level = (n > 0, n < len(drafts) - 1)
                 segments = climbing(segments, is_level, 100 * self.world.limits.max_grade)
             found.append(segments)
@@ -276,7 +276,7 @@ class NetworkSearch:
 
     def _open(self, haste: float, shortest: float, is_straight: bool = False) -> Brief:
         """Returns requirements for a road of which nothing is required: short, and with a turn at most."""
-        count = len(self.brief.stretches)
+        count = len(self.brief.roads)
         most = min(MOST, ROOM * self.world.site.map_size / PARTS / count)
         most = max(most, shortest)
         high = shortest + 5 + (most - shortest) * (1 - haste) * float(self.rng.random())
@@ -286,7 +286,7 @@ class NetworkSearch:
 
     def _place(self, drafts: Sequence[Draft], junctions: Sequence[PlaceDesign]) -> MapPose | None:
         """Returns the start of a route on the map; None if it overlaps itself or does not fit."""
-        if ends_route(junctions[-1]) and not self.brief.stretches[-1].is_open:
+        if any(map(ends_route, junctions)) and not self.brief.roads[-1].is_open:
             self.failed["it turns back, so it cannot go on on another road"] += 1
             return None
         lines = [drafted.line for _, drafted in drafts]

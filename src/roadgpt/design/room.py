@@ -22,10 +22,10 @@ def world_for(brief: Brief | None, world: World) -> World:
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
         return found
-    if brief.junctions:
-        size = room_for_route(brief, found)
+    if brief.map is not None:
+        size = room_for_map(brief, found)
     else:
-        size = sufficient_map(brief, found) if brief.map is None else room_for_map(brief, found)
+        size = (room_for_route if brief.is_of_network else sufficient_map)(brief, found)
     return found if size is None else found.changed(map_size=size)
 
 
@@ -43,6 +43,8 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
         brief: the requirements.
         found: the World for the roads.
     """
+    if brief.is_of_network:
+        return
     lanes, centre = brief.lanes_text, brief.centre
     if lanes is not None:
         own = found.section.lanes

@@ -59,7 +59,7 @@ def _failed(brief: Brief, world: World) -> Counter[str] | None:
 def _likely_room(brief: Brief) -> float:
     """Returns the side in metres of a square on which a route has little room."""
     total = _least(brief)
-    for road in brief.stretches:
+    for road in brief.roads:
         total += _least(road)
     return max(_straightest(brief) / DIAGONAL + EDGES, total / WINDING)
 
@@ -71,7 +71,7 @@ def _straightest(brief: Brief) -> float:
     change.
     """
     longest, run = 0.0, 0.0
-    for n, road in enumerate(brief.stretches):
+    for n, road in enumerate(brief.roads):
         place = brief.junctions[n - 1] if n else None
         if place is None or place.kind not in (*RAMPS, *LANE_KINDS):
             run = 0.0

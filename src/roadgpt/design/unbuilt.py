@@ -29,12 +29,8 @@ def check_built(brief: Brief) -> None:
 
 
 def _unbuilt(brief: Brief) -> Iterator[str]:
-    if brief.left_hand and not brief.junctions and brief.map is None:
-        yield "traffic on the left of a road without junctions"
     for n, junction in enumerate(brief.junctions):
         yield from _of_junction(junction, *brief.stretches[n : n + 2])
-    if brief.divided:
-        yield "a median of a single road"
 
 
 def _crosses_oncoming(brief: Brief, number: int) -> bool:

@@ -6,7 +6,7 @@ Road: the reference lines of its roads, one after another. ``route.network`` is 
 connecting roads, junctions and roundabouts.
 """
 
-from roadgpt.network.design import JunctionDesign, NetworkDesign, has_junctions, read_network_design
+from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design
 from roadgpt.network.growing import build_route, passing_length
 from roadgpt.network.map_design import MapDesign, MapNode, read_map_design
 from roadgpt.network.map_growing import build_map
@@ -56,7 +56,7 @@ __all__ = [
     "Route",
     "build_map",
     "build_route",
-    "has_junctions",
+    "is_network_design",
     "made_from",
     "network_made_from",
     "passing_length",

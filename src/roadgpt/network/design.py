@@ -40,7 +40,7 @@ from roadgpt.road.road import FARTHEST
 
 KEY = re.compile(r"junction(\d{1,4})")
 OWN = ("lanes", "left_hand")
-"""The fields of a design with junctions that other designs do not have, besides the junctions."""
+"""The fields of a NetworkDesign that other designs do not have, besides the junctions."""
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
 ISLAND = 16.0  # m, radius of the central island
 STUB = 25.0  # m, of an arm whose length is not given
@@ -176,15 +176,15 @@ class NetworkDesign(FrozenFields):
     theta: Finite
     """Heading at the start in degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
-    junctions: Annotated[tuple[PlaceDesign, ...], Field(min_length=1, max_length=MOST_JUNCTIONS)]
-    """The junctions, and what stands in one order with them."""
+    junctions: Annotated[tuple[PlaceDesign, ...], Field(max_length=MOST_JUNCTIONS)]
+    """The junctions, and what stands in one order with them; none for a single road."""
     lanes: LanesDesign | None = None
     """The lanes of the first road; None for those of the World."""
     left_hand: StrictBool = False
     """Whether traffic drives on the left."""
 
     def __repr__(self) -> str:
-        kinds = ", ".join(junction.kind.replace("_", "-") for junction in self.junctions)
+        kinds = ", ".join(junction.kind.replace("_", "-") for junction in self.junctions) or "none"
         length = sum(segment.distance for segment in self.segments)
         return f"NetworkDesign({length:.0f} m of road, junctions: {kinds})"
 
@@ -243,13 +243,15 @@ def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
     return {key: as_written(each) for key, each in data.items()}
 
 
-def has_junctions(data: Any) -> bool:
-    """Returns whether parsed JSON is a design with junctions."""
-    return isinstance(data, Mapping) and any(KEY.fullmatch(str(key)) for key in data)
+def is_network_design(data: Any) -> bool:
+    """Returns whether parsed JSON is a design with junctions, or with lanes or a driving side of its own."""
+    if not isinstance(data, Mapping):
+        return False
+    return any((key in OWN and data[key] not in (None, False)) or KEY.fullmatch(str(key)) for key in data)
 
 
 def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format with junctions; returns the design and remarks.
+    """Reads a dictionary in RoadGPT's JSON format as a network; returns the design and remarks.
 
     Each remark is a sentence about a contradiction in the data or an unusual value.
 
@@ -259,8 +261,8 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     rest = {key: each for key, each in data.items() if key not in OWN and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
     numbered = sorted((int(KEY.fullmatch(key)[1]), data[key]) for key in data if KEY.fullmatch(str(key)))  # type: ignore[index]
-    if not 1 <= len(numbered) <= MOST_JUNCTIONS:
-        raise UsageError(f"the design has {len(numbered)} junctions; give 1 to {MOST_JUNCTIONS}")
+    if len(numbered) > MOST_JUNCTIONS:
+        raise UsageError(f"the design has {len(numbered)} junctions; give {MOST_JUNCTIONS} at most")
     left_hand = is_left_hand(data)
     junctions = [_place(number, raw, left_hand) for number, raw in numbered]
     junctions.sort(key=lambda each: each.after)

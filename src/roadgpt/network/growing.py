@@ -71,9 +71,8 @@ class _RouteGrowth:
 
     def __post_init__(self) -> None:
         x, y, z = self.design.starting_point
-        self.passed.append(
-            self._road(0, NetworkPose((x, y, z), math.radians(self.design.theta)), (False, True))
-        )
+        start = NetworkPose((x, y, z), math.radians(self.design.theta))
+        self.passed.append(self._road(0, start, (False, bool(self.design.junctions))))
 
     def _road(self, number: int, start: NetworkPose, is_level: tuple[bool, bool]) -> int:
         """Adds the road behind the place with this number (0: the first road); returns its id.

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from roadgpt.errors import UsageError
-from roadgpt.network.design import NetworkDesign, has_junctions, read_network_design
+from roadgpt.network.design import NetworkDesign, is_network_design, read_network_design
 from roadgpt.network.growing import build_route
 from roadgpt.network.map_design import MapDesign, has_nodes, read_map_design
 from roadgpt.network.map_growing import build_map
@@ -33,7 +33,7 @@ def read_blueprint(path: str | Path) -> tuple[Blueprint, tuple[str, ...]]:
 
 def _of_network(data: Any) -> tuple[Blueprint, tuple[str, ...]] | None:
     """Returns the design with junctions, the map or the route in parsed JSON; None if it holds none."""
-    if has_junctions(data) or has_nodes(data):
+    if is_network_design(data) or has_nodes(data):
         return read_any_design(data)
     if isinstance(data, Mapping) and "network" in data:
         return road_from_json(data), ()
@@ -63,7 +63,7 @@ def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]
     """
     if isinstance(data, Mapping) and has_nodes(data):
         return read_map_design(data)
-    return read_network_design(data) if has_junctions(data) else read_design(data)
+    return read_network_design(data) if is_network_design(data) else read_design(data)
 
 
 def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -> Road:

@@ -12,7 +12,7 @@ from roadgpt.geometry import CubicProfile
 from roadgpt.road.profile import Kind, Lane, Marking, Profile, Width
 
 KNOWN = {"left", "right", "driven", "centre_marking", "superelevation", "offset", "median", "left_hand"}
-ONLY_NETWORKS = "traffic drives on the left on routes with junctions and on maps only"
+ONLY_NETWORKS = "traffic drives on the left on the roads of networks only"
 MOST_LANES = 20  # on one side
 MOST_ROWS = 20_000
 WIDEST = 100.0  # m, of a lane or shoulder

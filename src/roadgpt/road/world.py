@@ -285,7 +285,7 @@ class World(BaseModel):
 
         Lanes and lines that were given to this World are kept, even if they equal the defaults.
         """
-        if brief is None:
+        if brief is None or brief.is_of_network:
             return self
         given = self.section.model_fields_set
         wanted = {"lanes": brief.lanes_text, "centre_line": brief.centre}

@@ -14,10 +14,8 @@ from roadgpt.design.map_search import MapSearch
 from roadgpt.design.network_search import NetworkSearch
 from roadgpt.design.road_search import DraftSearch
 from roadgpt.design.variety import Shapes
-from roadgpt.errors import DesignError
 from roadgpt.network import AnyDesign
 from roadgpt.road import Design, World
-from roadgpt.road.profile_json import ONLY_NETWORKS
 
 
 class Planner:
@@ -31,7 +29,7 @@ class Planner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> AnyDesign:
-        """Returns a Design that meets the Brief and is valid; with junctions or of a map if the Brief asks.
+        """Returns a Design that meets the Brief and is valid; that of a network if the Brief asks for one.
 
         Args:
             brief: the requirements for the road.
@@ -43,16 +41,13 @@ class Planner:
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.
         """
-        if brief.left_hand:  # traffic on the left is the mirror image of traffic on the right
-            found = self.draft(mirrored(brief), world, notes, earlier, seed)
-            if isinstance(found, Design):
-                raise DesignError(ONLY_NETWORKS)
-            return found.mirrored(world.site.map_size / 2)
         rng = np.random.default_rng([seed, len(notes)])
-        if brief.map is not None:
-            return MapSearch(brief, world, rng).run()
-        if brief.junctions:
-            return NetworkSearch(brief, world, rng).run()
+        if brief.is_of_network:
+            search = NetworkSearch if brief.map is None else MapSearch
+            if not brief.left_hand:
+                return search(brief, world, rng).run()
+            # traffic on the left is the mirror image of traffic on the right
+            return search(mirrored(brief), world, rng).run().mirrored(world.site.map_size / 2)
         design, road = DraftSearch(brief, world, self._shapes.of(earlier), rng).run()
         self._shapes.remember(design, road)
         return design
