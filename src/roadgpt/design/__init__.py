@@ -38,8 +38,8 @@ class Designer(Protocol):
     ) -> AnyDesign:
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
-        If the Brief has junctions, the result is a NetworkDesign, and if it asks for a map, a MapDesign. A
-        designer that cannot make one raises DesignError.
+        If the Brief asks for a network (``is_of_network``), the result is a NetworkDesign, and a MapDesign if
+        it asks for a map. A designer that cannot make one raises DesignError.
 
         Args:
             brief: the requirements for the road.
@@ -108,7 +108,7 @@ def check_designer(designer: Designer, brief: Brief) -> None:
     check_built(brief)
     if brief.is_of_network and not getattr(designer, "makes_junctions", False):
         raise DesignError(
-            "this designer makes single roads without a median and with traffic on the right; leave "
+            "this designer makes single roads without junctions, medians and traffic on the left; leave "
             "--designer out"
         )
 
