@@ -94,7 +94,9 @@ def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed:
     """
     found = draft(brief, world, (), earlier, seed)
     if not isinstance(found, Design):
-        raise DesignError("this takes single roads only; leave out junctions, medians and traffic on the left")
+        raise DesignError(
+            "this takes single roads only; leave out junctions, medians and traffic on the left"
+        )
     return found
 
 

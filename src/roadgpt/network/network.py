@@ -16,7 +16,15 @@ import numpy as np
 from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
-from roadgpt.network.paved import ISLAND, SLIVER, outline_of, paved_by, without_small_islands
+from roadgpt.network.paved import (
+    ISLAND,
+    SLIVER,
+    areas_of,
+    covered_by,
+    outline_of,
+    paved_by,
+    without_small_islands,
+)
 from roadgpt.network.polygon import Area
 from roadgpt.network.pose import Point, mirrored_point
 from roadgpt.road import Profile, Road
@@ -325,9 +333,11 @@ class Network:
     def _paved(self) -> tuple[Area, ...]:
         """The paved area of all roads, and those inside each of the ``nodes``. Where roads cross, small holes
         between ways are paved; roundabouts have smaller islands."""
-        nodes = [paved_by([each.road for each in self.inside(junctions)]) for _, junctions in self.nodes]
+        areas = dict(zip(self._by_id, areas_of([each.road for each in self._by_id.values()]), strict=True))
+        inside = [[each.id for each in self.inside(junctions)] for _, junctions in self.nodes]
+        nodes = [covered_by([areas.pop(number) for number in numbers]) for numbers in inside]
         least = [SLIVER if kind == "roundabout" else ISLAND for kind, _ in self.nodes]
-        return without_small_islands(paved_by([each.road for each in self.roads]), nodes, least)
+        return without_small_islands(covered_by([*nodes, *areas.values()]), nodes, least)
 
     def inside(self, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
         """Returns the connecting roads of some junctions and, for those of a roundabout, the pieces of its

@@ -27,13 +27,29 @@ NEAR = 1e-3  # m, from a junction to a hole that it encloses
 
 def paved_by(roads: Sequence[Road]) -> Area:
     """Returns the area that the carriageways of roads cover together."""
+    return covered_by(areas_of(roads))
+
+
+def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
+    """Returns the areas of the carriageways of roads, each without edges that cross."""
     import shapely
 
-    whole = ribbons(roads)
+    areas = ribbons(roads)
     # where a road turns more tightly than it is wide, its ribbon crosses itself
-    crossed = ~shapely.is_valid(whole)
-    whole[crossed] = shapely.make_valid(whole[crossed])
-    return filled(shapely.union_all(whole, grid_size=GRID))
+    crossed = ~shapely.is_valid(areas)
+    areas[crossed] = shapely.make_valid(areas[crossed])
+    return areas
+
+
+def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
+    """Returns the area that several areas cover together, without small holes.
+
+    Corners are rounded before and after they are joined, which takes half of the time of rounding while they
+    are joined.
+    """
+    import shapely
+
+    return filled(shapely.set_precision(shapely.union_all(areas), GRID))
 
 
 def filled(area: Area) -> Area:
@@ -75,7 +91,7 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
     new = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
     return (
         new,
-        *(each[0] if len(each) == 1 else shapely.union_all(each, grid_size=GRID) for each in paved),
+        *(each[0] if len(each) == 1 else shapely.set_precision(shapely.union_all(each), GRID) for each in paved),
     )
 
 
@@ -108,7 +124,7 @@ def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
     ]
     numbers = np.repeat(np.arange(len(roads)), [len(each) for each in corners])
     found: NDArray[np.object_] = shapely.polygons(
-        shapely.linearrings(np.concatenate(corners), indices=numbers)
+        shapely.linearrings(np.round(np.concatenate(corners) / GRID) * GRID, indices=numbers)
     )
     return found
 
