@@ -18,6 +18,10 @@ from roadgpt.learn.generator import Pair
 Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.012  # share of these valid descriptions that may be refused; for new ones it will be higher
 STEPS = 30
+CAUTION = 1.7
+"""How many right readings of routes one wrong reading counts as. A reading that is wrong and sure is worse than
+a doubt too many, and pairs by the writers of the training pairs flatter.
+"""
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 
@@ -55,18 +59,25 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
         roads.refuse_from,
         roads.confidence,
         _weights([(looks, looks.plan == right) for looks, right in asked if looks]),
-        calibrated_ensemble(reader, reader.routes, list(filter(_is_route, words))) if reader.routes else None,
+        None if reader.routes is None else calibrated_routes(reader, reader.routes, words),
     )
 
 
+def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> EnsembleCalibration:
+    """Returns what is fitted to those valid descriptions that are of routes."""
+    return calibrated_ensemble(reader, routes, list(filter(_is_route, pairs)), CAUTION)
+
+
 def calibrated_ensemble(
-    reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair]
+    reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
 ) -> EnsembleCalibration:
-    """Returns what is fitted to valid descriptions that are meant for the ensemble."""
+    """Returns what is fitted to valid descriptions that are meant for the ensemble; a wrong reading counts as
+    ``caution`` right ones.
+    """
     read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in pairs]
     return EnsembleCalibration(
         _threshold(ensemble, pairs),
-        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks]),
+        _weights([(looks, _bare(looks.plan) == right) for looks, right in read if looks], caution),
     )
 
 
@@ -91,22 +102,23 @@ def _bare(line: str) -> str:
     return plan(normal(read_plan(line)).model_copy(update={"beside": ()}))
 
 
-def _weights(found: Sequence[tuple[UncalibratedReading, bool]]) -> dict[str, float]:
+def _weights(found: Sequence[tuple[UncalibratedReading, bool]], caution: float = 1.0) -> dict[str, float]:
     """Returns the weights of a confidence model by the names of its inputs."""
     names = ("bias", *(found[0][0].features if found else ()))
     if not found:
         return {"bias": 0.0}
     rows = np.array([(1.0, *looks.features.values()) for looks, _ in found])
-    fitted = _fitted(rows, np.array([is_right for _, is_right in found], dtype=float))
+    fitted = _fitted(rows, np.array([is_right for _, is_right in found], dtype=float), caution)
     return {name: round(float(value), 4) for name, value in zip(names, fitted, strict=True)}
 
 
-def _fitted(rows: Floats, rights: Floats) -> Floats:
-    """Fits a logistic regression by Newton's method."""
+def _fitted(rows: Floats, rights: Floats, caution: float) -> Floats:
+    """Fits a logistic regression by Newton's method; a wrong row counts as ``caution`` right ones."""
+    counted = np.where(rights > 0, 1.0, caution)
     weights = np.zeros(rows.shape[1])
     pull = PULL * np.eye(rows.shape[1])
     for _ in range(STEPS):
         chances = 1 / (1 + np.exp(-rows @ weights))
-        curvature = rows.T @ (rows * (chances * (1 - chances))[:, None]) + pull
-        weights += np.linalg.solve(curvature, rows.T @ (rights - chances) - pull @ weights)
+        curvature = rows.T @ (rows * (counted * chances * (1 - chances))[:, None]) + pull
+        weights += np.linalg.solve(curvature, rows.T @ (counted * (rights - chances)) - pull @ weights)
     return weights

@@ -11,7 +11,7 @@ from typing import Literal
 import torch
 from torch import Tensor, nn
 
-from roadgpt.brief.readers.model import ROUTES, ModelReader
+from roadgpt.brief.readers.model import MEANINGS, ROUTES, ModelReader
 from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
@@ -120,7 +120,11 @@ def _graphs(
 
 
 def export_checkpoints(
-    checkpoints: Mapping[str, Path], folder: Path, held_back: Sequence[Pair], fillers: Sequence[str]
+    checkpoints: Mapping[str, Path],
+    folder: Path,
+    held_back: Sequence[Pair],
+    fillers: Sequence[str],
+    meanings: Mapping[str, Sequence[str]],
 ) -> None:
     """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
@@ -130,6 +134,7 @@ def export_checkpoints(
         folder: where the graphs, the pieces, the function words and the settings are written.
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
         fillers: function words, which no plan depends on.
+        meanings: the tokens that words usually ask for.
 
     Raises:
         LearnError: there is no checkpoint.
@@ -145,6 +150,8 @@ def export_checkpoints(
         export(reader, folder, name, 7 if name == ROUTES else 8)
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")
     (folder / "words.txt").write_text("\n".join(fillers), encoding="utf-8")
+    rows = [" ".join([word, *tokens]) for word, tokens in meanings.items()]
+    (folder / MEANINGS).write_text("\n".join(rows), encoding="utf-8")
     share_embedding([folder / f"encoder{name}.onnx" for name in checkpoints])
     settings = calibrated(ModelReader(folder), held_back)
     (folder / "settings.json").write_text(json.dumps(asdict(settings), indent=2) + "\n", encoding="utf-8")

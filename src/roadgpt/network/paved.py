@@ -91,7 +91,10 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
     new = parts[0] if len(parts) == 1 else shapely.MultiPolygon(parts)
     return (
         new,
-        *(each[0] if len(each) == 1 else shapely.set_precision(shapely.union_all(each), GRID) for each in paved),
+        *(
+            each[0] if len(each) == 1 else shapely.set_precision(shapely.union_all(each), GRID)
+            for each in paved
+        ),
     )
 
 

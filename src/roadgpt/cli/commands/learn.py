@@ -192,15 +192,16 @@ def export(
         raise LearnError(EXTRA) from error
     from roadgpt.brief.readers.model import ROUTES, SECOND
     from roadgpt.learn.data import is_for_roads_only
-    from roadgpt.learn.filler_words import filler_words
+    from roadgpt.learn.word_meanings import filler_words, word_meanings
 
     told = [pair for folder in HELD_BACK for pair in _pairs_of(hand / folder)]
     held_back = [pair for pair in told if not is_for_roads_only(pair)]
     held_back += _network_pairs_of(networks / "validation")
     held_back += _pairs_of(changes / "validation", is_change=True)
-    fillers = filler_words(_trained_on(hand, changes, networks))
+    trained_on = _trained_on(hand, changes, networks)
+    words = filler_words(trained_on), word_meanings(trained_on)
     found = {"": checkpoint, SECOND: second, ROUTES: routes}
-    export_checkpoints({name: run for name, run in found.items() if run}, out, held_back, fillers)
+    export_checkpoints({name: run for name, run in found.items() if run}, out, held_back, *words)
     click.echo(f"{sum(file.stat().st_size for file in out.iterdir()) / 1e6:.1f} MB in {out}")
     if chats:
         _write_chats(out, chats, seed)

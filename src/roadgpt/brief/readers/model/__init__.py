@@ -41,6 +41,8 @@ from roadgpt.errors import BriefError, PartError
 from roadgpt.reading import read_json, read_text
 
 WEIGHTS = Path(__file__).parent / "weights"
+MEANINGS = "meanings.txt"
+"""The file with what words usually ask for: in each line a word and tokens of plans."""
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
@@ -303,11 +305,18 @@ class ModelReader:
         there = [name for name in names if (self.folder / f"encoder{name}.onnx").is_file()]
         networks = tuple(NeuralNetwork(self.folder, name) for name in there)
         weights = settings.get("confidence", {"bias": 0.0})
-        return Ensemble(networks, settings.get("refuse_from", 0.5), weights, fillers)
+        return Ensemble(networks, settings.get("refuse_from", 0.5), weights, fillers, self._meanings)
 
     @cached_property
     def _fillers(self) -> frozenset[str]:
         return frozenset(read_text(self.folder / "words.txt").split("\n"))
+
+    @cached_property
+    def _meanings(self) -> dict[str, frozenset[str]]:
+        """The tokens that words usually ask for; none if the folder is of a reader without this file."""
+        path = self.folder / MEANINGS
+        rows = [line.split() for line in read_text(path).split("\n")] if path.is_file() else []
+        return {word: frozenset(tokens) for word, *tokens in rows}
 
     @cached_property
     def _settings(self) -> dict[str, Any]:

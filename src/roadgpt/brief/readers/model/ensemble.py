@@ -26,6 +26,8 @@ class Ensemble:
     """The weights of the confidence model, and its bias."""
     fillers: frozenset[str]
     """Words that are never reported as unused."""
+    meanings: Mapping[str, frozenset[str]]
+    """The tokens that words usually ask for."""
 
     @property
     def first(self) -> NeuralNetwork:
@@ -48,7 +50,7 @@ class Ensemble:
 
     def unused(self, text: SlottedText, tokens: Sequence[str]) -> tuple[str, ...]:
         """Returns the words that a plan does not depend on, each once, in the order of the text."""
-        return unused_words(self.networks[0], text, tokens, self.fillers)
+        return unused_words(self.networks[0], text, tokens, self.fillers, self.meanings)
 
     def confidence(self, draft: ScoredPlan, text: SlottedText, unused: Sequence[str]) -> float:
         """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts."""

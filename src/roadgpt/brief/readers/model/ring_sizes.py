@@ -30,7 +30,7 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
 
     Nothing is changed unless there are as many outer diameters in the text as roundabouts without a radius.
     """
-    sizes = [size for size in _sizes(tokens, text) if size]
+    sizes = [size for _, size in _sizes(tokens, text) if size]
     places = [place for place, token in enumerate(tokens) if token == ROUNDABOUT and _is_open(tokens, place)]
     sized = [place for place in places if _size_at(tokens, place) is not None]
     rings = sized if len(sized) == len(sizes) else places
@@ -47,10 +47,17 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
     return tuple(out)
 
 
-def _sizes(tokens: Sequence[str], text: SlottedText) -> list[str]:
-    """Returns the word for each outer diameter that the text gives and the plan does not use."""
+def used_diameters(tokens: Sequence[str], text: SlottedText) -> frozenset[int]:
+    """Returns the indices of the numbers of a text that are outer diameters and whose size the plan has."""
+    return frozenset(index for index, size in _sizes(tokens, text) if size in tokens)
+
+
+def _sizes(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, str]]:
+    """Returns each outer diameter that the text gives and the plan does not use: the index of its number, and
+    the word for its size, which is empty if there is none.
+    """
     words = [word.text for word in text.words]
-    found: list[str] = []
+    found: list[tuple[int, str]] = []
     for index, slot in enumerate(text.slots):
         name = slot_name(index)
         if slot.unit != "metres" or SLOT_TOKENS[index] in tokens or words.count(name) != 1:
@@ -59,7 +66,8 @@ def _sizes(tokens: Sequence[str], text: SlottedText) -> list[str]:
         near = " ".join(words[max(0, place - REACH) : place + REACH + 2])
         is_taken_back = CORRECTED.match(" ".join(words[place + 1 : place + 8])) is not None
         if ACROSS.search(near) and not ISLAND.search(near) and not is_taken_back:
-            found.append(next((size for size, span in SIZES.items() if slot.value < span.hi + 1), ""))
+            size = next((size for size, span in SIZES.items() if slot.value < span.hi + 1), "")
+            found.append((index, size))
     return found
 
 

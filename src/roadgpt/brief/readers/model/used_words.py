@@ -1,16 +1,19 @@
 """Finds the words of a text that its plan does not depend on: the plan stays the likeliest without them.
 
 Each word in turn, except function words, is left out, and the network computes how likely the plan is for
-the remaining words. If this hardly changes, the word is reported as unused.
+the remaining words. If this hardly changes, the word is reported as unused, unless the plan has what the word
+usually asks for.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from roadgpt.brief.readers.model.bounds import NOT
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.ring_sizes import used_diameters
 from roadgpt.brief.readers.model.slots import SlottedText, Word
 from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
+from roadgpt.brief.readers.model.word_meanings import understood
 from roadgpt.brief.readers.model.word_set import word_set
 
 NOTICED = 0.02
@@ -27,7 +30,11 @@ MOST_WORDS = 60
 
 
 def unused_words(
-    network: NeuralNetwork, text: SlottedText, tokens: Sequence[str], fillers: frozenset[str]
+    network: NeuralNetwork,
+    text: SlottedText,
+    tokens: Sequence[str],
+    fillers: frozenset[str],
+    meanings: Mapping[str, frozenset[str]],
 ) -> tuple[str, ...]:
     """Returns the words that the plan does not depend on, as spelled in the text, each once, in text order.
 
@@ -36,10 +43,12 @@ def unused_words(
         text: the description or change request.
         tokens: the tokens of its plan.
         fillers: function words, which are never reported.
+        meanings: the tokens that words usually ask for.
     """
     idle = _idle(network, text, tokens, fillers)
+    idle -= understood(text, tokens, idle, meanings, NEGATORS)
     out: list[str] = []
-    missing, slot = left_out(tokens, text), 0
+    missing, slot = set(left_out(tokens, text)) - used_diameters(tokens, text), 0
     for place, word in enumerate(text.words):
         if word.text.startswith("[unused") and word.written:
             if slot in missing:

@@ -1,0 +1,93 @@
+"""Finds out whether a plan has what a word usually asks for.
+
+The network may be sure of a plan without a word because others say the same; then it is understood, too.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Iterable, Mapping, Sequence
+
+from roadgpt.brief.readers.model.slots import SlottedText
+
+GROUPS: Mapping[str, frozenset[str]] = {
+    "@take": frozenset({"left", "right", "straight", "back", "exit=", "ramp", "main"}),
+    "@junction": frozenset(
+        {
+            *("t_junction", "y_junction", "crossroads", "star", "roundabout", "junction"),
+            *("merge", "diverge", "map", "lane_drop", "lane_gain", "lane_change"),
+        }
+    ),
+}
+"""Tokens of which some words ask for any one: "go" for a way, "where" for a junction."""
+ARMS: Mapping[str, str] = {"t_junction": "3", "y_junction": "3", "crossroads": "4"}
+"""The number of roads that a kind of junction implies."""
+NAMED_IF_DENIED = frozenset({"centre=", "none"})
+"""What a word asks for whose denial stands in the plan: no centre line, no signs."""
+REACH = 3  # words between one that denies and what it denies, at most
+
+
+def with_groups(tokens: Iterable[str]) -> Counter[str]:
+    """Returns how often a plan has each token and each group."""
+    found = Counter(tokens)
+    for name, members in GROUPS.items():
+        if count := sum(found[member] for member in members):
+            found[name] = count
+    return found
+
+
+def understood(
+    text: SlottedText,
+    tokens: Sequence[str],
+    places: Collection[int],
+    meanings: Mapping[str, frozenset[str]],
+    negators: Collection[str],
+) -> frozenset[int]:
+    """Returns those places of words at which the plan has what the word asks for, as often as it is said, and
+    lacks what is denied; the word that denies it is understood with it.
+
+    Args:
+        text: the description.
+        tokens: the tokens of its plan.
+        places: the places of the words that the plan does not depend on.
+        meanings: the tokens that words usually ask for.
+        negators: words that deny something.
+    """
+    there = with_groups(tokens)
+    words = [word.text for word in text.words]
+    said = Counter(words)
+    found, denied = set[int](), set[int]()
+    for at in (n for n, word in enumerate(words) if word in negators):
+        reached = range(at + 1, min(at + 1 + REACH, len(words)))
+        nouns = [n for n in reached if words[n] in meanings]
+        denied.update(nouns)
+        if nouns and all(_is_absent(meanings[words[n]], there) for n in nouns):
+            found |= {at, *nouns}
+    for place in set(places) - denied:
+        word = words[place]
+        asked = meanings.get(word, frozenset())
+        if word.isdecimal():
+            if _is_counted(word, tokens, there):
+                found.add(place)
+        elif any(there[token] >= said[word] for token in asked):
+            found.add(place)
+    return frozenset(found)
+
+
+def _is_absent(asked: Collection[str], there: Mapping[str, int]) -> bool:
+    """Returns whether a plan lacks some of what a denied word asks for, or says that there is none.
+
+    Groups of tokens count if the word asks for nothing else.
+    """
+    if not NAMED_IF_DENIED.isdisjoint(asked):
+        return there.get("none", 0) > 0
+    own = [token for token in asked if token not in GROUPS]
+    return not all(there.get(token) for token in own or asked)
+
+
+def _is_counted(number: str, tokens: Sequence[str], there: Mapping[str, int]) -> bool:
+    """Returns whether a plan has a number, has as many junctions of a kind, or a kind with as many roads."""
+    kinds = GROUPS["@junction"]
+    return (
+        number in tokens
+        or any(str(there.get(kind, 0)) == number for kind in (*kinds, "@junction"))
+        or any(ARMS.get(kind) == number for kind in kinds if there.get(kind))
+    )

@@ -1,0 +1,112 @@
+"""Finds what the words of descriptions mean, by the tokens that plans have where the words occur: the words
+that a reader does not report as unused because they mean nothing in a plan, such as "the", "please" or
+"question", and what the other words usually ask for.
+"""
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from importlib.resources import files
+
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.used_words import NEGATORS
+from roadgpt.brief.readers.model.vocabulary import tokens_of
+from roadgpt.brief.readers.model.word_meanings import GROUPS, with_groups
+from roadgpt.learn.generator import Pair
+
+OFTEN = 10  # a word that occurs in at least this many pairs may be a filler
+LEAST = 4  # a word and a token are unrelated if fewer pairs than this have both
+RELATED = ((0.3, 2.5), (0.75, 1.5))
+"""A word asks for a token if the share of the word's pairs that have the token, and how many times more often
+than by chance they occur together, are at least those of one of these.
+"""
+COMMON = frozenset({";", "|", ")", ":", ",", "turn", "x"})
+"""Tokens that say nothing about what the words mean."""
+STRUCTURE = frozenset({"//", "||", "(", "..", "=", "+"})
+"""Tokens that no word asks for."""
+OF_GROUP = 40  # pairs that have both, for a word to ask for a group of tokens
+OF_MOST = 0.5  # of the largest lift of a word, that its other meanings have at least
+
+
+@dataclass
+class _Counts:
+    """How many pairs have each word, each token, and both."""
+
+    pairs: int = 0
+    of_word: Counter[str] = field(default_factory=Counter)
+    of_token: Counter[str] = field(default_factory=Counter)
+    both: Counter[tuple[str, str]] = field(default_factory=Counter)
+
+    def add(self, said: set[str], tokens: set[str]) -> None:
+        self.pairs += 1
+        self.of_word.update(said)
+        self.of_token.update(tokens)
+        self.both.update((word, token) for word in said for token in tokens)
+
+    def share(self, word: str, token: str) -> float:
+        """Returns the share of a word's pairs that have the token."""
+        return self.both[word, token] / self.of_word[word]
+
+    def lift(self, word: str, token: str) -> float:
+        """Returns how many times more often than by chance a word and a token occur together."""
+        return self.share(word, token) * self.pairs / self.of_token[token]
+
+    def is_asked(self, word: str, token: str) -> bool:
+        """Returns whether a word asks for a token."""
+        share, lift = self.share(word, token), self.lift(word, token)
+        is_often = self.both[word, token] >= (OF_GROUP if token in GROUPS else LEAST)
+        return is_often and any(share >= low and lift >= least for low, least in RELATED)
+
+
+def _counted(pairs: Iterable[Pair], has_groups: bool) -> _Counts:
+    counts = _Counts()
+    for pair in pairs:
+        text = slotted(pair.text, pair.is_change)
+        tokens = {t for t in tokens_of(pair.plan, text.slots) or () if t not in COMMON and t[0] != "["}
+        said = {word.text for word in text.words if word.text.isalpha()}
+        counts.add(said, set(with_groups(tokens)) if has_groups else tokens)
+    return counts
+
+
+def filler_words(pairs: Iterable[Pair]) -> list[str]:
+    """Returns the filler words in alphabetical order.
+
+    Args:
+        pairs: hand-written pairs, in which words are counted.
+    """
+    counts = _counted(pairs, has_groups=False)
+    meaning = {word for word, token in counts.both if counts.is_asked(word, token)}
+    frequent = {word for word, times in counts.of_word.items() if times >= OFTEN} - meaning
+    return sorted((frequent | function_words()) - NEGATORS)
+
+
+def word_meanings(pairs: Iterable[Pair]) -> dict[str, list[str]]:
+    """Returns the tokens that words usually ask for, by word, the one that is most its own first.
+
+    Tokens with which a word occurs much less often than chance makes it with its first one are left out:
+    "priority" is said of crossroads, but asks for none. A word asks for a group of tokens only if it asks for
+    nothing else.
+
+    Args:
+        pairs: hand-written pairs, in which words are counted; changes and refusals are left out.
+    """
+    counts = _counted((p for p in pairs if not p.is_change and not p.plan.startswith("!")), has_groups=True)
+    lifts: dict[str, dict[str, float]] = {}
+    for word, token in counts.both:
+        if counts.is_asked(word, token) and token not in STRUCTURE and word not in NEGATORS:
+            lifts.setdefault(word, {})[token] = counts.lift(word, token)
+    return {word: _own(found) for word, found in sorted(lifts.items())}
+
+
+def _own(lifts: Mapping[str, float]) -> list[str]:
+    """Returns the tokens with the largest lifts; groups only if there are no others."""
+    own = {token: lift for token, lift in lifts.items() if token not in GROUPS} or lifts
+    least = OF_MOST * max(own.values())
+    return sorted((token for token in own if own[token] >= least), key=lambda token: (-own[token], token))
+
+
+def function_words() -> frozenset[str]:
+    """Returns function words, such as "and" or "the", in five languages."""
+    text = (files("roadgpt.learn") / "words" / "joints.txt").read_text(encoding="utf-8")
+    return frozenset(plain(text).split())
