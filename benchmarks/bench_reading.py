@@ -133,6 +133,12 @@ def _networks(split: str) -> None:
     print(f"{np.median(took):.1f} ms of processor time (median), {np.quantile(took, 0.95):.1f} ms (95 %)")
 
 
+def _as_labelled(brief: Brief) -> Brief:
+    """A Brief as labels are written: with the size of a roundabout instead of its diameter."""
+    junctions = tuple(each.model_copy(update={"outer": None}) for each in brief.junctions)
+    return brief.model_copy(update={"beside": tuple(sorted(brief.beside)), "junctions": junctions})
+
+
 def _verdict(pair: Pair) -> str:
     honest = not pair.plan.startswith("!")
     try:
@@ -143,10 +149,7 @@ def _verdict(pair: Pair) -> str:
         return REFUSED if honest else RIGHTLY
     if not honest:
         return BUILT
-    wanted, got = (
-        each.model_copy(update={"beside": tuple(sorted(each.beside))})
-        for each in (normal(read_plan(pair.plan)), normal(brief))
-    )
+    wanted, got = (_as_labelled(each) for each in (normal(read_plan(pair.plan)), normal(brief)))
     if got == wanted:
         return EXACT
     return DOUBTED if brief.confidence < SURE or brief.unused else SILENT

@@ -28,7 +28,7 @@ class Mind:
 
 
 def idle(words: str, *tokens: str) -> tuple[str, ...]:
-    return unused_words(Mind(), slotted(words), tokens, FILLERS)  # type: ignore[arg-type]
+    return unused_words(Mind(), slotted(words), tokens, FILLERS, {})  # type: ignore[arg-type]
 
 
 def test_a_word_counts_as_used_only_if_the_reading_changes_without_it() -> None:

@@ -162,6 +162,10 @@ CASES: dict[str, dict[str, Any]] = {
         "oneway": True,
         "junctions": 0,
     },
+    "roundabout exit=2 outer=36": {"sequence": [{"kind": "roundabout", "exit": 2, "outer": [35, 37]}]},
+    "roundabout exit=1 arms=5 lanes=2 outer=50": {
+        "sequence": [{"kind": "roundabout", "exit": 1, "ring_lanes": 2, "outer": [49, 51]}]
+    },
     "crossroads straight priority others_stop": {
         "sequence": [{"kind": "X", "take": "straight", "control": "priority", "other_control": "stop"}]
     },

@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import (
+    ACROSS,
     ARMS,
     LANE_KINDS,
     RAMPS,
@@ -53,7 +54,7 @@ def check_junction(junction: JunctionClause) -> None:
         raise BriefError(f"at a {name}, a direction and an exit number are given; leave one of them out")
     _check_take(junction, name)
     if not is_ring:
-        for field in ("size", "radius", "exit", "lanes"):
+        for field in ("size", "radius", "outer", "exit", "lanes"):
             if getattr(junction, field) is not None:
                 raise BriefError(f"a {name} has no {field}, only a roundabout has; leave it out")
     elif junction.exit is not None:
@@ -78,15 +79,7 @@ def check_junction(junction: JunctionClause) -> None:
         )
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
-    if junction.size is not None and junction.radius is not None:
-        island = span(junction.radius)
-        outer = Range(2 * island.lo + CIRCULATORY, 2 * island.hi + CIRCULATORY)
-        both = overlap(outer, SIZES[junction.size])
-        if both is None or both.lo > both.hi:
-            raise BriefError(
-                f"a {junction.size} roundabout is {SIZES[junction.size]} m wide; with a radius of "
-                f"{junction.radius} m it is not; leave one of them out"
-            )
+    _check_diameter(junction)
 
 
 OF_LANES = ("kind", "take", "side", "length")
@@ -169,6 +162,32 @@ def check_map(asked: MapClause) -> None:
             raise BriefError(
                 f"a map has 1 to {MOST_OF_KIND} junctions of one kind, not {each.count}; change it"
             )
+
+
+def _check_diameter(junction: JunctionClause) -> None:
+    if junction.radius is not None and junction.outer is not None:
+        raise BriefError("the radius of the island and the outer diameter are given; leave one of them out")
+    if not _meets(junction.outer, ACROSS):
+        raise BriefError(f"a roundabout is {ACROSS} m across, not {junction.outer} m; change it")
+    if junction.size is not None and not _meets(junction.outer, _around(SIZES[junction.size])):
+        raise BriefError(
+            f"a {junction.size} roundabout is {SIZES[junction.size]} m across, not {junction.outer} m; leave "
+            "one of them out"
+        )
+    if junction.size is not None and junction.radius is not None:
+        island = span(junction.radius)
+        outer = Range(2 * island.lo + CIRCULATORY, 2 * island.hi + CIRCULATORY)
+        both = overlap(outer, SIZES[junction.size])
+        if both is None or both.lo > both.hi:
+            raise BriefError(
+                f"a {junction.size} roundabout is {SIZES[junction.size]} m wide; with a radius of "
+                f"{junction.radius} m it is not; leave one of them out"
+            )
+
+
+def _around(size: Range) -> Range:
+    """Returns the range of a size with the diameters between it and its neighbours."""
+    return Range(size.lo - 1, size.hi + 1)
 
 
 def _meets(amount: Amount | None, possible: Range) -> bool:

@@ -23,7 +23,7 @@ WORDS = {
     **dict.fromkeys(get_args(IslandSize), "size"),
     **dict.fromkeys(get_args(Control), "control"),
 }
-KEYS = ("exit", "arms", "radius", "lanes", "length")
+KEYS = ("exit", "arms", "radius", "outer", "lanes", "length")
 SHORT = {"radius": "r", "length": "len"}
 LONG = {short: name for name, short in SHORT.items()}
 WAYS = "ways="

@@ -15,6 +15,8 @@ def junction_text(junction: JunctionClause) -> str:
         place.append(f"with {junction.arms} arms")
     if junction.radius is not None:
         place.append(f"whose island has a radius of {junction.radius} metres")
+    if junction.outer is not None:
+        place.append(f"{junction.outer} metres across")
     if junction.ways:
         place.append(f"with ways on {_listed(junction.ways)}")
     if junction.lanes is not None:

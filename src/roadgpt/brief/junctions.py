@@ -75,6 +75,8 @@ SIZES: Mapping[IslandSize, Range] = {
 Mini: below 28 m is "compact" or "mini" in CD 116 Geometric design of roundabouts (National Highways); the
 other limits are usual figures.
 """
+ACROSS = Range(18, 70)
+"""The outer diameters in metres with which roundabouts can be built."""
 SIDE = 25.0  # degrees; a smaller change of direction is straight on
 TAKES: Mapping[Take, str] = {
     "left": "turn left",
@@ -131,6 +133,8 @@ class JunctionClause(Frozen):
     """The size of a roundabout, if the description gives a word."""
     radius: Amount | None = None
     """The radius of the central island of a roundabout in metres."""
+    outer: Amount | None = None
+    """The outer diameter of a roundabout in metres."""
     lanes: Amount | None = None
     """The number of lanes of a roundabout's ring."""
     side: Side | None = None

@@ -238,6 +238,10 @@ def _sizes(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
         size = SIZES[asked.size]
         if found.outer not in Range(size.lo - ROUNDING, size.hi + ROUNDING):
             yield f"asked for a {asked.size} roundabout, {size} m wide, is {found.outer:.1f} m wide"
+    if asked.outer is not None:
+        wanted = span(asked.outer)
+        if found.outer not in Range(wanted.lo - ROUNDING, wanted.hi + ROUNDING):
+            yield f"asked for a roundabout {asked.outer} m across, is {found.outer:.1f} m across"
     if asked.radius is not None:
         wanted = span(asked.radius)
         if asked.radius.exact:

@@ -204,7 +204,9 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
     if clause.kind != "roundabout":
         return ISLANDS[0]
     allowed = span(clause.radius)
-    if clause.size is not None:
+    if clause.outer is not None:
+        allowed = _island(span(clause.outer), _ring_lanes(clause))
+    elif clause.size is not None:
         outer = SIZES[clause.size].drawn_in(0.5, 0.1)
         allowed = overlap(allowed, _island(outer, _ring_lanes(clause))) or allowed
     elif clause.radius is None:
@@ -213,7 +215,8 @@ def _radius(clause: JunctionClause, angles: Sequence[float], rng: Rng, haste: fl
     usual = (2 * MOUTH + BETWEEN) / (min(gaps) * pi / 180)
     low, high = max(allowed.lo, 3.0), min(allowed.hi, max(allowed.lo, 3.0) * 1.5 + 5)
     drawn = low + (high - low) * float(rng.random()) * (1 - haste)
-    return min(max(drawn, min(usual, high)), high) if clause.radius is None else drawn
+    is_free = clause.radius is None and clause.outer is None
+    return min(max(drawn, min(usual, high)), high) if is_free else drawn
 
 
 def _ring_lanes(clause: JunctionClause) -> int:

@@ -19,8 +19,8 @@ Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.012  # share of these valid descriptions that may be refused; for new ones it will be higher
 STEPS = 30
 CAUTION = 1.7
-"""How many right readings of routes one wrong reading counts as. A reading that is wrong and sure is worse than
-a doubt too many, and pairs by the writers of the training pairs flatter.
+"""How many right readings of routes one wrong reading counts as: a sure reading that is wrong is worse than a
+doubt too many.
 """
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 

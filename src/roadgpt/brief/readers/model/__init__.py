@@ -29,12 +29,14 @@ from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
+from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
+from roadgpt.brief.readers.model.word_meanings import read_meanings
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
 from roadgpt.errors import BriefError, PartError
@@ -51,9 +53,7 @@ SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
 ROUTES = "_routes"
 """The same for the network that reads routes and maps."""
-TOO_MUCH = (
-    "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or for a larger map"
-)
+TOO_MUCH = "no more than 12 turns and 1500 m are sure to fit on a map of 250 m; ask for less or a larger map"
 
 
 class ChangeReading(NamedTuple):
@@ -285,7 +285,8 @@ class ModelReader:
         found = {"words": words, "unused": unused, "confidence": sure}
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False
-        return brief.model_copy(update={**found, "beside": tuple(dict.fromkeys(brief.beside))})
+        found["beside"] = tuple(dict.fromkeys(brief.beside))
+        return with_diameters(brief, draft.tokens, text).model_copy(update=found)
 
     @cached_property
     def roads(self) -> Ensemble:
@@ -313,10 +314,7 @@ class ModelReader:
 
     @cached_property
     def _meanings(self) -> dict[str, frozenset[str]]:
-        """The tokens that words usually ask for; none if the folder is of a reader without this file."""
-        path = self.folder / MEANINGS
-        rows = [line.split() for line in read_text(path).split("\n")] if path.is_file() else []
-        return {word: frozenset(tokens) for word, *tokens in rows}
+        return read_meanings(self.folder / MEANINGS)
 
     @cached_property
     def _settings(self) -> dict[str, Any]:
@@ -358,6 +356,7 @@ def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
         if draft.is_refusal or not _can_be_kept(draft.line):
             continue
         other = with_whole_drive(read_plan(draft.line), brief.words)
+        other = with_diameters(other, draft.tokens, slotted(brief.words))
         line = plan(normal(other).model_copy(update={"beside": ()}))
         if line != plan(said):
             return line

@@ -7,11 +7,13 @@ is a mini one, a normal one or a large one.
 import re
 from collections.abc import Sequence
 
-from roadgpt.brief.junctions import SIZES
+from roadgpt.brief.amount import exactly, span
+from roadgpt.brief.junctions import ACROSS, SIZES, JunctionClause
+from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SIDES, SLOT_TOKENS, TAKES
 
-ACROSS = re.compile(r"across|diam|durchmess|circle|ø")
+TOLD = re.compile(r"across|diam|durchmess|circle|ø")
 ISLAND = re.compile(
     r"island|insel|ilot|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
 )
@@ -21,6 +23,10 @@ CORRECTED = re.compile(
 """What follows a length that the next words take back."""
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
+LEAST, MORE, FEW = 28.0, 8.0, 4
+"""The outer diameter in metres at which four arms and one lane have room, and how much more is needed for
+each further arm, and for two lanes.
+"""
 ROUNDABOUT = "roundabout"
 PARTS = ("//", "||")
 
@@ -30,14 +36,8 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
 
     Nothing is changed unless there are as many outer diameters in the text as roundabouts without a radius.
     """
-    sizes = [size for _, size in _sizes(tokens, text) if size]
-    places = [place for place, token in enumerate(tokens) if token == ROUNDABOUT and _is_open(tokens, place)]
-    sized = [place for place in places if _size_at(tokens, place) is not None]
-    rings = sized if len(sized) == len(sizes) else places
-    if not sizes or len(rings) != len(sizes) or "map" in tokens:
-        return tuple(tokens)
     out = list(tokens)
-    for place, size in reversed(list(zip(rings, sizes, strict=True))):
+    for place, _, size in reversed(_sized_rings(tokens, text)):
         at = _size_at(out, place)
         if at is not None:
             out[at] = size
@@ -47,9 +47,54 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
     return tuple(out)
 
 
+def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Brief:
+    """Returns a Brief with the outer diameters of its roundabouts as the text gives them in metres.
+
+    Args:
+        brief: the Brief of a plan.
+        tokens: the tokens of the plan, with the sizes of ``with_ring_sizes``.
+        text: the description.
+    """
+    rings = [place for place, token in enumerate(tokens) if token == ROUNDABOUT]
+    own = [n for n, each in enumerate(brief.junctions) if each.kind == ROUNDABOUT]
+    if len(rings) != len(own):
+        return brief
+    junctions = list(brief.junctions)
+    for place, index, _ in _sized_rings(tokens, text):
+        n = own[rings.index(place)]
+        across = round(text.slots[index].value, 1)
+        if least_diameter(junctions[n], brief.stretches[n : n + 2]) <= across <= ACROSS.hi:
+            junctions[n] = junctions[n].model_copy(update={"outer": exactly(across)})
+    return brief.model_copy(update={"junctions": tuple(junctions)})
+
+
+def least_diameter(ring: JunctionClause, roads: Sequence[Brief]) -> float:
+    """Returns the outer diameter in metres from which every draft of a roundabout has room for its arms; a
+    smaller one is read as its size only.
+    """
+    arms = max(span(ring.arms).lo, span(ring.exit).lo + 1)
+    lanes = [ring.lanes, *(each for road in roads for each in (road.lanes, road.against))]
+    is_wide = any(span(each).lo > 1 for each in lanes)
+    return LEAST + MORE * max(arms - FEW, 0.0) + MORE * is_wide
+
+
+def _sized_rings(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, int, str]]:
+    """Returns the place of each roundabout of which the text gives the outer diameter, the index of its
+    number, and the word for its size.
+    """
+    sizes = [found for found in _sizes(tokens, text) if found[1]]
+    places = [place for place, token in enumerate(tokens) if token == ROUNDABOUT and _is_open(tokens, place)]
+    sized = [place for place in places if _size_at(tokens, place) is not None]
+    rings = sized if len(sized) == len(sizes) else places
+    if len(rings) != len(sizes) or "map" in tokens:
+        return []
+    return [(place, *found) for place, found in zip(rings, sizes, strict=True)]
+
+
 def used_diameters(tokens: Sequence[str], text: SlottedText) -> frozenset[int]:
     """Returns the indices of the numbers of a text that are outer diameters and whose size the plan has."""
-    return frozenset(index for index, size in _sizes(tokens, text) if size in tokens)
+    found = (index for index, size in _sizes(tokens, text) if size in tokens)
+    return frozenset(index for index in found if text.slots[index].value >= LEAST)
 
 
 def _sizes(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, str]]:
@@ -65,7 +110,7 @@ def _sizes(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, str]]:
         place = words.index(name)
         near = " ".join(words[max(0, place - REACH) : place + REACH + 2])
         is_taken_back = CORRECTED.match(" ".join(words[place + 1 : place + 8])) is not None
-        if ACROSS.search(near) and not ISLAND.search(near) and not is_taken_back:
+        if TOLD.search(near) and not ISLAND.search(near) and not is_taken_back:
             size = next((size for size, span in SIZES.items() if slot.value < span.hi + 1), "")
             found.append((index, size))
     return found

@@ -5,8 +5,10 @@ The network may be sure of a plan without a word because others say the same; th
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from pathlib import Path
 
 from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.reading import read_text
 
 GROUPS: Mapping[str, frozenset[str]] = {
     "@take": frozenset({"left", "right", "straight", "back", "exit=", "ramp", "main"}),
@@ -32,6 +34,15 @@ def with_groups(tokens: Iterable[str]) -> Counter[str]:
         if count := sum(found[member] for member in members):
             found[name] = count
     return found
+
+
+def read_meanings(path: Path) -> dict[str, frozenset[str]]:
+    """Returns the tokens that words usually ask for, from a file with a word and its tokens in each line.
+
+    There are none if there is no such file, as in readers that were exported before it existed.
+    """
+    rows = [line.split() for line in read_text(path).split("\n")] if path.is_file() else []
+    return {word: frozenset(tokens) for word, *tokens in rows}
 
 
 def understood(
