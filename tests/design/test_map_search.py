@@ -185,13 +185,16 @@ def test_the_reference_driver_keeps_its_lane(line: str, seed: int) -> None:
     assert judge(road, simulate(road, world, "reference", seed), world).kept
 
 
-def test_searches_refuse_maps() -> None:
+@pytest.mark.parametrize(
+    "line", ["map columns=2 rows=1", "crossroads // | up", "turn x2 | left_hand", "turn | divided"]
+)
+def test_searches_refuse_networks(line: str) -> None:
     from roadgpt.campaign.search import settings_of
 
     class Asked:
-        """Stands for a cell of a campaign that asks for a map."""
+        """Stands for a cell of a campaign that asks for a network."""
 
-        brief = read_plan("map columns=2 rows=1")
+        brief = read_plan(line)
         generator = "genetic"
         settings = ()
 
@@ -199,5 +202,7 @@ def test_searches_refuse_maps() -> None:
             class setup:  # noqa: N801
                 geometry = "arcs"
 
-    with pytest.raises(UsageError, match="searches roads without junctions"):
+    with pytest.raises(
+        UsageError, match="searches single roads without medians and with traffic on the right"
+    ):
         settings_of(Asked)  # type: ignore[arg-type]
