@@ -50,10 +50,11 @@ def other_way(junction: JunctionClause) -> JunctionClause:
         return f"{head}{bar}{swap.get(tail, tail)}" or None
 
     order = ("left", "right", "straight")
-    ways = tuple(way for way in order if way in {swap.get(each, each) for each in junction.ways})
-    return junction.model_copy(
-        update={"take": turned(junction.take), "side": turned(junction.side), "ways": ways}
-    )
+    ways = {
+        name: tuple(way for way in order if way in {swap.get(each, each) for each in getattr(junction, name)})
+        for name in ("ways", "only_in", "only_out")
+    }
+    return junction.model_copy(update={"take": turned(junction.take), "side": turned(junction.side), **ways})
 
 
 def test_a_mirror_of_a_mirror_is_the_plan_itself(plans: list[str]) -> None:

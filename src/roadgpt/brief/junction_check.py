@@ -31,6 +31,20 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "lane_change": ("left", "right"),
 }
 """The ways on that a kind of junction has; every way on is possible at the others."""
+WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")
+"""The kinds of junctions at which arms that the route does not take can be one-way."""
+SKEWEST = 70.0  # degrees; crossroads whose roads are less apart are skew
+ANGLES: dict[JunctionKind, Range] = {
+    "t_junction": Range(55, 90),
+    "y_junction": Range(85, 120),
+    "crossroads": Range(40, 90),
+    "star": Range(50, 72),
+}
+"""The angles in degrees that the two least distant arms of a junction can have."""
+FIXED_ARMS: dict[JunctionKind, int] = {
+    kind: int(arms.lo) for kind, arms in ARMS.items() if arms.lo == arms.hi and kind not in RAMPS
+}
+"""The kinds whose number of arms is fixed, with this number."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
@@ -66,7 +80,7 @@ def check_junction(junction: JunctionClause) -> None:
         )
     if not _meets(junction.lanes, Range(1, 2)):
         raise BriefError(f"the ring of a roundabout has one or two lanes, not {junction.lanes}; change it")
-    if (junction.side or junction.length) and junction.kind not in (*RAMPS, *LANE_KINDS):
+    if (junction.side or junction.length or junction.taper) and junction.kind not in (*RAMPS, *LANE_KINDS):
         raise BriefError(
             f"a {name} has no side and no length; give the length with the road before or behind it"
         )
@@ -80,9 +94,11 @@ def check_junction(junction: JunctionClause) -> None:
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
     _check_diameter(junction)
+    _check_one_way_arms(junction)
+    _check_angles(junction)
 
 
-OF_LANES = ("kind", "take", "side", "length")
+OF_LANES = ("kind", "take", "side", "length", "taper")
 """The fields that merges, exits and places where lanes change can have."""
 
 
@@ -92,6 +108,10 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
     for field in JunctionClause.model_fields:
         if field not in OF_LANES and getattr(junction, field) != getattr(usual, field):
             raise BriefError(f"a {junction.name} has no {field.replace('_', ' ')}; leave it out")
+    if junction.taper is not None and junction.kind in LANE_KINDS:
+        raise BriefError(
+            f"a {junction.name} has no taper; give the length in which it ends or begins as len, or leave it out"
+        )
     if junction.kind == "lane_change" and (junction.side or junction.length):
         raise BriefError(
             "a lane change goes left or right, and its length is not asked for; leave side and len out"
@@ -125,7 +145,8 @@ def _check_take(junction: JunctionClause, name: str) -> None:
     if not ways:
         return
     arms = ARMS[junction.kind]
-    needed = Range(arms.lo - 1, arms.hi - 1)
+    least = 1 if junction.kind == "crossroads" else arms.lo - 1
+    needed = Range(least, arms.hi - 1)
     if len(ways) not in needed or len(set(ways)) != len(ways) or (possible and not {*ways} <= {*possible}):
         raise BriefError(f"a {name} has {needed} different ways on, other than {' and '.join(ways)}")
     if take in ("left", "right", "straight") and take not in ways:
@@ -162,6 +183,67 @@ def check_map(asked: MapClause) -> None:
             raise BriefError(
                 f"a map has 1 to {MOST_OF_KIND} junctions of one kind, not {each.count}; change it"
             )
+    if asked.dead_ends is not None:
+        _check_dead_ends(asked, span(asked.dead_ends))
+
+
+def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
+    if asked.columns is not None and asked.rows is not None:
+        columns, rows = span(asked.columns), span(asked.rows)
+        most = 2 * (min(columns.hi, MOST_BLOCKS) + min(rows.hi, MOST_BLOCKS))
+        if wanted.lo > most:
+            raise BriefError(
+                f"{most:g} roads at most lead out of this grid, not {asked.dead_ends}; change it"
+            )
+        if wanted.hi < 1 and columns.hi == rows.hi == 1:
+            raise BriefError("one block without dead ends has no junction; ask for more blocks, or dead ends")
+        return
+    if any(each.kind not in FIXED_ARMS or not each.count.exact for each in asked.junctions):
+        return
+    counts = [int(span(each.count).lo) for each in asked.junctions]
+    arms = sum(FIXED_ARMS[each.kind] * n for each, n in zip(asked.junctions, counts, strict=True))
+    most = arms - 2 * (sum(counts) - 1)
+    if not any(number in wanted for number in range(most, -1, -2)):
+        raise BriefError(
+            f"the roads of these junctions leave an {'odd' if most % 2 else 'even'} number of dead ends, "
+            f"{most} at most, not {asked.dead_ends}; change the number, or add a junction"
+        )
+
+
+def _check_one_way_arms(junction: JunctionClause) -> None:
+    one_way = (*junction.only_in, *junction.only_out)
+    if not one_way:
+        return
+    if junction.kind not in WITH_ONE_WAY_ARMS:
+        raise BriefError(f"one-way roads on a side are not built at a {junction.name}; leave in and out away")
+    if len(set(one_way)) != len(one_way):
+        raise BriefError("a road at a junction is one-way in one direction only; give in or out for a side")
+    if junction.take in junction.only_in:
+        raise BriefError(
+            f"the route goes {junction.take}, where a one-way road comes towards it; change one of them"
+        )
+    if {*junction.only_in} & {*junction.ways}:
+        raise BriefError(
+            "a side has a one-way road towards the junction and is a way on; leave one of them out"
+        )
+
+
+def _check_angles(junction: JunctionClause) -> None:
+    name = junction.name
+    if junction.angle is not None and junction.kind == "junction":
+        raise BriefError("the angle between roads is asked of a kind of junction; name one, or leave it out")
+    if junction.kind == "roundabout" and (junction.angle or junction.degrees):
+        raise BriefError("angles are not asked of a roundabout; leave them out")
+    if (least := ANGLES.get(junction.kind)) and not _meets(junction.angle, least):
+        raise BriefError(
+            f"the roads at a {name} are {least} degrees apart at the least, not {junction.angle}; change it"
+        )
+    if junction.skew and not _meets(junction.angle, Range(hi=SKEWEST)):
+        raise BriefError(f"skew crossroads have an angle below {SKEWEST:g} degrees, not {junction.angle}")
+    if not _meets(junction.degrees, Range(0, 180)):
+        raise BriefError(
+            f"the route turns by 0 to 180 degrees at a junction, not {junction.degrees}; change it"
+        )
 
 
 def _check_diameter(junction: JunctionClause) -> None:

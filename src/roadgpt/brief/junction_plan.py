@@ -23,10 +23,12 @@ WORDS = {
     **dict.fromkeys(get_args(IslandSize), "size"),
     **dict.fromkeys(get_args(Control), "control"),
 }
-KEYS = ("exit", "arms", "radius", "outer", "lanes", "length")
-SHORT = {"radius": "r", "length": "len"}
+KEYS = ("degrees", "angle", "exit", "arms", "radius", "outer", "lanes", "length", "taper")
+SHORT = {"degrees": "deg", "radius": "r", "length": "len"}
 LONG = {short: name for name, short in SHORT.items()}
-WAYS = "ways="
+SIDES = {"ways": "ways", "only_in": "in", "only_out": "out"}
+"""The fields that name sides, and how a plan writes them."""
+FIELDS = {key: name for name, key in SIDES.items()}
 SIDE = "side="
 DIAMETER = "d"
 FLAGS = ("skew", "all_way", "crosswalk", "others_stop")
@@ -38,7 +40,7 @@ def junction_plan(junction: JunctionClause) -> str:
     words += [value for name in ("take", "size", "control") if (value := getattr(junction, name))]
     words += [flag for flag in FLAGS if getattr(junction, flag)]
     words += [f"{SIDE}{junction.side}"] if junction.side else []
-    words += [f"{WAYS}{'+'.join(junction.ways)}"] if junction.ways else []
+    words += [f"{key}={'+'.join(ways)}" for name, key in SIDES.items() if (ways := getattr(junction, name))]
     for name in KEYS:
         if (amount := getattr(junction, name)) is not None:
             words.append(f"{SHORT.get(name, name)}={amount_text(amount)}")
@@ -70,8 +72,8 @@ def read_junction(text: str) -> JunctionClause:
             found: tuple[str, object] = (name, read_amount(value))
         elif equals and key == DIAMETER:
             found = ("radius", _half(read_amount(value)))
-        elif word.startswith(WAYS):
-            found = ("ways", tuple(value.split("+")))
+        elif equals and key in SIDES.values():
+            found = (FIELDS[key], tuple(value.split("+")))
         elif word.startswith(SIDE):
             found = ("side", value)
         elif word in FLAGS:
@@ -79,7 +81,8 @@ def read_junction(text: str) -> JunctionClause:
         elif word in WORDS:
             found = (WORDS[word], word)
         else:
-            known = ", ".join(sorted((*WORDS, *FLAGS, *(f"{SHORT.get(k, k)}=" for k in KEYS), SIDE, WAYS)))
+            keys = (f"{key}=" for key in (*(SHORT.get(name, name) for name in KEYS), *FIELDS))
+            known = ", ".join(sorted((*WORDS, *FLAGS, *keys, SIDE)))
             raise BriefError(f"a plan has no word '{word[:40]}' for a junction; there are {known}")
         if found[0] in fields:
             raise BriefError(f"a plan gives {found[0]} of a junction twice: '{word[:40]}'; give it once")

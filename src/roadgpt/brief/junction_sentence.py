@@ -19,12 +19,20 @@ def junction_text(junction: JunctionClause) -> str:
         place.append(f"{junction.outer} metres across")
     if junction.ways:
         place.append(f"with ways on {_listed(junction.ways)}")
+    if junction.only_in:
+        place.append(f"with a one-way road that comes {_from(junction.only_in)}")
+    if junction.only_out:
+        place.append(f"with a one-way road that leads {_listed(junction.only_out)}")
+    if junction.angle is not None:
+        place.append(f"whose roads are {junction.angle} degrees apart")
     if junction.lanes is not None:
         place.append(f"with {junction.lanes} lanes around it")
     if junction.side is not None:
         place.append(f"on the {junction.side}")
     if junction.length is not None:
         place.append(f"{junction.length} metres long")
+    if junction.taper is not None:
+        place.append(f"with a taper of {junction.taper} metres")
     if junction.control is not None:
         place.append(CONTROLS[junction.control])
     if junction.all_way:
@@ -41,7 +49,8 @@ def _way_on(junction: JunctionClause) -> str:
         return f"to the {junction.take}" if junction.take else ""
     if junction.exit is not None:
         return f"take {exit_text(junction.exit)}"
-    return TAKES[junction.take] if junction.take is not None else "go on somewhere"
+    way = TAKES[junction.take] if junction.take is not None else "go on somewhere"
+    return way if junction.degrees is None else f"{way} by {junction.degrees} degrees"
 
 
 def exit_text(number: Amount) -> str:
@@ -53,6 +62,11 @@ def exit_text(number: Amount) -> str:
 
 def _listed(ways: tuple[str, ...]) -> str:
     said = {"left": "to the left", "right": "to the right", "straight": "straight on"}
+    return " and ".join(said[way] for way in ways)
+
+
+def _from(ways: tuple[str, ...]) -> str:
+    said = {"left": "from the left", "right": "from the right", "straight": "from straight ahead"}
     return " and ".join(said[way] for way in ways)
 
 

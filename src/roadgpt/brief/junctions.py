@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from pydantic import field_validator
 
-from roadgpt.brief.amount import Amount, Frozen
+from roadgpt.brief.amount import Amount, Frozen, span
 from roadgpt.brief.words import Range
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
@@ -97,6 +97,7 @@ CONTROLS: Mapping[Control, str] = {
     "lights": "with traffic lights",
     "none": "without signs",
 }
+ABOUT = 5.0  # degrees, around an angle that is given as one number
 BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
 """How many degrees the route turns if it bears slightly, or turns sharply, to a side."""
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
@@ -114,6 +115,12 @@ def bends_as(take: Take | None, turn: float) -> bool:
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
+def is_about(degrees: float, asked: Amount) -> bool:
+    """Returns whether an angle is the required one, within ``ABOUT`` of a single number."""
+    wanted, slack = span(asked), ABOUT if asked.exact else 0.0
+    return degrees in Range(wanted.lo - slack, wanted.hi + slack)
+
+
 class JunctionClause(Frozen):
     """A junction that the route passes; a field that is None sets no requirement."""
 
@@ -127,6 +134,14 @@ class JunctionClause(Frozen):
     ways: tuple[Way, ...] = ()
     """The sides to which one can leave, other than back; empty if the description does not say."""
     control: Control | None = None
+    only_in: tuple[Way, ...] = ()
+    """The sides on which a one-way road leads to the junction: nobody leaves on it."""
+    only_out: tuple[Way, ...] = ()
+    """The sides on which a one-way road leads away from the junction."""
+    degrees: Amount | None = None
+    """The change of direction of the route, in degrees, positive to either side."""
+    angle: Amount | None = None
+    """The angle in degrees between those two neighbouring arms that are the least apart."""
     skew: bool = False
     """Whether two neighbouring arms of a crossroads are less than 70 degrees apart."""
     size: IslandSize | None = None
@@ -141,13 +156,15 @@ class JunctionClause(Frozen):
     """The side of the ramp of a merge or an exit, or of the lane that ends or begins."""
     length: Amount | None = None
     """The length in metres of the lane for acceleration or deceleration, or of the taper of a lane."""
+    taper: Amount | None = None
+    """The length in metres in which the lane for acceleration or deceleration ends or begins."""
     all_way: bool = False
     """Whether every arm has the sign or the light of the route."""
     others_stop: bool = False
     """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False
 
-    @field_validator("ways")
+    @field_validator("ways", "only_in", "only_out")
     @classmethod
     def _sorted(cls, ways: tuple[Way, ...]) -> tuple[Way, ...]:
         return tuple(sorted(ways, key=get_args(Way).index))

@@ -16,7 +16,7 @@ from roadgpt.brief.plan_amount import amount_text, read_amount
 from roadgpt.errors import BriefError
 
 MAP = "map"
-KEYS = {"columns": "columns", "rows": "rows", "len": "length"}
+KEYS = {"columns": "columns", "rows": "rows", "len": "length", "dead_ends": "dead_ends"}
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
 CONTROLS = get_args(Control)
@@ -40,6 +40,8 @@ class MapClause(Frozen):
     length: Amount | None = None
     """The distance in metres between neighbouring junctions of a grid."""
     junctions: tuple[JunctionCount, ...] = ()
+    dead_ends: Amount | None = None
+    """The number of roads that end nowhere, as those that lead out of the map do."""
     control: Control | None = None
     """The sign or light of all junctions."""
     route: tuple[Way, ...] = Field((), max_length=LONGEST_ROUTE)

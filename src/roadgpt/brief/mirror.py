@@ -50,10 +50,12 @@ def _clause(clause: Clause) -> Clause:
 
 
 def _junction(junction: JunctionClause) -> JunctionClause:
-    ways = tuple("straight" if way == "straight" else OTHER_SIDE[way] for way in junction.ways)
-    update = {
+    update: dict[str, object] = {
+        name: tuple("straight" if way == "straight" else OTHER_SIDE[way] for way in getattr(junction, name))
+        for name in ("ways", "only_in", "only_out")
+    }
+    update |= {
         "take": None if junction.take is None else OTHER_TAKE[junction.take],
-        "ways": ways,
         "side": None if junction.side is None else OTHER_SIDE[junction.side],
     }
     # made anew, because the ways are kept in a fixed order

@@ -54,10 +54,16 @@ class MeasuredJunction:
     """The side of the ramp of a merge or exit."""
     beside: float | None = None
     """Length of the full lane for acceleration or deceleration of a merge or exit."""
+    taper: float | None = None
+    """Length of the rest of this lane, where it ends or begins."""
     ring_lanes: int = 0
     """The number of lanes of a ring; 0 for other junctions."""
     all_controls: tuple[Control, ...] = ()
     """The sign or the light of each arm with lanes into the junction."""
+    only_in: tuple[Way, ...] = ()
+    """The sides of arms from which all traffic drives to the junction."""
+    only_out: tuple[Way, ...] = ()
+    """The sides of arms on which all traffic drives away from the junction."""
 
     @property
     def arms(self) -> int:
@@ -68,6 +74,14 @@ class MeasuredJunction:
     def sides(self) -> tuple[Way, ...]:
         """The side of each way."""
         return tuple(side_of(turn) for turn in self.ways)
+
+    @property
+    def ways_on(self) -> tuple[Way, ...]:
+        """The sides to which one can leave."""
+        on = list(self.sides)
+        for side in self.only_in:
+            on.remove(side)
+        return tuple(on)
 
 
 def measured_junctions(route: Route) -> list[MeasuredJunction]:
@@ -162,25 +176,27 @@ def side_of_ramp(network: Network, junction: Junction) -> Side:
     return "left" if _turn_of(network, _way_of_ramp(network, junction)) > 0 else "right"
 
 
-def length_beside_ramp(network: Network, junction: Junction) -> float:
-    """Returns the length in metres of the lane for acceleration or deceleration, without its taper.
+def lengths_beside_ramp(network: Network, junction: Junction) -> tuple[float, float]:
+    """Returns the length in metres of the lane for acceleration or deceleration, and that of its taper.
 
-    It counts while the lane is wider than 0.9 of its full width. The result is 0 if there is no such lane.
+    It counts while the lane is wider than 0.9 of its full width. Both are 0 if there is no such lane.
     """
     way = _way_of_ramp(network, junction)
     beside = network.road((way.outgoing if junction.kind == "merge" else way.incoming).road)
     is_outer = (side_of_ramp(network, junction) == "left") == network.left_hand
     width = beside.profile.along[beside.profile.count[0] - 1 if is_outer else 0].width
     if not isinstance(width, CubicProfile):
-        return 0.0
+        return 0.0, 0.0
     s = np.linspace(0.0, beside.road.length, max(2, round(beside.road.length)))
-    return float(np.mean(width.height(s) > FULL * width.extremes()[1])) * beside.road.length
+    full = float(np.mean(width.height(s) > FULL * width.extremes()[1])) * beside.road.length
+    return full, beside.road.length - full
 
 
 def _measured(network: Network, passage: Passage) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
     directions = [direction_of(network, end) for end in passage.arms]
     is_ramp = _is_by_ramp(network, passage)
+    full, taper = (None, None) if is_ramp is None else lengths_beside_ramp(network, passage.entered)
     around = 1 if not network.left_hand else -1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     ways = tuple(_wrapped(each - directions[0] - 180) for each in directions[1:])
@@ -196,15 +212,32 @@ def _measured(network: Network, passage: Passage) -> MeasuredJunction:
         None if ring is None else ring.radius,
         is_ramp,
         None if is_ramp is None else side_of_ramp(network, passage.entered),
-        None if is_ramp is None else length_beside_ramp(network, passage.entered),
+        full,
+        taper,
         0 if ring is None else network.road(ring.ring[0]).profile.count[0],
-        tuple(arm.control for arm in passage.entered.arms if _leads_in(network, arm.end)),
+        tuple(arm.control for arm in passage.entered.arms if _lanes(network, arm.end)[0]),
+        *_one_way_sides(network, passage, ways),
     )
 
 
-def _leads_in(network: Network, end: RoadEnd) -> bool:
+def _one_way_sides(
+    network: Network, passage: Passage, ways: tuple[float, ...]
+) -> tuple[tuple[Way, ...], tuple[Way, ...]]:
+    """Returns the sides of the arms whose traffic only drives to a junction, or only away from it."""
+    into, out = list[Way](), list[Way]()
+    for end, turn in zip(passage.arms[1:], ways, strict=True):
+        lanes_in, lanes_out = _lanes(network, end)
+        if not lanes_out:
+            into.append(side_of(turn))
+        elif not lanes_in:
+            out.append(side_of(turn))
+    return tuple(into), tuple(out)
+
+
+def _lanes(network: Network, end: RoadEnd) -> tuple[int, int]:
+    """Returns the number of lanes of an arm that lead to its junction, and of those that lead away."""
     forward, backward = network.road(end.road).profile.count
-    return bool(forward if end.contact == "end" else backward)
+    return (forward, backward) if end.contact == "end" else (backward, forward)
 
 
 def direction_of(network: Network, end: RoadEnd) -> float:

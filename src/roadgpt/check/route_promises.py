@@ -18,6 +18,7 @@ from roadgpt.brief.junctions import (
     TAKES,
     JunctionClause,
     bends_as,
+    is_about,
 )
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
@@ -173,8 +174,14 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
         yield f"asked for a {asked.name}, has arms {gaps} degrees apart"
     if asked.arms is not None and found.arms not in span(asked.arms):
         yield f"asked for {asked.arms} arms, has {found.arms}"
-    if asked.ways and sorted(found.sides) != sorted(asked.ways):
-        yield f"asked for ways to the {' and '.join(asked.ways)}, has {' and '.join(found.sides)}"
+    if asked.ways and sorted(found.ways_on) != sorted(asked.ways):
+        yield f"asked for ways to the {' and '.join(asked.ways)}, has {' and '.join(found.ways_on)}"
+    for sides, said, own in (
+        (asked.only_in, "towards", found.only_in),
+        (asked.only_out, "away from", found.only_out),
+    ):
+        if not {*sides} <= {*own}:
+            yield f"asked for a one-way road {said} the junction on the {' and '.join(sides)}, has none there"
     if asked.exit is not None and found.exit not in span(asked.exit):
         yield f"asked for exit {asked.exit}, takes exit {found.exit}"
     if asked.take is not None and not takes(found, asked):
@@ -183,6 +190,7 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
         yield f"asked for {asked.control}, has {found.control}"
     if asked.skew and min(found.gaps) >= SKEW:
         yield f"asked for skew crossroads, the least angle is {min(found.gaps):.0f} degrees"
+    yield from _angles(found, asked)
     yield from _sizes(found, asked)
     yield from _of_ramp(found, asked)
     if asked.all_way and set(found.all_controls) != {asked.control}:
@@ -191,17 +199,20 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
         yield f"asked for stop signs for the others, has {', '.join(found.all_controls)}"
 
 
+def _angles(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
+    if asked.degrees is not None and not is_about(abs(found.turn), asked.degrees):
+        yield f"asked for a turn of {asked.degrees} degrees, is {abs(found.turn):.0f} degrees"
+    if asked.angle is not None and not is_about(min(found.gaps), asked.angle):
+        yield f"asked for roads {asked.angle} degrees apart, the least angle is {min(found.gaps):.0f} degrees"
+
+
 def _of_ramp(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
     if asked.side not in (None, found.ramp_side):
         yield f"asked for a ramp on the {asked.side}, is on the {found.ramp_side}"
-    if found.beside is None or asked.length is None:
-        return
-    wanted = span(asked.length)
-    if asked.length.exact:
-        slack = ROAD["length"].slack(wanted.lo)
-        wanted = Range(wanted.lo - slack, wanted.hi + slack)
-    if found.beside not in wanted:
-        yield f"asked for a lane of {asked.length} m, has {found.beside:.0f} m"
+    lengths = ("lane", asked.length, found.beside), ("taper", asked.taper, found.taper)
+    for name, length, own in lengths:
+        if length is not None and own is not None and own not in length_range(length):
+            yield f"asked for a {name} of {length} m, has {own:.0f} m"
 
 
 def takes(found: MeasuredJunction, asked: JunctionClause) -> bool:

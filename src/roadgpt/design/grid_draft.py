@@ -41,7 +41,7 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         haste: from 0 to 1; the larger it is, the smaller the grid.
     """
     size = drawn_count(asked.columns, rng), drawn_count(asked.rows, rng)
-    entrances = _entrances(size, rng, haste)
+    entrances = _entrances(size, asked.dead_ends, rng, haste)
     lengths = [
         _streets(count, asked.length, room - _outside(entrances, axis), rng, haste)
         for axis, count in enumerate(size)
@@ -61,23 +61,26 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
     return draft if _finished(draft, least_radius, rng) else None
 
 
-def drawn_count(asked: Amount | None, rng: Rng, most: int = 8) -> int:
+def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
     """Returns a whole number that an amount allows; where it has no upper limit, not much more than its
     lower one.
     """
-    both = overlap(span(asked), Range(1, most))
+    both = overlap(span(asked), Range(least, most))
     assert both is not None
     low = int(np.ceil(both.lo))
     high = int(both.hi) if span(asked).hi < inf else min(int(both.hi), low + ALIKE)
     return int(rng.integers(low, max(low, high) + 1))
 
 
-def _entrances(size: tuple[int, int], rng: Rng, haste: float) -> list[tuple[Cell, tuple[int, int]]]:
-    """Returns the nodes at which roads lead out of a grid, each with its side; in great haste there are
-    none if junctions remain.
+def _entrances(
+    size: tuple[int, int], asked: Amount | None, rng: Rng, haste: float
+) -> list[tuple[Cell, tuple[int, int]]]:
+    """Returns the nodes at which roads lead out of a grid, each with its side.
+
+    If no number is asked for, in great haste there are none where junctions remain.
     """
     columns, rows = size
-    if haste > 0.7 and max(columns, rows) > 1:
+    if asked is None and haste > 0.7 and max(columns, rows) > 1:
         return []
     places = []
     for side in SIDES:
@@ -89,7 +92,10 @@ def _entrances(size: tuple[int, int], rng: Rng, haste: float) -> list[tuple[Cell
     chosen = dict[Cell, tuple[int, int]]()
     for cell, side in order:
         chosen.setdefault(cell, side)
-    count = int(rng.integers(ENTRANCES[0], ENTRANCES[1] + 1)) if haste < 0.4 else ENTRANCES[0]
+    if asked is not None:
+        count = drawn_count(asked, rng, len(chosen), least=0)
+    else:
+        count = int(rng.integers(ENTRANCES[0], ENTRANCES[1] + 1)) if haste < 0.4 else ENTRANCES[0]
     return list(chosen.items())[:count]
 
 

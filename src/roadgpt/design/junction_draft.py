@@ -3,18 +3,19 @@
 from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, pi
-from typing import cast
+from typing import Literal, cast
 
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
+from roadgpt.brief.junction_check import ANGLES, MOST_ARMS_OF_MINI
 from roadgpt.brief.junctions import (
     ARMS,
     SIZES,
     JunctionClause,
     PlainKind,
     bends_as,
+    is_about,
     side_of,
 )
 from roadgpt.brief.words import Range, overlap
@@ -60,12 +61,16 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
         taken = _taken(clause, angles, rng) if _has_ways(clause, angles) else None
         if taken is None:
             continue
+        one_way = _one_way(clause, angles)
+        if taken < len(angles) and one_way[taken]:
+            continue
         least, most = STUBS[0] - haste * (STUBS[0] - SHORT_STUB), STUBS[1] - haste * (STUBS[1] - STUBS[0])
         arms = tuple(
             ArmDesign(
                 angle=angle,
                 length=None if number == taken else round(float(rng.uniform(least, most)), 1),
                 control=clause.control if clause.all_way else None,
+                one_way=one_way[number],
             )
             for number, angle in enumerate(angles)
         )
@@ -110,6 +115,10 @@ def _kind(asked: JunctionClause, rng: Rng) -> PlainKind:
 
 def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
     """Returns the directions of the arms in degrees from the direction of arrival, from right to left."""
+    if (across := _across(clause, rng)) is not None:
+        angles = [across - 180, 0.0, across]
+        left_out = int(rng.integers(3)) if clause.kind == "t_junction" else None
+        return [angle for n, angle in enumerate(angles) if n != left_out]
     if clause.kind == "t_junction":
         usual = ((-90.0, 90.0), (0.0, 90.0), (-90.0, 0.0))[int(rng.integers(3))]
         return [_near(angle, STRAIGHT if angle == 0 else ACROSS, rng) for angle in usual]
@@ -125,6 +134,20 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
             left, right = (float(gap) for gap in rng.uniform(*FORK, size=2))
         return [-180 + right, 180 - left]
     return _around(clause, rng)
+
+
+def _across(clause: JunctionClause, rng: Rng) -> float | None:
+    """Returns the angle in degrees by which a road leads to the left from a T-junction or from crossroads at
+    which an angle is required; None at others.
+    """
+    if clause.kind not in ("t_junction", "crossroads") or (clause.degrees or clause.angle) is None:
+        return None
+    asked = span(clause.degrees or clause.angle)
+    low, high = ANGLES[clause.kind].lo, 180 - ANGLES[clause.kind].lo
+    drawn = float(rng.uniform(max(asked.lo, low), max(asked.lo, low, min(asked.hi, high))))
+    side = (clause.take or "").rpartition("_")[2]
+    is_left = side == "left" if clause.degrees and side else rng.random() < 0.5
+    return drawn if is_left else 180 - drawn
 
 
 def _near(angle: float, most: float, rng: Rng) -> float:
@@ -157,8 +180,29 @@ def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     apart = all(b - a >= ASTERN + 1 for a, b in pairwise([-180.0, *angles, 180.0]))
     unclear = [angle for angle in angles if STRAIGHT < abs(angle) < CLEAR]
     is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
-    has_ways = not clause.ways or sorted(map(side_of, angles)) == sorted(clause.ways)
-    return apart and is_clear and has_ways
+    sides, asked = [side_of(angle) for angle in angles], (*clause.only_in, *clause.only_out)
+    if clause.ways and clause.kind != "crossroads":
+        has_ways = sorted([*clause.ways, *clause.only_in]) == sorted(sides)
+    else:
+        has_ways = {*clause.ways, *asked} <= {*sides}
+    return apart and is_clear and has_ways and _has_angle(clause, angles)
+
+
+def _has_angle(clause: JunctionClause, angles: Sequence[float]) -> bool:
+    """Returns whether the two least distant arms are as far apart as required."""
+    least = min(b - a for a, b in pairwise([-180.0, *angles, 180.0]))
+    return clause.angle is None or is_about(least, clause.angle)
+
+
+def _one_way(clause: JunctionClause, angles: Sequence[float]) -> list[Literal["in", "out"] | None]:
+    """Returns for each arm whether its traffic only drives to the junction, or only away from it.
+
+    Where the ways on of crossroads are required, traffic only arrives on the other arms.
+    """
+    is_listed = clause.ways and clause.kind == "crossroads"
+    into = {"left", "right", "straight"} - {*clause.ways} if is_listed else {*clause.only_in}
+    sides = [side_of(angle) for angle in angles]
+    return ["in" if side in into else "out" if side in clause.only_out else None for side in sides]
 
 
 def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | None:
@@ -174,8 +218,16 @@ def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | N
     if clause.exit is not None and not allowed:
         return count if count + 1 in exits else None
     if clause.take is None:
-        return allowed[int(rng.integers(len(allowed)))]
-    return _towards(clause, angles)
+        one_way = _one_way(clause, angles)
+        allowed = [n for n in allowed if one_way[n] is None and _turns(clause, angles[n])]
+        return allowed[int(rng.integers(len(allowed)))] if allowed else None
+    taken = _towards(clause, angles)
+    return taken if taken is None or _turns(clause, angles[taken]) else None
+
+
+def _turns(clause: JunctionClause, angle: float) -> bool:
+    """Returns whether the route turns by the required angle on an arm."""
+    return clause.degrees is None or is_about(abs(angle), clause.degrees)
 
 
 def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:

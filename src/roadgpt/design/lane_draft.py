@@ -11,13 +11,13 @@ from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.design import PlaceDesign
 from roadgpt.network.lane_design import (
     ACCELERATION,
+    RAMP_TAPER,
     TAPER,
     LanesChangeDesign,
     LanesDesign,
     RampDesign,
     narrow_part,
 )
-from roadgpt.network.ramps import TAPER as RAMP_TAPER
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
 WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
@@ -41,16 +41,20 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
     Args:
         asked: the requirements.
-        room: greatest length in metres of its additional lane, if no length is required.
+        room: greatest length in metres of its additional lane with the taper, if no length is required.
     """
     assert asked.kind in RAMPS
-    take = "main" if asked.take == "main" else "ramp"
-    length = min(ACCELERATION, max(room, LEAST_BESIDE))
+    taper = RAMP_TAPER if asked.taper is None else _length(asked.taper) / (1 - WIDE_IN_TAPER)
+    length = min(ACCELERATION, max(room - taper, LEAST_BESIDE))
     if asked.length is not None:
-        length = max(_length(asked.length) - WIDE_IN_TAPER * RAMP_TAPER, LEAST_LANE)
-    side = "left" if asked.side == "left" else None
-    return RampDesign.model_validate(
-        {"after": 1, "kind": asked.kind, "take": take, "length": round(length, 1), "side": side}
+        length = max(_length(asked.length) - WIDE_IN_TAPER * taper, LEAST_LANE)
+    return RampDesign(
+        after=1,
+        kind="merge" if asked.kind == "merge" else "diverge",
+        take="main" if asked.take == "main" else "ramp",
+        length=round(length, 1),
+        taper=round(taper, 1),
+        side="left" if asked.side == "left" else None,
     )
 
 

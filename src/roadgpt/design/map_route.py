@@ -17,15 +17,16 @@ LONG = 120.0  # m; a shorter route counts as worse
 def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
     """Returns the nodes along a route, from one end to another; None if there is no route.
 
-    A map without ends has a route from one junction to another. No node is passed twice.
+    A map with less than two ends has a route from one junction to another. No node is passed twice.
     """
     ends = [n for n, node in enumerate(draft.nodes) if node.kind == "end"]
-    starts = ends or [n for n, node in enumerate(draft.nodes) if node.is_junction]
+    to_end = len(ends) > 1
+    starts = ends if to_end else [n for n, node in enumerate(draft.nodes) if node.is_junction]
     wanted = int(rng.integers(PASSED[0], PASSED[1] + 1))
     neighbours = draft.neighbours()
     best: tuple[tuple[float, ...], list[int]] | None = None
     for _ in range(WALKS):
-        walk = _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, bool(ends), rng)
+        walk = _walk(draft, neighbours, starts[int(rng.integers(len(starts)))], wanted, to_end, rng)
         if walk is None:
             continue
         worth = _worth(draft, walk, wanted)

@@ -37,7 +37,6 @@ from roadgpt.network import NetworkDesign, build_route
 from roadgpt.network.design import PlaceDesign, ends_route
 from roadgpt.network.growing import length_inside
 from roadgpt.network.lane_design import LanesDesign, RampDesign
-from roadgpt.network.ramps import TAPER as RAMP_TAPER
 from roadgpt.network.ramps import length_beside
 from roadgpt.network.stretch_profiles import profiles_between
 from roadgpt.plural import plural
@@ -172,7 +171,9 @@ class NetworkSearch:
         return clause.model_copy(update={"lanes": exactly(most)}) if most > 1 else clause
 
     def _room_beside(self, number: int) -> float:
-        """Returns the length in metres that a lane for acceleration or deceleration can have."""
+        """Returns the length in metres that a lane for acceleration or deceleration can have,
+        with its taper.
+        """
         places = self.brief.junctions
         n = number if places[number].kind == "diverge" else number + 1
         asked = self.brief.roads[n].length
@@ -180,7 +181,7 @@ class NetworkSearch:
             return inf
         is_shared = 0 < n < len(places) and (places[n - 1].kind, places[n].kind) == ("merge", "diverge")
         room = span(asked).hi - SHORT_ROAD - ROOM_TO_TURN
-        return (room / 2 if is_shared else room) - RAMP_TAPER
+        return room / 2 if is_shared else room
 
     def _profiles(self, places: Sequence[PlaceDesign], lengths: Sequence[float]) -> list[Profile]:
         return profiles_between(self.lanes[0], places, lengths, self.world.section.shoulder)

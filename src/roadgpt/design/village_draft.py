@@ -5,13 +5,13 @@ Then pairs of arms that lead nowhere are joined where their directions meet. The
 
 import cmath
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import combinations, pairwise
 from math import pi, radians
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junction_check import MOST_OF_KIND
-from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.junctions import JunctionClause, MapJunctionKind
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.design.clearance import Disc, Line, is_clear
 from roadgpt.design.grid_draft import drawn_count
@@ -34,7 +34,12 @@ FARTHEST = 130.0  # m, from a junction to the bend of a road that joins two arms
 SHARPEST = 115.0  # degrees, of such a bend
 GENTLEST = 8.0  # degrees, of such a bend
 JOINED = 0.8  # share of the arms that are joined where they can be
-ENDS = 2  # arms at least that are left as ends
+ENDS = 2  # arms at least that are left as ends, where no number is required
+DRAWN = 20  # sets of junctions, until one has arms for the required number of dead ends
+ORDERS = 6  # in which arms are joined, to leave as many dead ends as required
+LINKS = 12  # roads with two bends that are tried between two arms
+BEFORE_BEND = (16.0, 70.0)  # m, of a straight before such a bend, in which half of the bend lies
+DONE = 0.3  # chance, before each further pair, to leave the number of dead ends where it meets a range
 ASKED = 0.04  # share by which distances differ from the one that is asked for
 LONGER = 1.2  # share by which the ends of a map with one junction are longer, so that its route is not short
 STUB = 24.0  # m, kept free for each arm that leads nowhere yet
@@ -53,19 +58,36 @@ def draft_village(
         haste: from 0 to 1; the larger it is, the smaller the map.
     """
     kinds = [each.kind for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
-    junctions = []
-    for n in rng.permutation(len(kinds)):
-        junction = drawn_junction(JunctionClause(kind=kinds[n]), 1, rng, haste)
-        if junction is None:
-            return None
-        junctions.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste)}))
+    junctions = next((drawn for _ in range(DRAWN) if (drawn := _junctions(kinds, asked, rng, haste))), None)
+    if junctions is None:
+        return None
     village = _Village(asked, world, least_radius, rng, haste)
     village.put(junctions[0], 0j, float(rng.uniform(0, 2 * pi)))
     if not all(village.grow(junction) for junction in junctions[1:]):
         return None
-    village.join_arms()
-    village.end_arms()
-    return village.draft
+    for _ in range(1 if asked.dead_ends is None else ORDERS):
+        trial = village.copied()
+        if trial.join_arms():
+            trial.end_arms()
+            return trial.draft
+    return None
+
+
+def _junctions(
+    kinds: Sequence[MapJunctionKind], asked: MapClause, rng: Rng, haste: float
+) -> list[JunctionDesign] | None:
+    """Returns junctions of some kinds in random order; None if one of them was not found, or if they have too
+    few arms for the required number of dead ends, or leave one more or less.
+    """
+    found = []
+    for n in rng.permutation(len(kinds)):
+        junction = drawn_junction(JunctionClause(kind=kinds[n]), 1, rng, haste)
+        if junction is None:
+            return None
+        found.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste)}))
+    free = sum(len(each.all_arms) + 1 for each in found) - 2 * (len(found) - 1)
+    wanted = span(asked.dead_ends)
+    return found if any(number in wanted for number in range(free, -1, -2)) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +120,11 @@ class _Village:
     draft: MapDraft = field(default_factory=MapDraft)
     free: list[_FreeArm] = field(default_factory=list)
     discs: list[Disc] = field(default_factory=list)
+
+    def copied(self) -> "_Village":
+        """Returns the same draft as another one that can be changed."""
+        draft = MapDraft(list(self.draft.nodes), list(self.draft.roads))
+        return replace(self, draft=draft, free=list(self.free))
 
     def grow(self, junction: JunctionDesign) -> bool:
         """Joins a junction to an arm that leads nowhere; returns whether it found a place."""
@@ -208,37 +235,77 @@ class _Village:
         roads = [Line(nodes[a].z, nodes[b].z, frozenset((a, b))) for a, b in self.draft.roads]
         return roads + [arm.line for arm in self.free if arm not in without]
 
-    def join_arms(self) -> None:
-        """Joins pairs of arms that lead nowhere, where a bend can lead from one to the other."""
+    def join_arms(self) -> bool:
+        """Joins pairs of arms that lead nowhere, where a bend can lead from one to the other, or two bends if
+        a number of dead ends is required; returns whether there are as many as required.
+        """
+        asked = self.asked.dead_ends
+        fewest, share = (ENDS, JOINED) if asked is None else (span(asked).lo, 1.0)
         pairs = list(combinations(self.free, 2))
         for n in self.rng.permutation(len(pairs)):
             one, other = pairs[n]
-            if len(self.free) < ENDS + 2 or one not in self.free or other not in self.free:
+            is_done = len(self.free) < fewest + 2 or (
+                asked is not None and self._is_met and self.rng.random() < DONE
+            )
+            if is_done or one not in self.free or other not in self.free or one.node == other.node:
                 continue
-            bend = None if one.node == other.node else self._meeting(one, other)
-            if bend is not None and self.rng.random() < JOINED:
+            bends = self._meeting(one, other)
+            if not bends and asked is not None:
+                bends = self._linked(one, other)
+            if bends and self.rng.random() < share:
                 self.free.remove(one)
                 self.free.remove(other)
-                number = self.draft.add(bend, one.node)
-                self.draft.roads.append((number, other.node))
+                last = one.node
+                for bend in bends:
+                    last = self.draft.add(bend, last)
+                self.draft.roads.append((last, other.node))
+        return self._is_met
 
-    def _meeting(self, one: _FreeArm, other: _FreeArm) -> DraftNode | None:
-        """Returns the bend at which two arms meet; None if they do not, or something is in the way."""
+    @property
+    def _is_met(self) -> bool:
+        """Whether as many arms lead nowhere as dead ends are required."""
+        return len(self.free) in span(self.asked.dead_ends)
+
+    def _meeting(self, one: _FreeArm, other: _FreeArm) -> list[DraftNode]:
+        """Returns the bend at which two arms meet; none if they do not, or something is in the way."""
         across = (one.way.conjugate() * other.way).imag
         turn = abs(cmath.phase(-other.way / one.way))
         if not radians(GENTLEST) <= turn <= radians(SHARPEST):
-            return None
+            return []
         between = (other.z - one.z).conjugate()
         first, second = (between * other.way).imag / across, (between * one.way).imag / across
         room = min(first - one.reach, second - other.reach) - STRAIGHT
         if room <= 0 or max(first, second) > FARTHEST:
-            return None
+            return []
         radius = drawn_bend(self.rng, self.least_radius, room / tangent_length(turn))
         z, number = one.z + one.way * first, len(self.draft.nodes)
         lines = [Line(arm.z, z, frozenset((arm.node, number))) for arm in (one, other)]
         if radius is None or not is_clear(lines, self._lines(one, other), self.discs, self.apart):
-            return None
-        return DraftNode(z, "bend", radius=radius)
+            return []
+        return [DraftNode(z, "bend", radius=radius)]
+
+    def _linked(self, one: _FreeArm, other: _FreeArm) -> list[DraftNode]:
+        """Returns two bends over which a road can lead from one arm to another; none if none were found."""
+        for _ in range(LINKS):
+            rooms = [float(self.rng.uniform(*BEFORE_BEND)) for _ in range(2)]
+            places = [
+                arm.z + arm.way * (arm.reach + STRAIGHT + room)
+                for arm, room in zip((one, other), rooms, strict=True)
+            ]
+            across = places[1] - places[0]
+            turns = [abs(cmath.phase(across / one.way)), abs(cmath.phase(-across / other.way))]
+            if not all(radians(GENTLEST) <= turn <= radians(SHARPEST) for turn in turns):
+                continue
+            radii = [
+                drawn_bend(self.rng, self.least_radius, min(room, abs(across) / 2) / tangent_length(turn))
+                for room, turn in zip(rooms, turns, strict=True)
+            ]
+            first = len(self.draft.nodes)
+            points, nodes = [one.z, *places, other.z], [one.node, first, first + 1, other.node]
+            lines = [Line(points[n], points[n + 1], frozenset(nodes[n : n + 2])) for n in range(3)]
+            if None not in radii and is_clear(lines, self._lines(one, other), self.discs, self.apart):
+                return [DraftNode(z, "bend", radius=radius) for z, radius in zip(places, radii, strict=True)]
+        return []
 
     def end_arms(self) -> None:
         """Gives each arm that leads nowhere its end."""

@@ -24,7 +24,7 @@ from pydantic import BaseModel, Field, StrictBool, ValidationError
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, Control, PlainKind, side_of
 from roadgpt.errors import UsageError
-from roadgpt.network.lane_design import LanesChangeDesign, LanesDesign, RampDesign
+from roadgpt.network.lane_design import RAMP_TAPER, LanesChangeDesign, LanesDesign, RampDesign
 from roadgpt.network.pose import mirrored_point
 from roadgpt.road import Design, Segment, read_design
 from roadgpt.road.design import (
@@ -77,6 +77,8 @@ class ArmDesign(FrozenFields):
     """Length in metres of a straight arm; not for the arm that the route takes."""
     control: Control | None = None
     """The sign or the light on this arm; None for what the junction's ``control`` implies."""
+    one_way: Literal["in", "out"] | None = None
+    """Whether all traffic drives to the junction, or away from it; not for the arm that the route takes."""
 
     def mirrored(self) -> "ArmDesign":
         """Returns the arm with left and right exchanged."""
@@ -224,7 +226,7 @@ class NetworkDesign(FrozenFields):
             out[f"road_segment{number}"] = _plain(segment)
         for number, junction in enumerate(self.junctions, 1):
             row = _plain(junction, exclude={"arms", "lanes"})
-            for name, usual in (("ring_lanes", 1), ("crosswalk", False)):
+            for name, usual in (("ring_lanes", 1), ("crosswalk", False), ("taper", RAMP_TAPER)):
                 if row.get(name) == usual:
                     del row[name]
             if junction.lanes is not None:

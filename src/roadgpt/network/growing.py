@@ -133,11 +133,9 @@ class _RouteGrowth:
             start = NetworkPose(node, direction).ahead(distances[n + 1])
             if n == taken:
                 road = self._road(number, start, (True, is_level))
+                stubs.append(Stub(RoadEnd(road, "start"), direction, profiles[n + 1], 0.0))
             else:
-                check_length(arm.length or STUB)
-                side = (Segment(distance=arm.length or STUB, direction="straight"),)
-                road = self.builder.add(road_of(side, *start, profiles[n + 1], (True, False)))
-            stubs.append(Stub(RoadEnd(road, "start"), direction, profiles[n + 1], 0.0))
+                stubs.append(self._arm(arm, start, profiles[n + 1]))
         # where no lane leads into the junction, nobody sees a sign
         controls = [
             control if stub.into else "none"
@@ -162,6 +160,21 @@ class _RouteGrowth:
             self.passed.append(_way(built.connections, stubs[0].end, stubs[to].end))
         self.passed.append(stubs[to].end.road)
 
+    def _arm(self, arm: ArmDesign, contact: NetworkPose, profile: Profile) -> Stub:
+        """Adds the road of an arm that the route does not take; a one-way road leads as its traffic does.
+
+        ``contact`` is where it meets the junction, with the heading out of it.
+        """
+        length = arm.length or STUB
+        check_length(length)
+        segments = (Segment(distance=length, direction="straight"),)
+        if arm.one_way != "in":
+            road = self.builder.add(road_of(segments, *contact, profile, (True, False)))
+            return Stub(RoadEnd(road, "start"), contact.heading, profile, 0.0)
+        start = NetworkPose(contact.ahead(length).point, contact.heading + math.pi)
+        road = self.builder.add(road_of(segments, *start, profile, (False, True)))
+        return Stub(RoadEnd(road, "end"), contact.heading, profile, length)
+
 
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
     """Returns the cross-section of each arm but that of arrival.
@@ -174,6 +187,9 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         junction: The junction.
         before: The cross-section of the road on which the route arrives.
         after: The cross-section of the road on which it goes on.
+
+    Raises:
+        UsageError: The arm that the route takes has ``one_way``.
     """
     width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring = (junction.ring_lanes, junction.ring_lanes)
@@ -187,6 +203,15 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     if opposite is not None and max(after.count) > USUALLY_FED:
         out, into = (max(count, 1) for count in after.count[::-1])
         found[opposite] = Profile.of(out, into, width, shoulder)
+    for n, arm in enumerate(junction.all_arms):
+        if arm.one_way is not None:
+            if n == junction.taken:
+                raise UsageError(
+                    "the arm that the route takes has one_way; leave it out, and give the junction lanes "
+                    'with "backward": 0'
+                )
+            out, into = found[n].count
+            found[n] = Profile.of(into if arm.one_way == "in" else out, 0, width, shoulder)
     return found
 
 
@@ -234,14 +259,15 @@ def contact_distances(
         junction: The junction.
         directions: The headings of its arms out of the junction in radians, counter-clockwise, first that of
             the road on which the route arrives.
-        profiles: The cross-section of each arm: that of the road on which the route arrives ends here, the
-            others begin.
+        profiles: The cross-section of each arm: that of the road on which the route arrives ends here, and so
+            do those of one-way roads towards the junction; the others begin.
 
     Raises:
         UsageError: The island of a roundabout is too small for its arms.
     """
     if junction.kind != "roundabout":
-        mouths = [mouth_of_arm(each, directions[n], n == 0) for n, each in enumerate(profiles)]
+        ends_here = {0, *(n for n, arm in enumerate(junction.all_arms, 1) if arm.one_way == "in")}
+        mouths = [mouth_of_arm(each, directions[n], n in ends_here) for n, each in enumerate(profiles)]
         return setbacks(mouths, junction.kerb)
     least = smallest_radius(directions)
     if junction.radius < least:
@@ -252,17 +278,17 @@ def contact_distances(
     return [contact_distance(junction.radius, junction.ring_lanes)] * len(directions)
 
 
-def mouth_of_arm(profile: Profile, direction: float, is_arrival: bool) -> Mouth:
+def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
     """Returns what the layout of a junction needs to know of an arm.
 
     Args:
         profile: Its cross-section.
         direction: The heading in radians out of the junction.
-        is_arrival: Whether its end meets the junction, not its start.
+        ends_here: Whether its end meets the junction, not its start.
     """
-    edges = profile.edges(FAR if is_arrival else 0.0)
+    edges = profile.edges(FAR if ends_here else 0.0)
     left, right = float(edges.left), -float(edges.right)
-    return Mouth(direction, right, left) if is_arrival else Mouth(direction, left, right)
+    return Mouth(direction, right, left) if ends_here else Mouth(direction, left, right)
 
 
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:

@@ -19,6 +19,7 @@ from roadgpt.road.design import OTHER_DIRECTION, FrozenFields
 from roadgpt.road.profile import Marking
 
 ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
+RAMP_TAPER = 60.0  # m, of such a lane: RAA 2008, entries and exits
 MEDIAN = 2.0  # m, width of a median
 TAPER = 60.0  # m, of a lane that ends or begins
 LEAST_WIDTH = 1.5  # m; a lane that ends, ends where it is narrower, because no car can go on in it
@@ -52,6 +53,8 @@ class RampDesign(FrozenFields):
     """Where the route comes from (merge) or goes to (diverge)."""
     length: LaneLength = ACCELERATION
     """Length in metres of the lane for acceleration or deceleration, without its taper."""
+    taper: LaneLength = RAMP_TAPER
+    """Length in metres in which this lane ends or begins."""
     side: Side | None = None
     """The side of the ramp; None for the side on which traffic drives."""
     lanes: LanesDesign | None = None

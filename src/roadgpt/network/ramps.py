@@ -27,14 +27,13 @@ from roadgpt.road.profile import Lane
 
 ANGLE = math.radians(8.0)  # between the ramp and the main road
 CONTACT = 25.0  # m, from the node to each contact
-TAPER = 60.0  # m, of the lane for acceleration or deceleration: RAA 2008, entries and exits
 BESIDE = 60.0  # m, of the road that the route does not take
 FAR = 1e6  # m, a station behind all changes of a cross-section
 
 
 def length_beside(ramp: RampDesign) -> float:
     """Returns the length in metres of the road with the additional lane."""
-    return ramp.length + TAPER
+    return ramp.length + ramp.taper
 
 
 def length_at_ramp(ramp: RampDesign) -> float:
@@ -150,7 +149,7 @@ class RampBuilder:
     def _exit(self, going_on: int) -> list[int]:
         by_ramp, node = self.ramp.take == "ramp", self._node
         before, length = _constant(self.before, FAR), length_beside(self.ramp)
-        lane = CubicProfile.smooth([(0.0, 0.0), (TAPER, _width(before))])
+        lane = CubicProfile.smooth([(0.0, 0.0), (self.ramp.taper, _width(before))])
         beside = self._straight(self.end, length, _with_lane(before, lane, self._is_left))
         self._continue(self.arrival, beside)
         if by_ramp:

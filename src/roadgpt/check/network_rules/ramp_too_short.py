@@ -7,7 +7,7 @@ Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP
 from roadgpt.check.finding import Finding
-from roadgpt.check.junction_measures import length_beside_ramp
+from roadgpt.check.junction_measures import lengths_beside_ramp
 from roadgpt.check.network_places import junction_finding
 from roadgpt.network import Network, Route
 from roadgpt.road import World
@@ -21,7 +21,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     for junction in network.junctions:
         if junction.kind not in RAMPS:
             continue
-        length = length_beside_ramp(network, junction)
+        length, _ = lengths_beside_ramp(network, junction)
         if length < LEAST:
             word = "acceleration" if junction.kind == "merge" else "deceleration"
             what = f"the lane for {word} is {length:.0f} m long, shorter than {LEAST:g} m; make it longer"

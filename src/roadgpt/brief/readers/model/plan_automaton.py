@@ -61,7 +61,7 @@ from roadgpt.brief.readers.model.vocabulary import (
 from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 
 STRAIGHT_KINDS = ("straight", "crest", "dip")
-UNSAID = {"deg=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
+UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
 """Numbers that a plan may contain although they are not in the text, by plan key."""
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says: a right angle, one percent."""
@@ -135,6 +135,7 @@ class Numbers:
         unsaid = UNSAID.get(key, ())
         is_meant = {
             "deg=": self.evidence.angles,
+            "angle=": self.evidence.angles,
             "turning=": self.evidence.angles,
             "steepest=": self.evidence.mountains,
         }.get(key, True)
@@ -274,13 +275,15 @@ def junction_tokens(numbers: Numbers) -> Symbol:
     side, length = Sequel(OneOf(("side=",)), (OneOf(SIDES),)), Keyed("len=", numbers)
     takes, controls = OneOf((*SIDES, *TAKES)), OneOf(CONTROLS)
     flags = tuple(OneOf((flag,)) for flag in (*FLAGS, *NEWER_FLAGS))
-    ways = Sequel(OneOf(("ways=",)), (OneOf((*LISTED_WAYS, *SIDES, "straight")),))
+    listed = OneOf((*LISTED_WAYS, *SIDES, "straight"))
+    ways, only_in, only_out = (Sequel(OneOf((key,)), (listed,)) for key in ("ways=", "in=", "out="))
+    degrees, angle, taper = (Keyed(key, numbers) for key in ("deg=", "angle=", "taper="))
     exit_, arms, lanes = (Keyed(key, numbers) for key in ("exit=", "arms=", "lanes="))
     radius = AnyOf((Keyed("r=", numbers), Keyed("d=", numbers)))
     forms: tuple[tuple[Sequence[str], tuple[Symbol, ...]], ...] = (
-        (JUNCTIONS, (takes, controls, *flags, ways, arms)),
+        (JUNCTIONS, (takes, controls, *flags, ways, only_in, only_out, degrees, angle, arms)),
         (("roundabout",), (takes, OneOf(RING_SIZES), controls, *flags[1:], ways, exit_, arms, radius, lanes)),
-        (RAMPS, (OneOf(("ramp", "main")), side, length)),
+        (RAMPS, (OneOf(("ramp", "main")), side, length, taper)),
         (LANE_KINDS, (side, length)),
         (("lane_change",), (OneOf(SIDES),)),
     )
@@ -292,7 +295,7 @@ def _map(numbers: Numbers) -> Symbol:
     kinds = OneOf((*JUNCTIONS, "roundabout"))
     listed = Sequel(kinds, (count, ListTail(";", Sequel(kinds, (count,)), MOST_KINDS - 1)))
     grid = Sequel(Keyed("columns=", numbers), (Keyed("rows=", numbers),))
-    tail = InOrder((Keyed("len=", numbers), OneOf(CONTROLS)))
+    tail = InOrder((Keyed("len=", numbers), Keyed("dead_ends=", numbers), OneOf(CONTROLS)))
     whole = Sequel(OneOf(("||",)), (InOrder((OneOf(("left_hand",)), _beside()), least=1),), is_open=True)
     return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), tail, whole))
 

@@ -243,7 +243,8 @@ def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
             break
         key.append(tokens[place])
         found = words().get(tuple(key))
-        if found and not (key[0] in AMBIGUOUS and len(key) == 1 and language not in found):
+        is_doubtful = key[0] in AMBIGUOUS and len(key) == 1 and unit_at(tokens, place + 1) is None
+        if found and (language in found or not is_doubtful):
             best = Number(found.get(language, next(iter(found.values()))), at, place)
         place += 1
     if best and best.value == 0 and tokens[at] == "null" and language != "de":

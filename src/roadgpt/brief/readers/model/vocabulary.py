@@ -97,7 +97,7 @@ NETWORKS = [
     "//", "||", *JUNCTIONS, "roundabout", *RAMPS, *LANE_KINDS, "lane_change", *TAKES, "ramp", "main",
     *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
     "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
-    "d=", *NEWER_FLAGS,
+    "d=", *NEWER_FLAGS, "angle=", "in=", "out=", "dead_ends=", "taper=",
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
 TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES, *NETWORKS]))
@@ -110,7 +110,8 @@ LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
 UNIT_OF = {
-    "deg=": "degrees", "r=": "metres", "d=": "metres", "len=": "metres", "climb=": "metres",
+    "deg=": "degrees", "angle=": "degrees", "r=": "metres", "d=": "metres",
+    "len=": "metres", "taper=": "metres", "climb=": "metres",
     "turning=": "degrees", "pct=": "percent", "steepest=": "percent", **MEASURED,
 }  # fmt: skip
 """The unit of the number after a key; numbers after other keys are counts."""
