@@ -110,7 +110,8 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
             raise BriefError(f"a {junction.name} has no {field.replace('_', ' ')}; leave it out")
     if junction.taper is not None and junction.kind in LANE_KINDS:
         raise BriefError(
-            f"a {junction.name} has no taper; give the length in which it ends or begins as len, or leave it out"
+            f"a {junction.name} has no taper; give the length in which it ends or begins as len, or leave it "
+            "out"
         )
     if junction.kind == "lane_change" and (junction.side or junction.length):
         raise BriefError(
