@@ -24,6 +24,31 @@ def test_a_centre_line_that_the_network_left_out_is_on_every_road(words: str, li
 
 
 @pytest.mark.parametrize(
+    ("asked", "words", "line"),
+    [
+        (
+            "| lanes=2 against=2 // t_junction left // | up",
+            "All roads have two lanes each way. Left at the T-junction, uphill",
+            "| lanes=2 against=2 // t_junction left // | up lanes=2 against=2",
+        ),
+        (
+            "// crossroads left // | len=90 centre=solid // t_junction right //",
+            "al cruce a la izquierda, 90 m, en la T a la derecha; en todo el recorrido prohibido adelantar",
+            "| centre=solid // crossroads left // | len=90 centre=solid // t_junction right // "
+            "| centre=solid",
+        ),
+        (
+            "// crossroads // | divided lanes=2 against=2",
+            "Kreuzung, durchgehend zwei Spuren je Richtung mit Mittelstreifen",
+            "| divided lanes=2 against=2 // crossroads // | divided lanes=2 against=2",
+        ),
+    ],
+)
+def test_what_holds_all_the_way_is_on_every_road(asked: str, words: str, line: str) -> None:
+    assert with_whole_drive(read_plan(asked), words) == read_plan(line)
+
+
+@pytest.mark.parametrize(
     ("asked", "words"),
     [
         (ROUTE, "a left bend, straight over the crossroads, uphill"),
@@ -32,6 +57,10 @@ def test_a_centre_line_that_the_network_left_out_is_on_every_road(words: str, li
         ("| centre=broken // crossroads straight", "no overtaking, dashed line before the crossroads"),
         ("| oneway // crossroads straight // | divided", "no overtaking"),
         ("turn x2", "two bends, no overtaking, traffic on the left"),
+        ("| lanes=2 // crossroads", "all the way to the second crossroads two lanes"),
+        ("| lanes=2 // crossroads // | lanes=3", "lanes all the way: two, then three"),
+        ("| lanes=2 // crossroads", "two lanes for the whole 200 m before the crossroads"),
+        ("| lanes=2 // crossroads // | up", "two lanes, a crossroads, uphill throughout"),
     ],
 )
 def test_nothing_is_added_where_words_leave_a_choice(asked: str, words: str) -> None:

@@ -1,5 +1,5 @@
-"""What words say of a whole route, and the network left out: traffic on the left, the centre line, and that
-cars from the right go first.
+"""What words say of a whole route, and the network left out: traffic on the left, the centre line, lanes, and
+that cars from the right go first.
 """
 
 import re
@@ -19,7 +19,8 @@ LINES: dict[CentreLine, re.Pattern[str]] = {
         r"solid (?:\w+ )?(?:centre |center )?line|uberholverbot|uberholen (?:ist )?verboten|kein uberholen|"
         r"nicht uberholt|durchgezogene|sperrlinie|sicherheitslinie|interdi\w+ de (?:depasser|doubler)|"
         r"depassement interdit|ligne (?:\w+ )?continue|prohibido adelantar|adelanta\w+ prohibido|"
-        r"linea (?:\w+ )?continua|divieto di sorpasso|sorpasso vietato|striscia continua"
+        r"linea (?:\w+ )?continua|divieto di sorpasso|sorpasso vietato|vietato (?:il )?sorpass|"
+        r"striscia continua"
     ),
     "none": re.compile(
         r"(?:no|without (?:an?|any|the)?) ?(?:centre|center|middle) ?lines?|no (?:road |lane )?markings|"
@@ -32,10 +33,23 @@ LINES: dict[CentreLine, re.Pattern[str]] = {
     ),
 }
 PLACED = re.compile(
-    r"\b(?:until|till|before|after|behind|first|last|then|from there|up to|bis|vor|nach|danach|dahinter|dann|"
+    r"\b(?:until|till|before|after|behind|first|second|third|last|then|from there|up to|"
+    r"bis|vor|nach|danach|dahinter|dann|"
     r"jusqu|avant|apres|puis|ensuite|hasta|antes|despues|luego|fino|prima|dopo|poi)"
 )
 """Words that say on which part of the route a line is."""
+ALL_THE_WAY = re.compile(
+    r"all the way|throughout|everywhere|(?:the|my|our|this) (?:whole|entire|complete)(?! \d)|"
+    r"from start to (?:finish|end)|(?:all|every|each)(?: of)?(?: the| my)? roads?|"
+    r"uberall|durchgehend|durchweg|(?:ganze|gesamte)[nr]? (?:strecke|route|fahrt|weg)|"
+    r"(?:alle|allen|jede|jeder) strassen?|partout|tou(?:t|te) (?:le|la|du)|d'un bout a l'autre|"
+    r"(?:toutes les|chaque) (?:routes?|rues?)|tod[oa] (?:el|la) (?:recorrido|trayecto|ruta|camino)|"
+    r"en todas partes|todas las (?:calles|carreteras|vias)|"
+    r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade"
+)
+"""Words that say that something holds on every road of the route."""
+LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
+OF_LANES = ("lanes", "against", "divided")
 RIGHT_FIRST = re.compile(
     r"right[- ]?before[- ]?left|(?:priority|precedence) (?:to|from) the right|give[- ]way to the right|"
     r"rechts[- ]?vor[- ]?links|rechtsvor(?:tritt|rang)|priorite a (?:la )?droite|"
@@ -64,7 +78,8 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
 
     A single road is returned as it is. A centre line is added where the words say one kind of line and no
     place, no part of the plan has a line, and on every road that has oncoming traffic on the same
-    carriageway. Junctions where cars from the right go first get no sign to give way.
+    carriageway. Lines and lanes of some roads are those of all roads where the words say so. Junctions where
+    cars from the right go first get no sign to give way.
     """
     if not brief.junctions and brief.map is None:
         return brief
@@ -75,7 +90,38 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
         for each in brief.stretches
     )
     return brief.model_copy(
-        update={"left_hand": brief.left_hand or says_left_hand(words, by_place=True), "stretches": roads}
+        update={
+            "left_hand": brief.left_hand or says_left_hand(words, by_place=True),
+            "stretches": _alike(roads, words),
+        }
+    )
+
+
+def _alike(roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
+    """Returns the roads with the lanes and the centre line of those that have any, where the words say that
+    all have the same.
+    """
+    whole = [part for part in _parts(words) if ALL_THE_WAY.search(part) and not PLACED.search(part)]
+    if any(LANES.search(part) for part in whole):
+        roads = _with_shared(roads, OF_LANES)
+    if any(pattern.search(part) for part in whole for pattern in LINES.values()):
+        roads = _with_shared(roads, ("centre",))
+    return roads
+
+
+def _with_shared(roads: tuple[Brief, ...], names: tuple[str, ...]) -> tuple[Brief, ...]:
+    """Returns the roads, those that have none of some fields with the values of the others; as they are if
+    these differ.
+    """
+    usual = Brief()
+    values = [{name: getattr(road, name) for name in names} for road in roads]
+    none = {name: getattr(usual, name) for name in names}
+    given = [each for each in values if each != none]
+    if not given or any(each != given[0] for each in given):
+        return roads
+    return tuple(
+        road.model_copy(update=given[0]) if own == none else road
+        for road, own in zip(roads, values, strict=True)
     )
 
 
@@ -91,7 +137,7 @@ def _without_signs(brief: Brief, words: str) -> Brief:
     if brief.map is not None:
         control = brief.map.control if brief.map.control not in (None, "yield") else "none"
         return brief.model_copy(update={"map": brief.map.model_copy(update={"control": control})})
-    parts = [part for part in re.split(r"[.,;:!?\n]", said) if RIGHT_FIRST.search(part)]
+    parts = [part for part in _parts(words) if RIGHT_FIRST.search(part)]
     is_open = len(brief.junctions) == 1 or any(AT_ALL.search(part) for part in parts)
     junctions = tuple(_uncontrolled(each, is_open) for each in brief.junctions)
     return brief.model_copy(update={"junctions": junctions})
@@ -106,12 +152,16 @@ def _uncontrolled(junction: JunctionClause, is_open: bool) -> JunctionClause:
 
 def _line_said(words: str) -> CentreLine | None:
     found = set[CentreLine]()
-    for part in re.split(r"[.,;:!?\n]", plain(words)):
+    for part in _parts(words):
         kinds = [line for line, pattern in LINES.items() if pattern.search(part)]
         if kinds and PLACED.search(part):
             return None
         found.update(kinds[:1])
     return found.pop() if len(found) == 1 else None
+
+
+def _parts(words: str) -> list[str]:
+    return re.split(r"[.,;:!?\n]", plain(words))
 
 
 def _has_centre_line(road: Brief) -> bool:
