@@ -68,11 +68,14 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
         arms = tuple(
             ArmDesign(
                 angle=angle,
-                length=None if number == taken else round(float(rng.uniform(least, most)), 1),
+                # one-way arms are long, so that there is room for an arrow
+                length=None
+                if n == taken
+                else round(most if one_way[n] else float(rng.uniform(least, most)), 1),
                 control=clause.control if clause.all_way else None,
-                one_way=one_way[number],
+                one_way=one_way[n],
             )
-            for number, angle in enumerate(angles)
+            for n, angle in enumerate(angles)
         )
         radius = ceil(10 * _radius(clause, angles, rng, haste)) / 10
         if kind == "roundabout" and radius < smallest_radius(np.radians([-180.0, *angles]).tolist()):

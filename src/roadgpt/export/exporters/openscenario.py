@@ -1,10 +1,15 @@
-"""Exports roads as ASAM OpenSCENARIO XML 1.2: a scenario on the road, and a drive as a trajectory.
+"""Exports roads and routes as ASAM OpenSCENARIO XML 1.2: a scenario on the road or in the network, and a
+drive as a trajectory.
 
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855).
 """
 
+from bisect import bisect_right
+from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
+from statistics import mean
 
 import numpy as np
 from shapely.geometry import LineString
@@ -14,6 +19,7 @@ from roadgpt.export.exporters.opendrive import ROAD, OpenDrive
 from roadgpt.export.markup import Value, XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 EGO = "Ego"
@@ -25,10 +31,13 @@ DECIMALS = 6
 
 
 class OpenScenario:
-    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows the right lane, or replays its recorded drive."""
+    """ASAM OpenSCENARIO 1.2 with OpenDRIVE: the car follows its lane or route, or replays its recorded
+    drive.
+    """
 
     name = "openscenario"
     suffix = ".xosc"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario, an OpenDRIVE file with the road, and, if there is a drive, NAME.drive.xosc,
@@ -45,8 +54,10 @@ class OpenScenario:
 
 def scenario(road: Road, world: World, map_: str) -> XmlElement:
     """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
-    the road.
+    the road or of the route.
     """
+    if isinstance(road, Route):
+        return _along_route(road, world, map_)
     profile = calm_profile(road, world, start_of(road))
     # stations are those of the rear axle
     start, end = max(start_of(road) + CAR.rear_axle, 0.0), goal_of(road) + CAR.rear_axle
@@ -54,30 +65,71 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
         world, map_, "A car drives the right lane from the start of the road to its end."
     )
     lane = -1 - world.profile_of(road).driven
-    actions.add("PrivateAction").add("TeleportAction").extended(_in_lane(lane, start))
+    _start(actions, [_in_lane(lane, s) for s in (start, road.length)])
+    _act(story, "drive").extended(_profile(profile))
+    along = {"coordinateSystem": "road", "relativeDistanceType": "longitudinal"}
+    _stop_at(root, _in_lane(lane, road.length), road.length - end, along, profile)
+    return root
+
+
+def _along_route(route: Route, world: World, map_: str) -> XmlElement:
+    """Returns a scenario in which the car drives a route through a network. Its waypoints are the start, the
+    middle of each lane that it follows, and the end.
+    """
+    profile = calm_profile(route, world, start_of(route))
+    root, actions, story = _frame(world, map_, "A car drives a route through a network of roads.")
+    middles = [mean(both) for both in pairwise(route.starts)]
+    places = (max(start_of(route) + CAR.rear_axle, 0.0), *middles[1:-1], route.length)
+    waypoints = [_on_route(route, s) for s in places]
+    _start(actions, waypoints)
+    _act(story, "drive").extended(_profile(profile))
+    straight = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
+    left = route.length - goal_of(route) - CAR.rear_axle
+    _stop_at(root, waypoints[-1], left, straight, profile)
+    return root
+
+
+def _on_route(route: Route, s: float) -> XmlElement:
+    """Returns the position in the lane of a route at a station of the route."""
+    number = min(max(bisect_right(route.starts, s) - 1, 0), len(route.legs) - 1)
+    leg = route.legs[number]
+    first = next(n for n in range(number, -1, -1) if n == 0 or route.legs[n - 1].road != leg.road)
+    member = route.network.road(leg.road)
+    along = min(s - route.starts[first], member.road.length)
+    is_along = member.profile.leads_along(leg.lane)
+    return _in_lane(leg.lane, along if is_along else member.road.length - along, leg.road)
+
+
+def _start(actions: XmlElement, waypoints: Sequence[XmlElement]) -> None:
+    """Puts the car at the first of some positions, at rest, and gives it a route along all of them."""
+    actions.add("PrivateAction").add("TeleportAction").extended(waypoints[0])
     actions.add("PrivateAction").extended(_speed(0.0))
     route = actions.add("PrivateAction").add("RoutingAction").add("AssignRouteAction")
     points = route.add("Route", {"name": "to the end", "closed": "false"})
-    for s in (start, road.length):
-        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(_in_lane(lane, s))
-    _act(story, "drive").extended(_profile(profile))
+    for waypoint in waypoints:
+        points.add("Waypoint", {"routeStrategy": "shortest"}).extended(waypoint)
+
+
+def _stop_at(
+    root: XmlElement, end: XmlElement, near: float, measured: dict[str, str], profile: SpeedProfile
+) -> None:
+    """Ends the scenario where the car is nearer to a position than ``near`` metres, or drives for too long.
+
+    ``measured`` holds the attributes that say how the distance is measured.
+    """
     reached = XmlElement("EntityCondition")
-    reached.add(
-        "DistanceCondition",
-        {
-            "value": round(road.length - end, DECIMALS),
-            "freespace": "false",
-            "rule": "lessThan",
-            "coordinateSystem": "road",
-            "relativeDistanceType": "longitudinal",
-        },
-    ).extended(_in_lane(lane, road.length))
+    told: dict[str, Value] = {
+        "value": round(near, DECIMALS),
+        "freespace": "false",
+        "rule": "lessThan",
+        **measured,
+    }
+    reached.add("DistanceCondition", told).extended(end)
     ego = XmlElement("ByEntityCondition")
     ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
     ego.extended(reached)
     most = round(float(profile.time[-1]) + PATIENCE, DECIMALS)
     _stop(root, {"the end is near": ego, "too long": _after(most)})
-    return root
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
@@ -214,9 +266,9 @@ def _profile(profile: SpeedProfile) -> XmlElement:
     return out
 
 
-def _in_lane(lane: int, s: float) -> XmlElement:
+def _in_lane(lane: int, s: float, road: int = ROAD) -> XmlElement:
     out = XmlElement("Position")
-    out.add("LanePosition", {"roadId": str(ROAD), "laneId": str(lane), "s": s, "offset": 0})
+    out.add("LanePosition", {"roadId": str(road), "laneId": str(lane), "s": s, "offset": 0})
     return out
 
 

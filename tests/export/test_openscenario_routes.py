@@ -1,0 +1,100 @@
+"""OpenSCENARIO of routes: ASAM's checker finds nothing, and the waypoints lead along the route in the map."""
+
+import json
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from itertools import pairwise
+from pathlib import Path
+from xml.sax.saxutils import quoteattr
+
+import pytest
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.design import draft
+from roadgpt.export import save
+from roadgpt.network import Route, made_from
+from roadgpt.road import Site, World
+
+WORLD = World(site=Site(map_size=700))
+PLANS = [
+    "t_junction left // roundabout exit=2 // | up",
+    "| lanes=2 against=2 // lane_change left // crossroads left lights",
+    "merge ramp // | motorway",
+    "crossroads straight in=left // t_junction right || left_hand",
+    "map columns=3 rows=2",
+    "map columns=2 rows=2 dead_ends=0 || left_hand",
+    "turn left | divided lanes=2 against=2",
+]
+
+
+def saved(line: str, seed: int, folder: Path) -> Route:
+    route = made_from(draft(read_plan(line), WORLD, seed=seed), WORLD)
+    assert isinstance(route, Route)
+    save(route, folder, ["openscenario"], WORLD, "x")
+    return route
+
+
+@pytest.mark.parametrize("line", PLANS)
+def test_asams_checker_finds_nothing(line: str, tmp_path: Path) -> None:
+    saved(line, 1, tmp_path)
+    settings, result = tmp_path / "settings.xml", tmp_path / "result.xqar"
+    settings.write_text(
+        f'<Config><Param name="InputFile" value={quoteattr(str(tmp_path / "x.xosc"))}/>'
+        '<CheckerBundle application="xoscBundle">'
+        f'<Param name="resultFile" value={quoteattr(str(result))}/></CheckerBundle></Config>'
+    )
+    checker = [sys.executable, "-W", "ignore", "-m", "qc_openscenario.main", "-c", str(settings)]
+    subprocess.run(checker, capture_output=True, check=True)
+    root = ET.parse(result).getroot()
+    assert [issue.get("description") for issue in root.iter("Issue")] == []
+    assert {each.get("status") for each in root.iter("Checker")} == {"completed"}
+
+
+@pytest.mark.parametrize("line", PLANS)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_the_waypoints_lead_along_the_route(line: str, seed: int, tmp_path: Path) -> None:
+    saved(line, seed, tmp_path)
+    scenario = ET.parse(tmp_path / "x.xosc").getroot()
+    map_ = ET.parse(tmp_path / scenario.find("RoadNetwork/LogicFile").attrib["filepath"]).getroot()
+    roads = {road.get("id"): road for road in map_.iter("road")}
+    start, *ways, end = [place.attrib for place in scenario.iter("LanePosition")]
+    assert start == ways[0]
+    assert end == ways[-1]
+    legs = json.loads((tmp_path / "x.route.json").read_text())["route"]
+    last = [] if len(legs) > 1 else legs
+    assert [[int(way["roadId"]), int(way["laneId"])] for way in ways] == [*legs, *last]
+    for way in ways:
+        road = roads[way["roadId"]]
+        assert 0 <= float(way["s"]) <= float(road.get("length"))
+        ids = {lane.get("id") for lane in road.iter("lane") if lane.get("type") == "driving"}
+        assert way["laneId"] in ids
+
+
+@pytest.mark.parametrize("line", [line for line in PLANS if "//" in line or "map" in line])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_the_car_starts_far_from_where_its_road_ends_and_stops_at_the_end_of_the_last(
+    line: str, seed: int, tmp_path: Path
+) -> None:
+    saved(line, seed, tmp_path)
+    scenario = ET.parse(tmp_path / "x.xosc").getroot()
+    map_ = ET.parse(tmp_path / "x.xodr").getroot()
+    roads = {road.get("id"): road for road in map_.iter("road")}
+    ways = [place.attrib for place in scenario.iter("LanePosition")][1:-1]
+    first, last = roads[ways[0]["roadId"]], roads[ways[-1]["roadId"]]
+
+    def leaves_at_its_end(road: ET.Element, other: ET.Element) -> bool:
+        """Whether the successor of a road is another one, or the junction in which that one lies."""
+        link = road.find("link/successor")
+        if link is None:
+            return False
+        name = "junction" if link.get("elementType") == "junction" else "id"
+        return link.get("elementId") == other.get(name)
+
+    following = [roads[a] for a in (way["roadId"] for way in ways) if a != ways[0]["roadId"]]
+    before = [roads[a] for a in (way["roadId"] for way in ways) if a != ways[-1]["roadId"]]
+    at, length = float(ways[0]["s"]), float(first.get("length"))
+    assert (at if leaves_at_its_end(first, following[0]) else length - at) < 5
+    at, length = float(ways[-1]["s"]), float(last.get("length"))
+    assert at == pytest.approx(0 if leaves_at_its_end(last, before[-1]) else length)
+    assert all(one != two for one, two in pairwise(ways))
