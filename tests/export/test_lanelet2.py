@@ -10,7 +10,7 @@ import pytest
 from exported import ROADS, WORLD
 from roadgpt.export import save
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.road import Road
+from roadgpt.road import CrossSection, Road, World
 
 NEAR = [name for name in ROADS if name != "far away"]  # the others leave the UTM zone's middle
 
@@ -109,3 +109,20 @@ def test_everything_that_is_referred_to_is_there_with_its_height(tmp_path: Path,
     ).T
     s, t = road.locate(x, y)
     assert np.abs(road.at(s, t)[:, 2] - z).max() < 2e-3
+
+
+def test_every_centre_line_has_its_tags(tmp_path: Path) -> None:
+    shown = {}
+    for line in ("solid", "broken", "double", "none"):
+        world = World(section=CrossSection(centre_line=line))
+        (file,) = save(ROADS["short"], tmp_path / line, ["lanelet2"], world)
+        tags = [
+            {each.get("k"): each.get("v") for each in way.iter("tag")} for way in ET.parse(file).iter("way")
+        ]
+        shown[line] = tags[1]
+    assert shown == {
+        "solid": {"type": "line_thin", "subtype": "solid"},
+        "broken": {"type": "line_thin", "subtype": "dashed"},
+        "double": {"type": "line_thin", "subtype": "solid_solid"},
+        "none": {"type": "virtual"},
+    }

@@ -1,9 +1,11 @@
-"""Divides the lanes of a road into lanelets, for formats that describe roads as chains of lanelets.
+"""Divides the lanes of a road or of a network into lanelets, for formats that describe roads as chains of
+lanelets.
 
 Lanelets that lie side by side share the line between them. Consecutive lanelets of a lane share their end
 points. A lane is left out of the sections in which it has no width.
 """
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +13,15 @@ import numpy as np
 from roadgpt.export.edges import lines, stations
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Network, RoadEnd, Route
 from roadgpt.road import Profile, Road, World
-from roadgpt.road.profile import Marking
+from roadgpt.road.profile import Lane, Marking
 
 LENGTH = 50.0  # m, approximate length of a section
 LEAST = 1.0  # m, minimum length of a section
 DECIMALS = 4  # of a metre
 THIN = 0.05  # m; a lane that is nowhere wider in a section is left out of it
+ONLY = 0  # the number of a road that is no part of a network
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,23 +34,150 @@ class LaneletBound:
 
 @dataclass(frozen=True, eq=False)
 class LaneletSection:
-    """The driving lanes between two stations, from right to left.
-
-    Lanes are numbered as in OpenDRIVE: -1, -2, ... to the right of the centre line, where they run along the
-    road, and 1, 2, ... to the left, where they run against it.
-    """
+    """The driving lanes between two stations, from right to left. Lanes have their ids of OpenDRIVE."""
 
     start: float
     end: float
     lanes: tuple[int, ...]
     bounds: tuple[LaneletBound, ...]
-    """The bounds of the lanes from right to left. There is one more bound than there are lanes."""
+    """The bounds of the lanes from right to left. There is one more bound than there are lanes, and another
+    one if there is a median.
+    """
+    places: tuple[int, ...]
+    """For each lane, the index of its right bound; its left bound is the next one."""
 
     def bounds_of(self, lane: int) -> tuple[LaneletBound, LaneletBound]:
-        """Returns the bounds of a lane: the one towards the centre line, and the outer one."""
-        place = self.lanes.index(lane)
-        right, left = self.bounds[place], self.bounds[place + 1]
-        return (left, right) if lane < 0 else (right, left)
+        """Returns the bounds of a lane on the right and on the left, as seen along the road."""
+        place = self.places[self.lanes.index(lane)]
+        return self.bounds[place], self.bounds[place + 1]
+
+
+@dataclass(frozen=True, eq=False)
+class Lanelet:
+    """A piece of a lane, as seen by those who drive on it."""
+
+    id: int
+    road: int
+    """The id of its road."""
+    lane: int
+    """The id of its lane."""
+    section: int
+    """The index of its section of the road."""
+    left: LaneletBound
+    right: LaneletBound
+    is_along: bool
+    """Whether the points of its bounds are in the order in which one passes them."""
+    before: tuple[int, ...]
+    """The ids of the lanelets from which one comes."""
+    after: tuple[int, ...]
+    """The ids of the lanelets to which one goes on."""
+    beside: tuple[tuple[int, bool] | None, tuple[int, bool] | None]
+    """The lanelets on the left and on the right: the id, and whether traffic drives there in the same
+    direction.
+    """
+
+
+def lanelets_of(road: Road, world: World) -> list[Lanelet]:
+    """Returns the lanelets of a road, or of the whole network of a route, road by road.
+
+    Raises:
+        ExportError: A road has a number that is not finite.
+    """
+    roads = {each.id: each.road for each in road.network.roads} if isinstance(road, Route) else {ONLY: road}
+    pieces = _NumberedLanelets(roads, world)
+    joined = dict(_joined(pieces, road.network)) if isinstance(road, Route) else {}
+    return list(pieces.lanelets(joined))
+
+
+class _NumberedLanelets:
+    """The sections of some roads, and the id of each lanelet by road, section and lane."""
+
+    def __init__(self, roads: Mapping[int, Road], world: World) -> None:
+        self.sections = {number: lanelet_sections(road, world) for number, road in roads.items()}
+        self.profiles = {number: world.profile_of(road) for number, road in roads.items()}
+        places = [
+            (road, n, lane)
+            for road, sections in self.sections.items()
+            for lane in self._lanes(road)
+            for n, each in enumerate(sections)
+            if lane in each.lanes
+        ]
+        self.ids = {place: number for number, place in enumerate(places, 1)}
+
+    def _lanes(self, road: int) -> list[int]:
+        """Returns the ids of the driving lanes of a road, first of those that lead along it."""
+        profile = self.profiles[road]
+        return [*profile.along_ids, *profile.against_ids]
+
+    def at(self, end: RoadEnd, lane: int) -> int | None:
+        """Returns the id of the lanelet of a lane at one end of a road; None if it has no width there."""
+        last = len(self.sections[end.road]) - 1
+        return self.ids.get((end.road, 0 if end.contact == "start" else last, lane))
+
+    def lanelets(self, joined: Mapping[tuple[int, int], None]) -> Iterator[Lanelet]:
+        """Yields the lanelets, lane by lane in the order in which they are driven.
+
+        ``joined`` holds the pairs of ids of lanelets that follow each other from one road to another.
+        """
+        before, after = dict[int, list[int]](), dict[int, list[int]]()
+        for one, other in joined:
+            after.setdefault(one, []).append(other)
+            before.setdefault(other, []).append(one)
+        for road, sections in self.sections.items():
+            for lane in self._lanes(road):
+                is_along = self.profiles[road].leads_along(lane)
+                step = 1 if is_along else -1
+                for n in range(len(sections))[::step]:
+                    number = self.ids.get((road, n, lane))
+                    if number is None:
+                        continue
+                    own = [self.ids.get((road, n + way, lane)) for way in (-step, step)]
+                    right, left = sections[n].bounds_of(lane)
+                    yield Lanelet(
+                        number,
+                        road,
+                        lane,
+                        n,
+                        left if is_along else right,
+                        right if is_along else left,
+                        is_along,
+                        tuple([own[0]] if own[0] else before.get(number, ())),
+                        tuple([own[1]] if own[1] else after.get(number, ())),
+                        (self._beside(road, n, lane, step), self._beside(road, n, lane, -step)),
+                    )
+
+    def _beside(self, road: int, n: int, lane: int, step: int) -> tuple[int, bool] | None:
+        """Returns the lanelet that shares a bound with another one, and whether it leads in its direction.
+
+        ``step`` is 1 for the one on the left as seen along the road, -1 for the one on its right.
+        """
+        section, profile = self.sections[road][n], self.profiles[road]
+        at = section.lanes.index(lane)
+        if not 0 <= at + step < len(section.lanes):
+            return None
+        if section.places[at + step] != section.places[at] + step:  # behind a median
+            return None
+        other = section.lanes[at + step]
+        return self.ids[road, n, other], profile.leads_along(other) == profile.leads_along(lane)
+
+
+def _joined(pieces: _NumberedLanelets, network: Network) -> Iterator[tuple[tuple[int, int], None]]:
+    """Yields the pairs of ids of lanelets that follow each other from one road to another."""
+    pairs: list[tuple[int | None, int | None]] = []
+    for junction in network.junctions:
+        for way in junction.connections:
+            start, end = RoadEnd(way.road, "start"), RoadEnd(way.road, "end")
+            for link in way.lanes:
+                pairs.append((pieces.at(way.incoming, link.incoming), pieces.at(start, link.own)))
+                pairs.append((pieces.at(end, link.own), pieces.at(way.outgoing, link.outgoing)))
+    for each in network.continuations:
+        for one, other in each.lanes:
+            pair = pieces.at(each.before, one), pieces.at(each.after, other)
+            is_along = one in network.road(each.before.road).ids_towards(each.before.contact)
+            pairs.append(pair if is_along else pair[::-1])
+    for one_, other_ in pairs:
+        if one_ is not None and other_ is not None:
+            yield (one_, other_), None
 
 
 def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
@@ -69,8 +200,8 @@ def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:
 
 def _with_ends_of_lanes(cuts: Array, profile: Profile) -> Array:
     """Adds the stations at which a lane begins or ends."""
-    forward, backward = profile.count
-    widths = [lane.width for lane in (*profile.right[:forward], *profile.left[:backward])]
+    lanes = [lane for side in (profile.right, profile.left) for lane in side if lane.kind == "driving"]
+    widths = [lane.width for lane in lanes]
     for width in (width for width in widths if isinstance(width, CubicProfile)):
         ends = [s for s in width.stations if abs(float(width.height(s))) < THIN / 10]
         for s in (s for s in ends if np.abs(cuts - s).min() > LEAST and cuts[0] < s < cuts[-1]):
@@ -79,21 +210,36 @@ def _with_ends_of_lanes(cuts: Array, profile: Profile) -> Array:
 
 
 def _section(road: Road, profile: Profile, s: Array) -> LaneletSection:
-    forward, backward = profile.count
-    left, right = profile.lane_edges(s)
-    edges = {-n: t for n, t in enumerate(right[:forward], 1)}
-    edges |= {0: np.zeros(len(s))} | dict(enumerate(left[:backward], 1))
-    marks = {-n: lane.marking for n, lane in enumerate(profile.right[:forward], 1)}
-    marks |= {0: profile.centre_marking} | {n: lane.marking for n, lane in enumerate(profile.left, 1)}
-    lanes = [
-        lane
-        for lane in [*range(-forward, 0), *range(1, backward + 1)]
-        if np.abs(edges[lane] - edges[lane - int(np.sign(lane))]).max() > THIN
-    ]
-    kept = [*(lane for lane in lanes if lane < 0), 0, *(lane for lane in lanes if lane > 0)]
-    made = lines(road, s, [edges[lane] for lane in kept])
+    edges, begin = profile.lane_edges(s), profile.sides(s)
+    left_ids, right_ids = profile.along_ids, profile.against_ids
+    if not profile.left_hand:
+        left_ids, right_ids = right_ids, left_ids
+    left = _wide(left_ids, profile.left, edges[0], begin.left)
+    right = _wide(right_ids, profile.right, edges[1], begin.right)
+    centre = [(profile.centre_marking, begin.right)]
+    if profile.median:
+        centre.append((profile.centre_marking, begin.left))
+    rows = [*(row[1:] for row in right[::-1]), *centre, *(row[1:] for row in left)]
+    made = lines(road, s, [offsets for _, offsets in rows])
     bounds = [
-        LaneletBound(np.round(points, DECIMALS) + 0.0, marks[lane])
-        for points, lane in zip(made, kept, strict=True)
+        LaneletBound(np.round(points, DECIMALS) + 0.0, marking)
+        for points, (marking, _) in zip(made, rows, strict=True)
     ]
-    return LaneletSection(float(s[0]), float(s[-1]), tuple(lanes), tuple(bounds))
+    lanes = [row[0] for row in (*right[::-1], *left)]
+    first_left = len(right) + len(centre) - 1
+    places = [*range(len(right)), *range(first_left, first_left + len(left))]
+    return LaneletSection(float(s[0]), float(s[-1]), tuple(lanes), tuple(bounds), tuple(places))
+
+
+def _wide(
+    ids: range, lanes: tuple[Lane, ...], edges: list[Array], begin: Array
+) -> list[tuple[int, Marking, Array]]:
+    """Returns the driving lanes of one side that have a width, from the centre line outwards: the id, the
+    marking and the offsets of the outer edge.
+    """
+    inner = [begin, *edges]
+    return [
+        (lane, lanes[n].marking, edges[n])
+        for n, lane in enumerate(ids)
+        if np.abs(edges[n] - inner[n]).max() > THIN
+    ]

@@ -1,28 +1,44 @@
-"""Exports roads as Lanelet2 maps (.osm) with heights: a chain of lanelets for each lane.
+"""Exports roads and networks as Lanelet2 maps (.osm) with heights: a chain of lanelets for each lane.
 
 Source: Lanelet2, documentation of its primitives and tags; F. Poggenhans et al., Lanelet2: A High-Definition
 Map Framework for the Future of Automated Driving, ITSC 2018. Lanelet2's usual UTM projector converts
 the geographic coordinates back to the metres of the map.
 """
 
-from itertools import count
+from collections.abc import Iterator
+from itertools import count, groupby
+from math import cos, sin
 from pathlib import Path
 
+import numpy as np
+
+from roadgpt.brief.junctions import Control
 from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import lanelet_sections
+from roadgpt.export.lanelets import Lanelet, LaneletBound, lanelets_of
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Arm, Network, Route
+from roadgpt.network.markings import place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
 
 UTM_SCALE = 0.9996  # of lengths in the middle of a UTM zone
 DEGREE_DECIMALS = 12  # a tenth of a micrometre
-TAGS = {
+SAME = 0.01  # m, within which the ends of bounds of two roads are one point
+TAGS: dict[Marking, dict[str, str]] = {
     "solid": {"type": "line_thin", "subtype": "solid"},
     "broken": {"type": "line_thin", "subtype": "dashed"},
+    "double": {"type": "line_thin", "subtype": "solid_solid"},
     "none": {"type": "virtual"},
 }
+SIGNS: dict[Control, dict[str, str]] = {
+    "stop": {"type": "traffic_sign", "subtype": "de206"},
+    "yield": {"type": "traffic_sign", "subtype": "de205"},
+    "priority": {"type": "traffic_sign", "subtype": "de306"},
+    "lights": {"type": "traffic_light", "subtype": "red_yellow_green"},
+}
+SIGN_WIDTH, SIGN_HEIGHT = 0.6, 2.0  # m: width, and height of the lower edge above the road
 KEEP = {"visible": "true", "version": "1"}  # editors of OpenStreetMap refuse files without these
 
 
@@ -31,6 +47,7 @@ class Lanelet2:
 
     name = "lanelet2"
     suffix = ".osm"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the map. ``poses`` is ignored, because Lanelet2 cannot hold a drive."""
@@ -45,42 +62,76 @@ def document(road: Road, world: World) -> XmlElement:
     Raises:
         ExportError: The road has a number that is not finite.
     """
-    map_ = _MapBuilder()
-    limit = f"{world.limits.speed_limit * 3.6:.6g} km/h"
-    for section in lanelet_sections(road, world):
-        ways = {bound: map_.way(bound.points, bound.marking) for bound in section.bounds}
-        for lane in section.lanes:
-            inner, outer = section.bounds_of(lane)
-            map_.lanelet(ways[inner], ways[outer], limit)
+    map_ = _MapBuilder(f"{world.limits.speed_limit * 3.6:.6g} km/h")
+    lanelets = sorted(lanelets_of(road, world), key=lambda each: (each.road, each.section, each.lane))
+    ways: dict[LaneletBound, int] = {}
+    for _, section in groupby(lanelets, key=lambda each: (each.road, each.section)):
+        own = list(section)  # from right to left, as seen along the road
+        for each in own:
+            for bound in (each.right, each.left)[:: 1 if each.is_along else -1]:
+                if bound not in ways:
+                    ways[bound] = map_.way(bound.points, TAGS[bound.marking])
+        for each in own:
+            map_.lanelet(each.id, ways[each.left], ways[each.right])
+    if isinstance(road, Route):
+        for junction in road.network.junctions:
+            for arm in junction.arms:
+                map_.signal(road.network, arm, list(_last(lanelets, road.network, arm)))
     root = XmlElement("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
-    return root.extended(*map_.nodes, *map_.ways, *map_.lanelets)
+    return root.extended(*map_.nodes, *map_.ways, *map_.lanelets.values(), *map_.rules)
+
+
+def _last(lanelets: list[Lanelet], network: Network, arm: Arm) -> Iterator[Lanelet]:
+    """Yields the lanelets that lead into a junction on one of its arms, from the centre line outwards."""
+    for lane in network.road(arm.end.road).ids_towards(arm.end.contact):
+        own = [each for each in lanelets if (each.road, each.lane) == (arm.end.road, lane)]
+        yield from own[-1:] if arm.end.contact == "end" else own[:1]
 
 
 class _MapBuilder:
-    """Collects nodes, ways and lanelets, each with a number of its own."""
+    """Collects nodes, ways, lanelets and traffic rules, each with a number of its own."""
 
-    def __init__(self) -> None:
+    def __init__(self, limit: str) -> None:
         self.nodes: list[XmlElement] = []
         self.ways: list[XmlElement] = []
-        self.lanelets: list[XmlElement] = []
+        self.lanelets: dict[int, XmlElement] = {}
+        """The lanelets by the ids that ``lanelets_of`` gives them."""
+        self.rules: list[XmlElement] = []
+        self._limit = limit
         self._numbers = count(1)
-        self._ends: dict[tuple[float, ...], int] = {}
+        self._ends: list[tuple[tuple[float, ...], int]] = []
+        """The ends of all ways, each with its node."""
 
-    def way(self, points: Array, marking: Marking) -> int:
-        """Adds a way for the bound of a lane and returns its id.
+    def way(self, points: Array, tags: dict[str, str]) -> int:
+        """Adds a way and returns its id.
 
         Ways that begin or end at the same point share a node, so that they are connected.
         """
         first, last = (tuple(points[n].tolist()) for n in (0, -1))
-        known = [self._ends[first]] if first in self._ends else []
-        nodes = [*known, *self._add_nodes(points[len(known) :])]
-        self._ends.setdefault(first, nodes[0])
-        self._ends[last] = nodes[-1]
+        begun, ended = self._at(first), self._at(last)
+        inner = points[begun is not None : len(points) - (ended is not None)]
+        made = self._add_nodes(inner)
+        nodes = [*([] if begun is None else [begun]), *made, *([] if ended is None else [ended])]
+        if begun is None:
+            self._ends.append((first, nodes[0]))
+        if ended is None:
+            self._ends.append((last, nodes[-1]))
+        return self._way(nodes, tags)
+
+    def _at(self, point: tuple[float, ...]) -> int | None:
+        """Returns the node at the end of some way that lies at a point; None if there is none."""
+        if not self._ends:
+            return None
+        away = np.abs(np.array([place for place, _ in self._ends]) - point).max(axis=1)
+        nearest = int(away.argmin())
+        return self._ends[nearest][1] if away[nearest] <= SAME else None
+
+    def _way(self, nodes: list[int], tags: dict[str, str]) -> int:
         number = next(self._numbers)
         way = XmlElement("way", {"id": number, **KEEP})
         for node in nodes:
             way.add("nd", {"ref": node})
-        self.ways.append(_tagged(way, TAGS[marking]))
+        self.ways.append(_tagged(way, tags))
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
@@ -96,14 +147,43 @@ class _MapBuilder:
             self.nodes.append(_tagged(node, {"local_x": repr(x), "local_y": repr(y), "ele": repr(z)}))
         return numbers
 
-    def lanelet(self, left: int, right: int, limit: str) -> None:
-        """Adds the lanelet between two ways, given by their ids."""
+    def lanelet(self, id_: int, left: int, right: int) -> None:
+        """Adds the lanelet between two ways, given by their ids; ``id_`` is that of ``lanelets_of``."""
         lanelet = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})
         kind = {"type": "lanelet", "subtype": "road", "location": "nonurban", "region": "de"}
-        rules = {"one_way": "yes", "participant:vehicle": "yes", "speed_limit": limit}
-        self.lanelets.append(_tagged(lanelet, kind | rules))
+        rules = {"one_way": "yes", "participant:vehicle": "yes", "speed_limit": self._limit}
+        self.lanelets[id_] = _tagged(lanelet, kind | rules)
+
+    def signal(self, network: Network, arm: Arm, incoming: list[Lanelet]) -> None:
+        """Adds the sign or the light of an arm and the line before which one stops, as a rule for the
+        lanelets that lead into the junction.
+        """
+        if arm.control == "none" or not incoming:
+            return
+        member, contact = network.road(arm.end.road), arm.end.contact
+        s, t = place_of_sign(member, contact)
+        heading = float(member.road.heading(s))
+        foot = member.road.at(s, t) + (0.0, 0.0, SIGN_HEIGHT)
+        across = np.array([-sin(heading), cos(heading), 0.0]) * SIGN_WIDTH / 2
+        board = self._way(self._add_nodes(np.round([foot - across, foot + across], 4)), SIGNS[arm.control])
+        rule = XmlElement("relation", {"id": next(self._numbers), **KEEP})
+        rule.add("member", {"type": "way", "ref": board, "role": "refers"})
+        if arm.control != "priority":
+            edges = [
+                edge.points[-1 if contact == "end" else 0] for edge in (incoming[0].left, incoming[-1].right)
+            ]
+            line = self.way(np.array(edges), {"type": "stop_line"})
+            rule.add("member", {"type": "way", "ref": line, "role": "ref_line"})
+        kind = "traffic_light" if arm.control == "lights" else "traffic_sign"
+        self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": kind}))
+        for each in incoming:
+            # members stand before the tags
+            member_of = XmlElement(
+                "member", {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}
+            )
+            self.lanelets[each.id].children.insert(2, member_of)
 
 
 def _tagged(element: XmlElement, tags: dict[str, str]) -> XmlElement:

@@ -1,4 +1,5 @@
-"""Exports roads as CommonRoad scenarios (XML 2020a): lanelets, speed limit, and the task to reach the end.
+"""Exports roads and networks as CommonRoad scenarios (XML 2020a): lanelets, speed limit, signs, lights and
+intersections, and the task to reach the end.
 
 Source: CommonRoad, Documentation of the XML Format, version 2020a. The format can hold heights, but
 CommonRoad's planners, road boundaries and plots fail if points have heights (commonroad-io 2024.3), so no
@@ -11,12 +12,14 @@ from pathlib import Path
 import numpy as np
 
 from roadgpt.export.ego import calm_speed, start_of
+from roadgpt.export.exporters.commonroad.crossings import Crossings, point_element
 from roadgpt.export.georeference import LATITUDE, LONGITUDE
-from roadgpt.export.lanelets import LaneletSection, lanelet_sections
+from roadgpt.export.lanelets import ONLY, Lanelet, lanelets_of
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.export.poses import Poses
 from roadgpt.geometry import wrap_angle
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
 
@@ -32,6 +35,7 @@ class CommonRoad:
 
     name = "commonroad"
     suffix = ".cr.xml"
+    holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
         """Writes the scenario.
@@ -42,20 +46,16 @@ class CommonRoad:
 
 
 def document(road: Road, world: World) -> XmlElement:
-    """Returns the XML document: lanelets, traffic sign and planning problem.
+    """Returns the XML document: lanelets, signs, lights, intersections and planning problem.
 
-    Lanelets are numbered lane by lane: first the lanes in the direction of the road, from the centre line
-    outwards, then the oncoming lanes.
+    Lanelets are numbered road by road and lane by lane: first the lanes in the direction of the road, from
+    the centre line outwards, then the oncoming lanes.
 
     Raises:
-        ExportError: The road has a number that is not finite.
+        ExportError: A road has a number that is not finite.
     """
-    sections = lanelet_sections(road, world)
-    forward, backward = world.profile_of(road).count
-    lanes = [*range(-1, -forward - 1, -1), *range(1, backward + 1)]
-    places = [(n, lane) for lane in lanes for n, each in enumerate(sections) if lane in each.lanes]
-    ids = {place: number for number, place in enumerate(places, 1)}
-    sign = len(ids) + 1
+    lanelets = lanelets_of(road, world)
+    sign = len(lanelets) + 1
     root = XmlElement(
         "commonRoad",
         {
@@ -73,48 +73,49 @@ def document(road: Road, world: World) -> XmlElement:
     location.add("gpsLatitude", raw=number(LATITUDE))
     location.add("gpsLongitude", raw=number(LONGITUDE))
     root.add("scenarioTags").add("rural")
-    for lane in lanes:
-        for n in range(len(sections)) if lane < 0 else reversed(range(len(sections))):  # as they are driven
-            if (n, lane) in ids:
-                root.extended(_lanelet(ids, n, lane, sections[n], sign))
-    driven = -1 - world.profile_of(road).driven
-    goal = max(number for (_, lane), number in ids.items() if lane == driven)
+    junctions = Crossings(road.network, lanelets, sign + 2) if isinstance(road, Route) else None
+    for each in lanelets:
+        root.extended(_lanelet(each, sign, junctions))
     root.extended(_limit(sign, road.at(0.0, world.profile_of(road).edges(0.0).right), world))
-    root.extended(_problem(sign + 1, road, world, goal))
+    if junctions is not None:
+        root.extended(*junctions.elements())
+    root.extended(_problem(sign + 1, road, world, _goal(road, world, lanelets)))
     return root
 
 
-def _lanelet(
-    ids: Mapping[tuple[int, int], int], n: int, lane: int, section: LaneletSection, sign: int
-) -> XmlElement:
-    """Returns the lanelet of a lane in the n-th section, as seen in its direction of driving.
+def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
+    """Returns the id of the last lanelet of the lane that the tested car drives."""
+    if isinstance(road, Route):
+        number, lane = road.legs[-1]
+    else:
+        profile = world.profile_of(road)
+        number, lane = ONLY, profile.along_ids[profile.driven]
+    return [each.id for each in lanelets if (each.road, each.lane) == (number, lane)][-1]
 
-    Args:
-        ids: The ids of all lanelets by section and lane.
-        n: Index of the section.
-        lane: Number of the lane, as in OpenDRIVE.
-        section: The section.
-        sign: Id of the sign with the speed limit.
-    """
-    out = XmlElement("lanelet", {"id": ids[n, lane]})
-    way = 1 if lane < 0 else -1
-    for name, bound in zip(("leftBound", "rightBound"), section.bounds_of(lane), strict=True):
+
+def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlElement:
+    """Returns a lanelet as seen in its direction of driving; ``sign`` is the id of that with the limit."""
+    out = XmlElement("lanelet", {"id": lanelet.id})
+    for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
         element = out.add(name)
-        for point in bound.points[::way, :2].tolist():
-            element.extended(_point(point))
+        for point in bound.points[:: 1 if lanelet.is_along else -1, :2].tolist():
+            element.extended(point_element(point))
         element.add("lineMarking", raw=MARKS[bound.marking])
-    for name, place in (("predecessor", (n - way, lane)), ("successor", (n + way, lane))):
-        if place in ids:
-            out.add(name, {"ref": ids[place]})
-    at = section.lanes.index(lane)
-    for name, neighbour in (("adjacentLeft", at + way), ("adjacentRight", at - way)):
-        if 0 <= neighbour < len(section.lanes):
-            beside = section.lanes[neighbour]
-            direction = "same" if beside * lane > 0 else "opposite"
-            out.add(name, {"ref": ids[n, beside], "drivingDir": direction})
+    for name, others in (("predecessor", lanelet.before), ("successor", lanelet.after)):
+        for other in others:
+            out.add(name, {"ref": other})
+    for name, neighbour in zip(("adjacentLeft", "adjacentRight"), lanelet.beside, strict=True):
+        if neighbour is not None:
+            id_, is_same = neighbour
+            out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
+    line = junctions and junctions.line_of(lanelet.id)
+    if line:
+        out.add("stopLine").add("lineMarking", raw=line)
     out.add("laneletType", raw="country")
     out.add("userOneWay", raw="vehicle")
     out.add("trafficSignRef", {"ref": sign})
+    if junctions is not None:
+        out.extended(*junctions.references(lanelet.id))
     return out
 
 
@@ -123,7 +124,7 @@ def _limit(id_: int, place: Array, world: World) -> XmlElement:
     told = out.add("trafficSignElement")
     told.add("trafficSignID", raw=SPEED_LIMIT)
     told.add("additionalValue", raw=number(round(world.limits.speed_limit, 6)))
-    out.add("position").extended(_point(place[:2].tolist()))
+    out.add("position").extended(point_element(place[:2].tolist()))
     out.add("virtual", raw="true")
     return out
 
@@ -135,7 +136,7 @@ def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     place = np.round(road.at(start, world.profile_of(road).middle(start)), 6)
     out = XmlElement("planningProblem", {"id": id_})
     state = out.add("initialState")
-    state.add("position").extended(_point(place[:2].tolist()))
+    state.add("position").extended(point_element(place[:2].tolist()))
     heading = float(np.round(wrap_angle(road.heading(start)), 9))
     values = {"orientation": heading, "time": 0, "velocity": 0, "yawRate": 0, "slipAngle": 0}
     for name, value in values.items():
@@ -146,11 +147,4 @@ def _problem(id_: int, road: Road, world: World, goal: int) -> XmlElement:
     steps = int(np.ceil((PATIENCE * road.length / calm_speed(road, world) + 10.0) / STEP))
     time.add("intervalEnd", raw=str(steps))
     state.add("position").add("lanelet", {"ref": goal})
-    return out
-
-
-def _point(values: Sequence[float]) -> XmlElement:
-    out = XmlElement("point")
-    for name, value in zip("xy", values, strict=True):
-        out.add(name, raw=number(value))
     return out
