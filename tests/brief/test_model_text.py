@@ -56,6 +56,9 @@ def test_what_is_spelled_is_read_back(number: int, language: str) -> None:
         ("in metres and degrees: 100, L 30", [(100.0, ""), (30.0, "")]),
         ("lengths in yards; 50 m, then 40", [(50.0, "metres"), (40.0, "")]),
         ("3 turns, the 2nd left", []), ("once over the top", []), ("très serré", []),
+        ("cent mètres", [(100.0, "metres")]), ("a cien metros, T", [(100.0, "metres")]),
+        ("fra cento metri", [(100.0, "metres")]), ("mille mètres", [(1000.0, "metres")]),
+        ("due to rain", []), ("not a cent", []), ("ten per cent", [(10.0, "percent")]),
     ],
 )  # fmt: skip
 def test_numbers_become_slots_in_metres_percent_and_degrees(
