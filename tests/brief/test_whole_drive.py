@@ -68,6 +68,12 @@ def test_nothing_is_added_where_words_leave_a_choice(asked: str, words: str) -> 
     assert with_whole_drive(brief, words) == brief
 
 
+def test_a_one_way_road_that_the_route_takes_is_the_road_behind() -> None:
+    asked = read_plan("crossroads right in=left out=right // | up")
+    found = with_whole_drive(asked, "a cross street that is one-way from left to right; right, uphill")
+    assert found == read_plan("crossroads right in=left // | up oneway")
+
+
 def test_traffic_on_the_left_holds_for_routes_and_maps() -> None:
     for asked in (ROUTE, "map crossroads x3"):
         found = with_whole_drive(read_plan(asked), "we drive on the left")

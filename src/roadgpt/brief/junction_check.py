@@ -6,6 +6,7 @@ from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import (
     ACROSS,
     ARMS,
+    BENDS,
     LANE_KINDS,
     RAMPS,
     SIZES,
@@ -36,11 +37,19 @@ WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")
 SKEWEST = 70.0  # degrees; crossroads whose roads are less apart are skew
 ANGLES: dict[JunctionKind, Range] = {
     "t_junction": Range(55, 90),
-    "y_junction": Range(85, 120),
+    "y_junction": Range(90, 120),
     "crossroads": Range(40, 90),
-    "star": Range(50, 72),
+    "star": Range(40, 65),
 }
 """The angles in degrees that the two least distant arms of a junction can have."""
+TURNS: dict[JunctionKind, Range] = {
+    "t_junction": Range(55, 125),
+    "y_junction": Range(30, 90),
+    "crossroads": Range(40, 140),
+    "star": Range(30, 140),
+    "junction": Range(30, 140),
+}
+"""The angles in degrees by which a route can turn to one side."""
 FIXED_ARMS: dict[JunctionKind, int] = {
     kind: int(arms.lo) for kind, arms in ARMS.items() if arms.lo == arms.hi and kind not in RAMPS
 }
@@ -223,6 +232,13 @@ def _check_one_way_arms(junction: JunctionClause) -> None:
         raise BriefError(
             f"the route goes {junction.take}, where a one-way road comes towards it; change one of them"
         )
+    if junction.take in junction.only_out:
+        raise BriefError(
+            f"the route goes {junction.take}, so that road is one-way if the road behind the junction is; "
+            "write oneway there and leave out away"
+        )
+    if len(one_way) > ARMS[junction.kind].lo - 2:
+        raise BriefError(f"at a {junction.name}, {len(one_way)} one-way roads leave no way on; ask for fewer")
     if {*junction.only_in} & {*junction.ways}:
         raise BriefError(
             "a side has a one-way road towards the junction and is a way on; leave one of them out"
@@ -241,9 +257,13 @@ def _check_angles(junction: JunctionClause) -> None:
         )
     if junction.skew and not _meets(junction.angle, Range(hi=SKEWEST)):
         raise BriefError(f"skew crossroads have an angle below {SKEWEST:g} degrees, not {junction.angle}")
-    if not _meets(junction.degrees, Range(0, 180)):
+    if junction.degrees is not None and junction.take == "straight":
+        raise BriefError("straight on, the route turns by few degrees; leave deg out, or go left or right")
+    turns = TURNS.get(junction.kind, Range())
+    turns = overlap(turns, BENDS.get((junction.take or "").partition("_")[0])) or turns
+    if not _meets(junction.degrees, turns):
         raise BriefError(
-            f"the route turns by 0 to 180 degrees at a junction, not {junction.degrees}; change it"
+            f"at a {name}, the route turns by {turns} degrees, not {junction.degrees}; change it"
         )
 
 

@@ -11,6 +11,7 @@ from roadgpt.brief.amount import span
 from roadgpt.brief.junction_check import ANGLES, MOST_ARMS_OF_MINI
 from roadgpt.brief.junctions import (
     ARMS,
+    SIDE,
     SIZES,
     JunctionClause,
     PlainKind,
@@ -34,10 +35,13 @@ STUBS = (20.0, 35.0)  # m, of the arms on which the route does not go on
 SHORT_STUB = 17.0  # m, where there is little room
 STRAIGHT = 14.0  # degrees, that an arm straight ahead may be off
 CLEAR = 40.0  # degrees, least turn of an arm to the left or right
+SLIGHTEST = SIDE + 3  # degrees, the same where angles are required
 ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off their usual directions
 SKEW = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
+WIDE_FORK = (87.0, 153.0)  # degrees, the same where angles are required
 STAR = 50.0  # degrees, least gap of a star junction
+NARROW_STAR = 38.0  # degrees, the same where angles are required
 EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
 USUALLY_MOST = 5.0  # arms of a roundabout, where the description does not say how many
 RING_GAP = 55.0  # degrees, least gap of a roundabout
@@ -132,9 +136,10 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
         across = float(rng.uniform(90 - ACROSS, 90 + ACROSS))
         return [across - 180, _near(0.0, ACROSS / 2, rng), across]
     if clause.kind == "y_junction":
-        left, right = (float(gap) for gap in rng.uniform(*FORK, size=2))
-        while not FORK[0] <= 360 - left - right <= FORK[1]:
-            left, right = (float(gap) for gap in rng.uniform(*FORK, size=2))
+        gaps = FORK if clause.degrees is None and clause.angle is None else WIDE_FORK
+        left, right = (float(gap) for gap in rng.uniform(*gaps, size=2))
+        while not gaps[0] <= 360 - left - right <= gaps[1]:
+            left, right = (float(gap) for gap in rng.uniform(*gaps, size=2))
         return [-180 + right, 180 - left]
     return _around(clause, rng)
 
@@ -174,6 +179,8 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     if count == 4 and clause.kind == "roundabout":
         return [_near(angle, ACROSS, rng) for angle in (-90.0, 0.0, 90.0)]
     least = STAR if clause.kind == "star" else RING_GAP
+    if clause.kind == "star" and (clause.degrees or clause.angle) is not None:
+        least = NARROW_STAR
     gaps = least + (360 - count * least) * rng.dirichlet(np.full(count, EVEN))
     return [-180 + float(angle) for angle in np.cumsum(gaps)[:-1]]
 
@@ -181,7 +188,7 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
 def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     """Returns whether no arm is too near to another, and all arms lead where they are required."""
     apart = all(b - a >= ASTERN + 1 for a, b in pairwise([-180.0, *angles, 180.0]))
-    unclear = [angle for angle in angles if STRAIGHT < abs(angle) < CLEAR]
+    unclear = [angle for angle in angles if STRAIGHT < abs(angle) < _clear(clause)]
     is_clear = clause.kind in ("roundabout", "star", "y_junction") or not unclear
     sides, asked = [side_of(angle) for angle in angles], (*clause.only_in, *clause.only_out)
     if clause.ways and clause.kind != "crossroads":
@@ -189,6 +196,11 @@ def _has_ways(clause: JunctionClause, angles: Sequence[float]) -> bool:
     else:
         has_ways = {*clause.ways, *asked} <= {*sides}
     return apart and is_clear and has_ways and _has_angle(clause, angles)
+
+
+def _clear(clause: JunctionClause) -> float:
+    """Returns the least turn in degrees of an arm that leads to the left or right."""
+    return CLEAR if clause.degrees is None and clause.angle is None else SLIGHTEST
 
 
 def _has_angle(clause: JunctionClause, angles: Sequence[float]) -> bool:
@@ -241,11 +253,14 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
         found = {"left": len(angles) - 1, "right": 0}.get(side)
         return found if found is not None and bends_as(take, angles[found]) else None
     sides = [side_of(angle) for angle in angles]
-    lefts = [n for n, angle in enumerate(angles) if angle > CLEAR]
-    rights = [n for n, angle in enumerate(angles) if angle < -CLEAR]
+    lefts = [n for n, angle in enumerate(angles) if angle > _clear(clause)]
+    rights = [n for n, angle in enumerate(angles) if angle < -_clear(clause)]
     if take == "straight":
         ahead = [n for n, angle in enumerate(angles) if abs(angle) <= STRAIGHT]
         return ahead[0] if len(ahead) == 1 else None
+    if take in ("left", "right") and clause.degrees is not None:
+        same = [n for n, angle in enumerate(angles) if sides[n] == take and _turns(clause, angle)]
+        return same[0] if same else None
     if take in ("left", "right"):
         same = lefts if take == "left" else rights
         return same[0] if len(same) == 1 and sides.count(take) == 1 else None

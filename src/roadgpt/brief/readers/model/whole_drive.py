@@ -4,6 +4,7 @@ that cars from the right go first.
 
 import re
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.left_hand import NEGATED, says_left_hand
 from roadgpt.brief.model import Brief, CentreLine
@@ -79,11 +80,12 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     A single road is returned as it is. A centre line is added where the words say one kind of line and no
     place, no part of the plan has a line, and on every road that has oncoming traffic on the same
     carriageway. Lines and lanes of some roads are those of all roads where the words say so. Junctions where
-    cars from the right go first get no sign to give way.
+    cars from the right go first get no sign to give way. A one-way road on which the route goes on is that
+    of the road behind the junction.
     """
     if not brief.junctions and brief.map is None:
         return brief
-    brief = _without_signs(brief, words)
+    brief = _with_one_way_behind(_without_signs(brief, words))
     line = None if any(each.centre for each in brief.stretches) else _line_said(words)
     roads = tuple(
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
@@ -95,6 +97,20 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
             "stretches": _alike(roads, words),
         }
     )
+
+
+def _with_one_way_behind(brief: Brief) -> Brief:
+    """Returns the Brief with one-way roads behind junctions at which the route takes a road that is said to
+    lead away only.
+    """
+    junctions, roads = list(brief.junctions), list(brief.stretches)
+    for n, each in enumerate(junctions):
+        if each.take in each.only_out:
+            rest = tuple(side for side in each.only_out if side != each.take)
+            junctions[n] = each.model_copy(update={"only_out": rest})
+            if roads[n + 1].against is None:
+                roads[n + 1] = roads[n + 1].model_copy(update={"against": exactly(0)})
+    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
 
 
 def _alike(roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
