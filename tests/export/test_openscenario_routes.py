@@ -8,6 +8,7 @@ from itertools import pairwise
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
+import numpy as np
 import pytest
 
 from roadgpt.brief.plan import read_plan
@@ -24,6 +25,7 @@ PLANS = [
     "crossroads straight in=left // t_junction right || left_hand",
     "map columns=3 rows=2",
     "map columns=2 rows=2 dead_ends=0 || left_hand",
+    "roundabout back",
     "turn left | divided lanes=2 against=2",
 ]
 
@@ -69,6 +71,18 @@ def test_the_waypoints_lead_along_the_route(line: str, seed: int, tmp_path: Path
         assert 0 <= float(way["s"]) <= float(road.get("length"))
         ids = {lane.get("id") for lane in road.iter("lane") if lane.get("type") == "driving"}
         assert way["laneId"] in ids
+
+
+def test_a_route_that_ends_beside_its_start_is_driven(tmp_path: Path) -> None:
+    route = saved("roundabout back", 1, tmp_path)
+    assert np.hypot(*(route.at(route.length) - route.at(0.0))[:2]) < 1
+    groups = ET.parse(tmp_path / "x.xosc").getroot().findall("Storyboard/StopTrigger/ConditionGroup")
+    near, late = ([each.tag for each in group.iter()] for group in groups)
+    assert "DistanceCondition" in near
+    assert "TraveledDistanceCondition" in near
+    assert "SimulationTimeCondition" in late
+    (driven,) = groups[0].iter("TraveledDistanceCondition")
+    assert 20 < float(driven.attrib["value"]) < route.length - 10
 
 
 @pytest.mark.parametrize("line", [line for line in PLANS if "//" in line or "map" in line])

@@ -5,7 +5,7 @@ Lanelets that lie side by side share the line between them. Consecutive lanelets
 points. A lane is left out of the sections in which it has no width.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,6 +71,8 @@ class Lanelet:
     """The ids of the lanelets from which one comes."""
     after: tuple[int, ...]
     """The ids of the lanelets to which one goes on."""
+    is_followed_on_road: bool
+    """Whether its lane goes on in the next section of its road."""
     beside: tuple[tuple[int, bool] | None, tuple[int, bool] | None]
     """The lanelets on the left and on the right: the id, and whether traffic drives there in the same
     direction.
@@ -85,8 +87,17 @@ def lanelets_of(road: Road, world: World) -> list[Lanelet]:
     """
     roads = {each.id: each.road for each in road.network.roads} if isinstance(road, Route) else {ONLY: road}
     pieces = _NumberedLanelets(roads, world)
-    joined = dict(_joined(pieces, road.network)) if isinstance(road, Route) else {}
+    joined = _joined(pieces, road.network) if isinstance(road, Route) else []
     return list(pieces.lanelets(joined))
+
+
+def leading_to(lanelets: Iterable[Lanelet], network: Network, end: RoadEnd) -> list[Lanelet]:
+    """Returns the last lanelet of each lane that leads towards one end of a road, from the centre line
+    outwards.
+    """
+    ids = network.road(end.road).ids_towards(end.contact)
+    last = {each.lane: each for each in lanelets if each.road == end.road and not each.is_followed_on_road}
+    return [last[lane] for lane in ids if lane in last]
 
 
 class _NumberedLanelets:
@@ -114,7 +125,7 @@ class _NumberedLanelets:
         last = len(self.sections[end.road]) - 1
         return self.ids.get((end.road, 0 if end.contact == "start" else last, lane))
 
-    def lanelets(self, joined: Mapping[tuple[int, int], None]) -> Iterator[Lanelet]:
+    def lanelets(self, joined: Iterable[tuple[int, int]]) -> Iterator[Lanelet]:
         """Yields the lanelets, lane by lane in the order in which they are driven.
 
         ``joined`` holds the pairs of ids of lanelets that follow each other from one road to another.
@@ -143,6 +154,7 @@ class _NumberedLanelets:
                         is_along,
                         tuple([own[0]] if own[0] else before.get(number, ())),
                         tuple([own[1]] if own[1] else after.get(number, ())),
+                        own[1] is not None,
                         (self._beside(road, n, lane, step), self._beside(road, n, lane, -step)),
                     )
 
@@ -161,8 +173,8 @@ class _NumberedLanelets:
         return self.ids[road, n, other], profile.leads_along(other) == profile.leads_along(lane)
 
 
-def _joined(pieces: _NumberedLanelets, network: Network) -> Iterator[tuple[tuple[int, int], None]]:
-    """Yields the pairs of ids of lanelets that follow each other from one road to another."""
+def _joined(pieces: _NumberedLanelets, network: Network) -> list[tuple[int, int]]:
+    """Returns the pairs of ids of lanelets that follow each other from one road to another."""
     pairs: list[tuple[int | None, int | None]] = []
     for junction in network.junctions:
         for way in junction.connections:
@@ -171,13 +183,11 @@ def _joined(pieces: _NumberedLanelets, network: Network) -> Iterator[tuple[tuple
                 pairs.append((pieces.at(way.incoming, link.incoming), pieces.at(start, link.own)))
                 pairs.append((pieces.at(end, link.own), pieces.at(way.outgoing, link.outgoing)))
     for each in network.continuations:
-        for one, other in each.lanes:
-            pair = pieces.at(each.before, one), pieces.at(each.after, other)
-            is_along = one in network.road(each.before.road).ids_towards(each.before.contact)
+        for before, after in each.lanes:
+            pair = pieces.at(each.before, before), pieces.at(each.after, after)
+            is_along = before in network.road(each.before.road).ids_towards(each.before.contact)
             pairs.append(pair if is_along else pair[::-1])
-    for one_, other_ in pairs:
-        if one_ is not None and other_ is not None:
-            yield (one_, other_), None
+    return [(one, other) for one, other in pairs if one is not None and other is not None]
 
 
 def lanelet_sections(road: Road, world: World) -> list[LaneletSection]:

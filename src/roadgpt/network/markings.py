@@ -144,10 +144,7 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
     if arm.crosswalk:
         for stripe in _stripes(network.road(arm.end.road), arm.end.contact):
             yield PaintedStroke("crosswalk", STRIPE, stripe)
-    if arm.control in ("priority", "none"):
-        return
-    ring = network.roundabout_of.get(junction.id)
-    line = _across(network, arm) if ring is None else _around(network, junction, arm, ring)
+    line = line_to_stop_at(network, junction, arm)
     if line is None:
         return
     if arm.control != "yield":
@@ -155,6 +152,16 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
         return
     for block in _blocks(line):
         yield PaintedStroke("give_way", STOP_LINE, block)
+
+
+def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:
+    """Returns the middle ``(n, 3)`` of the line at which traffic from an arm stops or gives way, in metres;
+    None if it does neither, or if no road leads from the arm into a roundabout.
+    """
+    if arm.control in ("priority", "none"):
+        return None
+    ring = network.roundabout_of.get(junction.id)
+    return _across(network, arm) if ring is None else _around(network, junction, arm, ring)
 
 
 def _across(network: Network, arm: Arm) -> Array:

@@ -5,21 +5,20 @@ Map Framework for the Future of Automated Driving, ITSC 2018. Lanelet2's usual U
 the geographic coordinates back to the metres of the map.
 """
 
-from collections.abc import Iterator
 from itertools import count, groupby
-from math import cos, sin
+from math import cos, pi, sin
 from pathlib import Path
 
 import numpy as np
 
 from roadgpt.brief.junctions import Control
 from roadgpt.export.georeference import degrees
-from roadgpt.export.lanelets import Lanelet, LaneletBound, lanelets_of
+from roadgpt.export.lanelets import LaneletBound, lanelets_of, leading_to
 from roadgpt.export.markup import XmlElement
 from roadgpt.export.poses import Poses
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Arm, Network, Route
-from roadgpt.network.markings import place_of_sign
+from roadgpt.network import Arm, Junction, Network, Route
+from roadgpt.network.markings import line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
 
@@ -36,9 +35,10 @@ SIGNS: dict[Control, dict[str, str]] = {
     "stop": {"type": "traffic_sign", "subtype": "de206"},
     "yield": {"type": "traffic_sign", "subtype": "de205"},
     "priority": {"type": "traffic_sign", "subtype": "de306"},
-    "lights": {"type": "traffic_light", "subtype": "red_yellow_green"},
+    "lights": {"type": "traffic_light", "subtype": "red_yellow_green", "height": "0.9"},
 }
 SIGN_WIDTH, SIGN_HEIGHT = 0.6, 2.0  # m: width, and height of the lower edge above the road
+Cell = tuple[int, int]
 KEEP = {"visible": "true", "version": "1"}  # editors of OpenStreetMap refuse files without these
 
 
@@ -76,16 +76,11 @@ def document(road: Road, world: World) -> XmlElement:
     if isinstance(road, Route):
         for junction in road.network.junctions:
             for arm in junction.arms:
-                map_.signal(road.network, arm, list(_last(lanelets, road.network, arm)))
+                incoming = leading_to(lanelets, road.network, arm.end)
+                if incoming and arm.control != "none":
+                    map_.signal(road.network, junction, arm, [each.id for each in incoming])
     root = XmlElement("osm", {"version": "0.6", "generator": "RoadGPT", "upload": "false"})
     return root.extended(*map_.nodes, *map_.ways, *map_.lanelets.values(), *map_.rules)
-
-
-def _last(lanelets: list[Lanelet], network: Network, arm: Arm) -> Iterator[Lanelet]:
-    """Yields the lanelets that lead into a junction on one of its arms, from the centre line outwards."""
-    for lane in network.road(arm.end.road).ids_towards(arm.end.contact):
-        own = [each for each in lanelets if (each.road, each.lane) == (arm.end.road, lane)]
-        yield from own[-1:] if arm.end.contact == "end" else own[:1]
 
 
 class _MapBuilder:
@@ -99,32 +94,33 @@ class _MapBuilder:
         self.rules: list[XmlElement] = []
         self._limit = limit
         self._numbers = count(1)
-        self._ends: list[tuple[tuple[float, ...], int]] = []
-        """The ends of all ways, each with its node."""
+        self._ends: dict[Cell, list[tuple[Array, int]]] = {}
+        """The ends of all ways, each with its node, by the cell of a grid in which they lie."""
 
     def way(self, points: Array, tags: dict[str, str]) -> int:
         """Adds a way and returns its id.
 
         Ways that begin or end at the same point share a node, so that they are connected.
         """
-        first, last = (tuple(points[n].tolist()) for n in (0, -1))
-        begun, ended = self._at(first), self._at(last)
+        begun, ended = self._at(points[0]), self._at(points[-1])
         inner = points[begun is not None : len(points) - (ended is not None)]
         made = self._add_nodes(inner)
         nodes = [*([] if begun is None else [begun]), *made, *([] if ended is None else [ended])]
-        if begun is None:
-            self._ends.append((first, nodes[0]))
-        if ended is None:
-            self._ends.append((last, nodes[-1]))
+        for known, point, node in ((begun, points[0], nodes[0]), (ended, points[-1], nodes[-1])):
+            if known is None:
+                self._ends.setdefault(_cell(point), []).append((point, node))
         return self._way(nodes, tags)
 
-    def _at(self, point: tuple[float, ...]) -> int | None:
+    def _at(self, point: Array) -> int | None:
         """Returns the node at the end of some way that lies at a point; None if there is none."""
-        if not self._ends:
-            return None
-        away = np.abs(np.array([place for place, _ in self._ends]) - point).max(axis=1)
-        nearest = int(away.argmin())
-        return self._ends[nearest][1] if away[nearest] <= SAME else None
+        cells = {_cell(point + (x, y, 0)) for x in (-SAME, SAME) for y in (-SAME, SAME)}
+        near = [
+            (float(np.abs(place - point).max()), node)
+            for cell in cells
+            for place, node in self._ends.get(cell, ())
+        ]
+        away, node = min(near, default=(2 * SAME, 0))
+        return node if away <= SAME else None
 
     def _way(self, nodes: list[int], tags: dict[str, str]) -> int:
         number = next(self._numbers)
@@ -156,26 +152,20 @@ class _MapBuilder:
         rules = {"one_way": "yes", "participant:vehicle": "yes", "speed_limit": self._limit}
         self.lanelets[id_] = _tagged(lanelet, kind | rules)
 
-    def signal(self, network: Network, arm: Arm, incoming: list[Lanelet]) -> None:
-        """Adds the sign or the light of an arm and the line before which one stops, as a rule for the
-        lanelets that lead into the junction.
+    def signal(self, network: Network, junction: Junction, arm: Arm, incoming: list[int]) -> None:
+        """Adds the sign or the light of an arm and the line at which one stops, as a rule for the lanelets
+        that lead into the junction, which are given by their ids of ``lanelets_of``.
         """
-        if arm.control == "none" or not incoming:
-            return
-        member, contact = network.road(arm.end.road), arm.end.contact
-        s, t = place_of_sign(member, contact)
-        heading = float(member.road.heading(s))
-        foot = member.road.at(s, t) + (0.0, 0.0, SIGN_HEIGHT)
-        across = np.array([-sin(heading), cos(heading), 0.0]) * SIGN_WIDTH / 2
-        board = self._way(self._add_nodes(np.round([foot - across, foot + across], 4)), SIGNS[arm.control])
+        member, heading = network.road(arm.end.road), arm.direction + pi
+        foot = member.road.at(*place_of_sign(member, arm.end.contact)) + (0.0, 0.0, SIGN_HEIGHT)
+        to_left = np.array([-sin(heading), cos(heading), 0.0]) * SIGN_WIDTH / 2  # as drivers see it
+        board = self._way(self._add_nodes(np.round([foot + to_left, foot - to_left], 4)), SIGNS[arm.control])
         rule = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         rule.add("member", {"type": "way", "ref": board, "role": "refers"})
-        if arm.control != "priority":
-            edges = [
-                edge.points[-1 if contact == "end" else 0] for edge in (incoming[0].left, incoming[-1].right)
-            ]
-            line = self.way(np.array(edges), {"type": "stop_line"})
-            rule.add("member", {"type": "way", "ref": line, "role": "ref_line"})
+        line = line_to_stop_at(network, junction, arm)
+        if line is not None:
+            way = self._way(self._add_nodes(np.round(line, 4)), {"type": "stop_line"})
+            rule.add("member", {"type": "way", "ref": way, "role": "ref_line"})
         kind = "traffic_light" if arm.control == "lights" else "traffic_sign"
         self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": kind}))
         for each in incoming:
@@ -183,7 +173,12 @@ class _MapBuilder:
             member_of = XmlElement(
                 "member", {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}
             )
-            self.lanelets[each.id].children.insert(2, member_of)
+            self.lanelets[each].children.insert(2, member_of)
+
+
+def _cell(point: Array) -> Cell:
+    """Returns the cell of a grid in plan view in which a point lies."""
+    return int(np.floor(point[0])), int(np.floor(point[1]))
 
 
 def _tagged(element: XmlElement, tags: dict[str, str]) -> XmlElement:

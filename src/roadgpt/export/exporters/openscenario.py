@@ -6,7 +6,7 @@ on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855
 """
 
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from statistics import mean
@@ -74,7 +74,7 @@ def scenario(road: Road, world: World, map_: str) -> XmlElement:
 
 def _along_route(route: Route, world: World, map_: str) -> XmlElement:
     """Returns a scenario in which the car drives a route through a network. Its waypoints are the start, the
-    middle of each lane that it follows, and the end.
+    middle of each lane between the first and the last, and the end.
     """
     profile = calm_profile(route, world, start_of(route))
     root, actions, story = _frame(world, map_, "A car drives a route through a network of roads.")
@@ -85,7 +85,10 @@ def _along_route(route: Route, world: World, map_: str) -> XmlElement:
     _act(story, "drive").extended(_profile(profile))
     straight = {"coordinateSystem": "entity", "relativeDistanceType": "euclidianDistance"}
     left = route.length - goal_of(route) - CAR.rear_axle
-    _stop_at(root, waypoints[-1], left, straight, profile)
+    # a route that turns back ends beside its start
+    driven = XmlElement("EntityCondition")
+    driven.add("TraveledDistanceCondition", {"value": round(route.length / 2, DECIMALS)})
+    _stop_at(root, waypoints[-1], left, straight, profile, {"half of it is driven": _of_ego(driven)})
     return root
 
 
@@ -111,9 +114,15 @@ def _start(actions: XmlElement, waypoints: Sequence[XmlElement]) -> None:
 
 
 def _stop_at(
-    root: XmlElement, end: XmlElement, near: float, measured: dict[str, str], profile: SpeedProfile
+    root: XmlElement,
+    end: XmlElement,
+    near: float,
+    measured: dict[str, str],
+    profile: SpeedProfile,
+    also: Mapping[str, XmlElement] | None = None,
 ) -> None:
-    """Ends the scenario where the car is nearer to a position than ``near`` metres, or drives for too long.
+    """Ends the scenario where the car is nearer to a position than ``near`` metres and other conditions hold,
+    or where it drives for too long.
 
     ``measured`` holds the attributes that say how the distance is measured.
     """
@@ -125,11 +134,15 @@ def _stop_at(
         **measured,
     }
     reached.add("DistanceCondition", told).extended(end)
-    ego = XmlElement("ByEntityCondition")
-    ego.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
-    ego.extended(reached)
     most = round(float(profile.time[-1]) + PATIENCE, DECIMALS)
-    _stop(root, {"the end is near": ego, "too long": _after(most)})
+    _stop(root, {"the end is near": _of_ego(reached), **(also or {})}, {"too long": _after(most)})
+
+
+def _of_ego(condition: XmlElement) -> XmlElement:
+    """Returns a condition for the car."""
+    out = XmlElement("ByEntityCondition")
+    out.add("TriggeringEntities", {"triggeringEntitiesRule": "any"}).add("EntityRef", {"entityRef": EGO})
+    return out.extended(condition)
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
@@ -223,17 +236,19 @@ def _act(story: XmlElement, name: str, begin: float = 0.0) -> XmlElement:
     return action
 
 
-def _stop(root: XmlElement, conditions: dict[str, XmlElement]) -> None:
+def _stop(root: XmlElement, *groups: Mapping[str, XmlElement]) -> None:
     (board,) = (child for child in root.children if child.name == "Storyboard")
-    board.extended(_trigger("StopTrigger", conditions))
+    board.extended(_trigger("StopTrigger", *groups))
 
 
-def _trigger(name: str, conditions: dict[str, XmlElement]) -> XmlElement:
-    """Returns a trigger for which any of the conditions is enough."""
+def _trigger(name: str, *groups: Mapping[str, XmlElement]) -> XmlElement:
+    """Returns a trigger for which it is enough that all conditions of one group hold."""
     out = XmlElement(name)
-    for said, condition in conditions.items():
-        told: dict[str, Value] = {"name": said, "delay": 0, "conditionEdge": "none"}
-        out.add("ConditionGroup").add("Condition", told).extended(condition)
+    for conditions in groups:
+        group = out.add("ConditionGroup")
+        for said, condition in conditions.items():
+            told: dict[str, Value] = {"name": said, "delay": 0, "conditionEdge": "none"}
+            group.add("Condition", told).extended(condition)
     return out
 
 

@@ -76,7 +76,9 @@ def document(road: Road, world: World) -> XmlElement:
     junctions = Crossings(road.network, lanelets, sign + 2) if isinstance(road, Route) else None
     for each in lanelets:
         root.extended(_lanelet(each, sign, junctions))
-    root.extended(_limit(sign, road.at(0.0, world.profile_of(road).edges(0.0).right), world))
+    edges = world.profile_of(road).edges(0.0)
+    side = edges.left if world.profile_of(road).left_hand else edges.right
+    root.extended(_limit(sign, road.at(0.0, side), world))
     if junctions is not None:
         root.extended(*junctions.elements())
     root.extended(_problem(sign + 1, road, world, _goal(road, world, lanelets)))
@@ -108,9 +110,8 @@ def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlEle
         if neighbour is not None:
             id_, is_same = neighbour
             out.add(name, {"ref": id_, "drivingDir": "same" if is_same else "opposite"})
-    line = junctions and junctions.line_of(lanelet.id)
-    if line:
-        out.add("stopLine").add("lineMarking", raw=line)
+    if junctions is not None:
+        out.extended(*junctions.line_of(lanelet.id))
     out.add("laneletType", raw="country")
     out.add("userOneWay", raw="vehicle")
     out.add("trafficSignRef", {"ref": sign})

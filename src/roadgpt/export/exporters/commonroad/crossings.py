@@ -8,11 +8,13 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from math import degrees
 
-from roadgpt.brief.junctions import Control, Way, side_of
-from roadgpt.export.lanelets import Lanelet
+import numpy as np
+
+from roadgpt.brief.junctions import SIDE, Control, Way, side_of
+from roadgpt.export.lanelets import Lanelet, leading_to
 from roadgpt.export.markup import XmlElement, number
-from roadgpt.network import Arm, Junction, Network
-from roadgpt.network.markings import place_of_sign
+from roadgpt.network import Arm, Connection, Junction, Network
+from roadgpt.network.markings import line_to_stop_at, place_of_sign
 
 SIGNS: dict[Control, str] = {"yield": "205", "stop": "206", "priority": "306"}
 LINES: dict[Control, str] = {"yield": "dashed", "stop": "solid", "lights": "solid"}
@@ -34,41 +36,47 @@ class Crossings:
 
     def __init__(self, network: Network, lanelets: Sequence[Lanelet], first_free: int) -> None:
         """Gives ids to signs, lights and intersections, from ``first_free`` on."""
-        self.network, self.lanelets = network, lanelets
-        self.first_free = first_free
+        self.network, self.first_free = network, first_free
+        self.road_of = {each.id: each.road for each in lanelets}
         self.arms = [
             (junction, arm, incoming)
             for junction in network.junctions
             for arm in junction.arms
-            if (incoming := self._incoming(arm))
+            if (incoming := leading_to(lanelets, network, arm.end))
         ]
 
-    def _incoming(self, arm: Arm) -> list[Lanelet]:
-        """Returns the lanelets that lead into a junction on one of its arms."""
-        ids = self.network.road(arm.end.road).ids_towards(arm.end.contact)
-        own = [each for each in self.lanelets if each.road == arm.end.road and each.lane in ids]
-        last = {each.lane: each for each in own}  # lanelets stand in the order in which they are driven
-        return list(last.values())
-
     @cached_property
-    def _signed(self) -> dict[int, tuple[int, Control]]:
-        """The id and kind of the sign or light that holds for each lanelet with one."""
-        signed = [(arm, incoming) for _, arm, incoming in self.arms if arm.control != "none"]
+    def _signed(self) -> dict[int, tuple[int, Junction, Arm]]:
+        """For each lanelet with a sign or light, the id of that, and the arm at which it stands."""
+        signed = [each for each in self.arms if each[1].control != "none"]
         return {
-            lanelet.id: (self.first_free + n, arm.control)
-            for n, (arm, incoming) in enumerate(signed)
+            lanelet.id: (self.first_free + n, junction, arm)
+            for n, (junction, arm, incoming) in enumerate(signed)
             for lanelet in incoming
         }
 
-    def line_of(self, lanelet: int) -> str | None:
-        """Returns the marking of the line at which traffic on a lanelet stops or gives way; None for none."""
-        return LINES.get(self._signed.get(lanelet, (0, "none"))[1])
+    def line_of(self, lanelet: int) -> Iterator[XmlElement]:
+        """Yields the line at which traffic on a lanelet stops or gives way, if there is one. At a roundabout
+        it is the end of the lanelet.
+        """
+        if lanelet not in self._signed:
+            return
+        _, junction, arm = self._signed[lanelet]
+        line = line_to_stop_at(self.network, junction, arm)
+        if line is None:
+            return
+        out = XmlElement("stopLine")
+        if junction.id not in self.network.roundabout_of:
+            out.extended(*(point_element(each) for each in np.round(line[:, :2], 4).tolist()))
+        out.add("lineMarking", raw=LINES[arm.control])
+        yield out
 
     def references(self, lanelet: int) -> Iterator[XmlElement]:
         """Yields the reference of a lanelet to its sign or light; nothing if it has none."""
         if lanelet in self._signed:
-            id_, control = self._signed[lanelet]
-            yield XmlElement("trafficLightRef" if control == "lights" else "trafficSignRef", {"ref": id_})
+            id_, _, arm = self._signed[lanelet]
+            name = "trafficLightRef" if arm.control == "lights" else "trafficSignRef"
+            yield XmlElement(name, {"ref": id_})
 
     def elements(self) -> Iterator[XmlElement]:
         """Yields the signs, the lights and the intersections, in the order that the format asks for."""
@@ -90,21 +98,26 @@ class Crossings:
         for lanelet in incoming:
             out.add("incomingLanelet", {"ref": lanelet.id})
         to: dict[Way, list[int]] = {side: [] for side in ORDER}
-        sides = {
-            each.road: self._side(each.road) for each in junction.connections if each.incoming == arm.end
-        }
-        by_id = {each.id: each for each in self.lanelets}
+        ways = [each for each in junction.connections if each.incoming == arm.end]
+        sides = {each.road: self._side(junction, each) for each in ways}
         for lanelet in incoming:
             for id_ in lanelet.after:
-                to[sides[by_id[id_].road]].append(id_)
+                to[sides[self.road_of[id_]]].append(id_)
         for side in ORDER:
             for id_ in to[side]:
                 out.add(f"successors{side.capitalize()}", {"ref": id_})
         return out
 
-    def _side(self, connecting: int) -> Way:
-        road = self.network.road(connecting).road
-        return side_of(degrees(float(road.heading(road.length) - road.heading(0.0))))
+    def _side(self, junction: Junction, way: Connection) -> Way:
+        """Returns the side to which a way leads; those that stay on a ring lead straight on, and a ramp leads
+        to its side however little it turns.
+        """
+        ring = self.network.roundabout_of.get(junction.id)
+        if ring is not None and {way.incoming.road, way.outgoing.road} <= {*ring.ring}:
+            return "straight"
+        road = self.network.road(way.road).road
+        turn = degrees(float(road.heading(road.length) - road.heading(0.0)))
+        return side_of(turn * SIDE if junction.kind == "diverge" and abs(turn) > 1 else turn)
 
     def _place(self, arm: Arm) -> XmlElement:
         member = self.network.road(arm.end.road)
@@ -124,7 +137,6 @@ class Crossings:
         phase = cycle.add("cycleElement")
         phase.add("duration", raw=str(GREEN))
         phase.add("color", raw="green")
-        cycle.add("timeOffset", raw="0")
         out.extended(cycle, self._place(arm))
         out.add("direction", raw="all")
         out.add("active", raw="true")
