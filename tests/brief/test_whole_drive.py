@@ -61,11 +61,26 @@ def test_what_holds_all_the_way_is_on_every_road(asked: str, words: str, line: s
         ("| lanes=2 // crossroads // | lanes=3", "lanes all the way: two, then three"),
         ("| lanes=2 // crossroads", "two lanes for the whole 200 m before the crossroads"),
         ("| lanes=2 // crossroads // | up", "two lanes, a crossroads, uphill throughout"),
+        (
+            "| lanes=3 oneway // diverge ramp // | up",
+            "three lanes of motorway all the way, the exit",
+        ),
+        ("| lanes=3 // lane_drop //", "three lanes all the way, one ends"),
+        ("| lanes=2 // crossroads // | up", "a small road with two lanes, the crossroads, uphill"),
+        ("| lanes=2 // crossroads // | up", "not two lanes everywhere, only before the crossroads"),
+        ("| lanes=2 // crossroads //", "zwei Spuren mit durchgehender Linie, dann die Kreuzung"),
+        ("| oneway // crossroads // | up", "a one-way street, a crossroads, uphill, narrow lanes everywhere"),
     ],
 )
 def test_nothing_is_added_where_words_leave_a_choice(asked: str, words: str) -> None:
     brief = read_plan(asked)
     assert with_whole_drive(brief, words) == brief
+
+
+def test_a_line_is_on_the_roads_that_can_have_it() -> None:
+    asked = read_plan("| centre=solid // crossroads straight // | oneway // crossroads left // | up")
+    found = with_whole_drive(asked, "overtaking is forbidden everywhere")
+    assert [road.centre for road in found.stretches] == ["solid", None, "solid"]
 
 
 def test_a_one_way_road_that_the_route_takes_is_the_road_behind() -> None:

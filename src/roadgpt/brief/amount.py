@@ -56,6 +56,12 @@ def span(amount: Amount | None) -> Range:
     return Range(-inf if lo is None else lo, inf if hi is None else hi)
 
 
+def meets(amount: Amount | None, possible: Range) -> bool:
+    """Returns whether an amount allows a number of a range; None allows every number."""
+    own = span(amount)
+    return max(own.lo, possible.lo) <= min(own.hi, possible.hi)
+
+
 def figure(number: float) -> str:
     """Formats a number with at most four decimals and no trailing zeros."""
     return f"{number:.4f}".rstrip("0").rstrip(".")

@@ -1,12 +1,14 @@
 """Finds contradictions and impossible requirements in the junctions of a Brief, and says what to change."""
 
+from math import isfinite
 from typing import TYPE_CHECKING
 
-from roadgpt.brief.amount import Amount, span
+from roadgpt.brief.amount import Amount, meets, span
+from roadgpt.brief.arm_check import check_arms
+from roadgpt.brief.junction_plan import word_of
 from roadgpt.brief.junctions import (
     ACROSS,
     ARMS,
-    BENDS,
     LANE_KINDS,
     RAMPS,
     SIZES,
@@ -32,24 +34,6 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "lane_change": ("left", "right"),
 }
 """The ways on that a kind of junction has; every way on is possible at the others."""
-WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")
-"""The kinds of junctions at which arms that the route does not take can be one-way."""
-SKEWEST = 70.0  # degrees; crossroads whose roads are less apart are skew
-ANGLES: dict[JunctionKind, Range] = {
-    "t_junction": Range(55, 90),
-    "y_junction": Range(90, 120),
-    "crossroads": Range(40, 90),
-    "star": Range(40, 65),
-}
-"""The angles in degrees that the two least distant arms of a junction can have."""
-TURNS: dict[JunctionKind, Range] = {
-    "t_junction": Range(55, 125),
-    "y_junction": Range(30, 90),
-    "crossroads": Range(40, 140),
-    "star": Range(30, 140),
-    "junction": Range(30, 140),
-}
-"""The angles in degrees by which a route can turn to one side."""
 FIXED_ARMS: dict[JunctionKind, int] = {
     kind: int(arms.lo) for kind, arms in ARMS.items() if arms.lo == arms.hi and kind not in RAMPS
 }
@@ -87,9 +71,11 @@ def check_junction(junction: JunctionClause) -> None:
             f"a mini roundabout is too small for {junction.arms} arms, it has room for {MOST_ARMS_OF_MINI}; "
             "ask for a normal one, or for fewer arms"
         )
-    if not _meets(junction.lanes, Range(1, 2)):
+    if not meets(junction.lanes, Range(1, 2)):
         raise BriefError(f"the ring of a roundabout has one or two lanes, not {junction.lanes}; change it")
-    if (junction.side or junction.length or junction.taper) and junction.kind not in (*RAMPS, *LANE_KINDS):
+    if junction.taper is not None and junction.kind not in RAMPS:
+        raise BriefError(f"a {name} has no taper, only a merge or an exit has; remove taper=")
+    if (junction.side or junction.length) and junction.kind not in (*RAMPS, *LANE_KINDS):
         raise BriefError(
             f"a {name} has no side and no length; give the length with the road before or behind it"
         )
@@ -103,10 +89,10 @@ def check_junction(junction: JunctionClause) -> None:
     if junction.skew and junction.kind != "crossroads":
         raise BriefError(f"only crossroads are skew, not a {name}; leave it out")
     _check_diameter(junction)
-    _check_one_way_arms(junction)
-    _check_angles(junction)
+    check_arms(junction)
 
 
+LENGTHS = Range(10, 1500)  # m, of a lane for acceleration or deceleration, and of tapers
 OF_LANES = ("kind", "take", "side", "length", "taper")
 """The fields that merges, exits and places where lanes change can have."""
 
@@ -116,12 +102,11 @@ def _check_fields_of_lanes(junction: JunctionClause) -> None:
     usual = JunctionClause(kind=junction.kind)
     for field in JunctionClause.model_fields:
         if field not in OF_LANES and getattr(junction, field) != getattr(usual, field):
-            raise BriefError(f"a {junction.name} has no {field.replace('_', ' ')}; leave it out")
-    if junction.taper is not None and junction.kind in LANE_KINDS:
-        raise BriefError(
-            f"a {junction.name} has no taper; give the length in which it ends or begins as len, or leave it "
-            "out"
-        )
+            raise BriefError(f"a {junction.name} has no {word_of(field)}; leave it out")
+    is_short = junction.kind in RAMPS and span(junction.length).hi < LENGTHS.lo  # see check_lane_sequence
+    for word, metres in (("len", None if is_short else junction.length), ("taper", junction.taper)):
+        if not meets(metres, LENGTHS):
+            raise BriefError(f"{word} of a {junction.name} is {LENGTHS} m, not {metres} m; change it")
     if junction.kind == "lane_change" and (junction.side or junction.length):
         raise BriefError(
             "a lane change goes left or right, and its length is not asked for; leave side and len out"
@@ -155,7 +140,7 @@ def _check_take(junction: JunctionClause, name: str) -> None:
     if not ways:
         return
     arms = ARMS[junction.kind]
-    least = 1 if junction.kind == "crossroads" else arms.lo - 1
+    least = 1 if junction.kind == "crossroads" else arms.lo - 1 - len(junction.only_in)
     needed = Range(least, arms.hi - 1)
     if len(ways) not in needed or len(set(ways)) != len(ways) or (possible and not {*ways} <= {*possible}):
         raise BriefError(f"a {name} has {needed} different ways on, other than {' and '.join(ways)}")
@@ -169,11 +154,11 @@ def check_lanes(brief: "Brief") -> None:
     Raises:
         BriefError: A road cannot have them; the message says what to change.
     """
-    if not _meets(brief.lanes, Range(1, MOST_LANES)):
+    if not meets(brief.lanes, Range(1, MOST_LANES)):
         raise BriefError(
             f"a road has 1 to {MOST_LANES} lanes in each direction, not {brief.lanes}; change it"
         )
-    if not _meets(brief.against, Range(0, MOST_LANES)):
+    if not meets(brief.against, Range(0, MOST_LANES)):
         raise BriefError(f"a road has 0 to {MOST_LANES} oncoming lanes, not {brief.against}; change it")
     if brief.against is not None and span(brief.against).hi == 0 and (brief.divided or brief.centre):
         raise BriefError("a one-way road has no oncoming lanes, so leave its median or centre line out")
@@ -186,10 +171,10 @@ def check_map(asked: MapClause) -> None:
         BriefError: No such map can be built; the message says what to change.
     """
     for blocks in (asked.columns, asked.rows):
-        if not _meets(blocks, Range(1, MOST_BLOCKS)):
+        if not meets(blocks, Range(1, MOST_BLOCKS)):
             raise BriefError(f"a grid has 1 to {MOST_BLOCKS} blocks a side, not {blocks}; change it")
     for each in asked.junctions:
-        if not _meets(each.count, Range(1, MOST_OF_KIND)):
+        if not meets(each.count, Range(1, MOST_OF_KIND)):
             raise BriefError(
                 f"a map has 1 to {MOST_OF_KIND} junctions of one kind, not {each.count}; change it"
             )
@@ -198,6 +183,9 @@ def check_map(asked: MapClause) -> None:
 
 
 def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
+    bounds = [each for each in (wanted.lo, wanted.hi) if isfinite(each)]
+    if any(each < 0 or each % 1 for each in bounds):
+        raise BriefError(f"a map has 0, 1, 2 or more dead ends, not {asked.dead_ends}; change it")
     if asked.columns is not None and asked.rows is not None:
         columns, rows = span(asked.columns), span(asked.rows)
         most = 2 * (min(columns.hi, MOST_BLOCKS) + min(rows.hi, MOST_BLOCKS))
@@ -208,71 +196,34 @@ def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
         if wanted.hi < 1 and columns.hi == rows.hi == 1:
             raise BriefError("one block without dead ends has no junction; ask for more blocks, or dead ends")
         return
+    counts = [span(each.count) for each in asked.junctions]
+    least, number = sum(max(each.lo, 1) for each in counts), sum(each.hi for each in counts)
+    most = sum(ARMS[each.kind].hi * n.hi for each, n in zip(asked.junctions, counts, strict=True))
+    most -= 2 * (number - 1)
+    if least == number == 1 and not meets(asked.dead_ends, ARMS[asked.junctions[0].kind]):
+        raise BriefError(
+            f"all arms of the only junction of a map are dead ends, {ARMS[asked.junctions[0].kind]} of them, "
+            f"not {asked.dead_ends}; change the number, or add a junction"
+        )
+    if wanted.lo > most:
+        raise BriefError(
+            f"the roads of these junctions leave {most:g} dead ends at most, not {asked.dead_ends}; change it"
+        )
     if any(each.kind not in FIXED_ARMS or not each.count.exact for each in asked.junctions):
         return
-    counts = [int(span(each.count).lo) for each in asked.junctions]
-    arms = sum(FIXED_ARMS[each.kind] * n for each, n in zip(asked.junctions, counts, strict=True))
-    most = arms - 2 * (sum(counts) - 1)
-    if not any(number in wanted for number in range(most, -1, -2)):
+    if not any(number in wanted for number in range(int(most), -1, -2)):
         raise BriefError(
             f"the roads of these junctions leave an {'odd' if most % 2 else 'even'} number of dead ends, "
-            f"{most} at most, not {asked.dead_ends}; change the number, or add a junction"
-        )
-
-
-def _check_one_way_arms(junction: JunctionClause) -> None:
-    one_way = (*junction.only_in, *junction.only_out)
-    if not one_way:
-        return
-    if junction.kind not in WITH_ONE_WAY_ARMS:
-        raise BriefError(f"one-way roads on a side are not built at a {junction.name}; leave in and out away")
-    if len(set(one_way)) != len(one_way):
-        raise BriefError("a road at a junction is one-way in one direction only; give in or out for a side")
-    if junction.take in junction.only_in:
-        raise BriefError(
-            f"the route goes {junction.take}, where a one-way road comes towards it; change one of them"
-        )
-    if junction.take in junction.only_out:
-        raise BriefError(
-            f"the route goes {junction.take}, so that road is one-way if the road behind the junction is; "
-            "write oneway there and leave out away"
-        )
-    if len(one_way) > ARMS[junction.kind].lo - 2:
-        raise BriefError(f"at a {junction.name}, {len(one_way)} one-way roads leave no way on; ask for fewer")
-    if {*junction.only_in} & {*junction.ways}:
-        raise BriefError(
-            "a side has a one-way road towards the junction and is a way on; leave one of them out"
-        )
-
-
-def _check_angles(junction: JunctionClause) -> None:
-    name = junction.name
-    if junction.angle is not None and junction.kind == "junction":
-        raise BriefError("the angle between roads is asked of a kind of junction; name one, or leave it out")
-    if junction.kind == "roundabout" and (junction.angle or junction.degrees):
-        raise BriefError("angles are not asked of a roundabout; leave them out")
-    if (least := ANGLES.get(junction.kind)) and not _meets(junction.angle, least):
-        raise BriefError(
-            f"the roads at a {name} are {least} degrees apart at the least, not {junction.angle}; change it"
-        )
-    if junction.skew and not _meets(junction.angle, Range(hi=SKEWEST)):
-        raise BriefError(f"skew crossroads have an angle below {SKEWEST:g} degrees, not {junction.angle}")
-    if junction.degrees is not None and junction.take == "straight":
-        raise BriefError("straight on, the route turns by few degrees; leave deg out, or go left or right")
-    turns = TURNS.get(junction.kind, Range())
-    turns = overlap(turns, BENDS.get((junction.take or "").partition("_")[0])) or turns
-    if not _meets(junction.degrees, turns):
-        raise BriefError(
-            f"at a {name}, the route turns by {turns} degrees, not {junction.degrees}; change it"
+            f"{most:g} at most, not {asked.dead_ends}; change the number, or add a junction"
         )
 
 
 def _check_diameter(junction: JunctionClause) -> None:
     if junction.radius is not None and junction.outer is not None:
         raise BriefError("the radius of the island and the outer diameter are given; leave one of them out")
-    if not _meets(junction.outer, ACROSS):
+    if not meets(junction.outer, ACROSS):
         raise BriefError(f"a roundabout is {ACROSS} m across, not {junction.outer} m; change it")
-    if junction.size is not None and not _meets(junction.outer, _around(SIZES[junction.size])):
+    if junction.size is not None and not meets(junction.outer, _around(SIZES[junction.size])):
         raise BriefError(
             f"a {junction.size} roundabout is {SIZES[junction.size]} m across, not {junction.outer} m; leave "
             "one of them out"
@@ -291,11 +242,6 @@ def _check_diameter(junction: JunctionClause) -> None:
 def _around(size: Range) -> Range:
     """Returns the range of a size with the diameters between it and its neighbours."""
     return Range(size.lo - 1, size.hi + 1)
-
-
-def _meets(amount: Amount | None, possible: Range) -> bool:
-    both = overlap(possible, span(amount))
-    return both is not None and both.lo <= both.hi
 
 
 def _said(ways: tuple[Way, ...]) -> str:

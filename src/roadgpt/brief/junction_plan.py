@@ -47,6 +47,11 @@ def junction_plan(junction: JunctionClause) -> str:
     return " ".join(words)
 
 
+def word_of(field: str) -> str:
+    """Returns how plans write a field of a JunctionClause."""
+    return SHORT.get(field, SIDES.get(field, field))
+
+
 def _half(amount: Amount) -> Amount:
     lo, hi = (None if bound is None else bound / 2 for bound in (amount.lo, amount.hi))
     return Amount(lo=lo, hi=hi)
@@ -85,7 +90,9 @@ def read_junction(text: str) -> JunctionClause:
             known = ", ".join(sorted((*WORDS, *FLAGS, *keys, SIDE)))
             raise BriefError(f"a plan has no word '{word[:40]}' for a junction; there are {known}")
         if found[0] in fields:
-            raise BriefError(f"a plan gives {found[0]} of a junction twice: '{word[:40]}'; give it once")
+            raise BriefError(
+                f"a plan gives {word_of(found[0])} of a junction twice: '{word[:40]}'; give it once"
+            )
         fields[found[0]] = found[1]
     try:
         return JunctionClause.model_validate(fields)

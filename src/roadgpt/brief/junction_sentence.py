@@ -20,11 +20,11 @@ def junction_text(junction: JunctionClause) -> str:
     if junction.ways:
         place.append(f"with ways on {_listed(junction.ways)}")
     if junction.only_in:
-        place.append(f"with a one-way road that comes {_from(junction.only_in)}")
+        place.append(f"with {_one_way(junction.only_in, 'comes')} {_from(junction.only_in)}")
     if junction.only_out:
-        place.append(f"with a one-way road that leads {_listed(junction.only_out)}")
+        place.append(f"with {_one_way(junction.only_out, 'leads')} {_listed(junction.only_out)}")
     if junction.angle is not None:
-        place.append(f"whose roads are {junction.angle} degrees apart")
+        place.append(f"whose closest roads are {junction.angle} degrees apart")
     if junction.lanes is not None:
         place.append(f"with {junction.lanes} lanes around it")
     if junction.side is not None:
@@ -49,7 +49,8 @@ def _way_on(junction: JunctionClause) -> str:
         return f"to the {junction.take}" if junction.take else ""
     if junction.exit is not None:
         return f"take {exit_text(junction.exit)}"
-    way = TAKES[junction.take] if junction.take is not None else "go on somewhere"
+    otherwise = "go on somewhere" if junction.degrees is None else "turn"
+    way = TAKES[junction.take] if junction.take is not None else otherwise
     return way if junction.degrees is None else f"{way} by {junction.degrees} degrees"
 
 
@@ -63,6 +64,10 @@ def exit_text(number: Amount) -> str:
 def _listed(ways: tuple[str, ...]) -> str:
     said = {"left": "to the left", "right": "to the right", "straight": "straight on"}
     return " and ".join(said[way] for way in ways)
+
+
+def _one_way(ways: tuple[str, ...], verb: str) -> str:
+    return f"a one-way road that {verb}" if len(ways) == 1 else f"one-way roads that {verb.removesuffix('s')}"
 
 
 def _from(ways: tuple[str, ...]) -> str:

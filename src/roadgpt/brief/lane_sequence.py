@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
 """By how many lanes the road behind a place where lanes change differs from the road before it."""
 LEAST_BESIDE_RAMP = 28.0  # m; the rule ``ramp_too_short`` gives the source
+LEAST_LANE = 17.0  # m, before the taper, which counts as 28 with one of 60 m: what that rule requires
+WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
 
 
 def check_lane_sequence(brief: "Brief") -> None:
@@ -30,6 +32,12 @@ def check_lane_sequence(brief: "Brief") -> None:
             raise BriefError(
                 f"the additional lane of a {place.name} is {LEAST_BESIDE_RAMP:g} m long or longer, not "
                 f"{place.length} m; change it"
+            )
+        least = LEAST_LANE + WIDE_IN_TAPER / (1 - WIDE_IN_TAPER) * max(span(place.taper).lo, 0.0)
+        if place.taper is not None and span(place.length).hi < least:
+            raise BriefError(
+                f"with a taper of {place.taper} m, the additional lane of a {place.name} is {least:.0f} m "
+                f"long or longer, not {place.length} m; change one of them"
             )
 
 

@@ -8,7 +8,8 @@ from typing import Literal, cast
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junction_check import ANGLES, MOST_ARMS_OF_MINI
+from roadgpt.brief.arm_check import ANGLES
+from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
 from roadgpt.brief.junctions import (
     ARMS,
     SIDE,

@@ -5,6 +5,7 @@ from math import inf
 
 from roadgpt.brief.amount import Amount, at_least, between, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
+from roadgpt.brief.lane_sequence import LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import MOST_LANES, ROAD, Range, nearest
 from roadgpt.network.crossing_lanes import USUALLY_FED
@@ -20,8 +21,6 @@ from roadgpt.network.lane_design import (
 )
 
 ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
-WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
-LEAST_LANE = 17.0  # m, which counts as 28 with its taper: what the rule ``ramp_too_short`` requires
 LEAST_TAPER = 10.0  # m
 MOST_IN_TAPER = 0.6  # of the required length of a road at whose ends lanes end or begin
 LEAST_BESIDE = 20.0  # m, of a lane for acceleration or deceleration whose length is not said
@@ -33,6 +32,7 @@ EDGES = 40.0  # m, kept free at the edges of the map
 STEP = 50.0  # m, to which the side of the map is rounded up
 SLACK = 1.0  # m more than the least length that is required
 CHANGE = (40.0, 80.0)  # m, of a road in whose middle the lane is changed, if its length is not said
+WITHIN = 0.97  # of the greatest length that is allowed, for lengths without a least one
 CLOSE = 0.5  # of the slack of a required length, within which roads are drafted
 
 
@@ -75,9 +75,9 @@ def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeD
 
 def _length(asked: Amount) -> float:
     low, high = span(asked).lo, span(asked).hi
-    if asked.exact or low <= 0:
-        return high if low <= 0 else low
-    return min(low + SLACK, high)
+    if asked.exact:
+        return low
+    return WITHIN * high if low <= 0 else min(low + SLACK, high)
 
 
 def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float) -> list[Brief]:

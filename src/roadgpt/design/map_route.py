@@ -22,6 +22,8 @@ def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
     ends = [n for n, node in enumerate(draft.nodes) if node.kind == "end"]
     to_end = len(ends) > 1
     starts = ends if to_end else [n for n, node in enumerate(draft.nodes) if node.is_junction]
+    if not starts:
+        return None
     wanted = int(rng.integers(PASSED[0], PASSED[1] + 1))
     neighbours = draft.neighbours()
     best: tuple[tuple[float, ...], list[int]] | None = None

@@ -3,6 +3,7 @@ that cars from the right go first.
 """
 
 import re
+from collections.abc import Callable
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
@@ -40,15 +41,16 @@ PLACED = re.compile(
 )
 """Words that say on which part of the route a line is."""
 ALL_THE_WAY = re.compile(
-    r"all the way|throughout|everywhere|(?:the|my|our|this) (?:whole|entire|complete)(?! \d)|"
+    r"\b(?:all the way|throughout|everywhere|(?:the|my|our|this) (?:whole|entire|complete)(?! \d)|"
     r"from start to (?:finish|end)|(?:all|every|each)(?: of)?(?: the| my)? roads?|"
     r"uberall|durchgehend|durchweg|(?:ganze|gesamte)[nr]? (?:strecke|route|fahrt|weg)|"
     r"(?:alle|allen|jede|jeder) strassen?|partout|tou(?:t|te) (?:le|la|du)|d'un bout a l'autre|"
     r"(?:toutes les|chaque) (?:routes?|rues?)|tod[oa] (?:el|la) (?:recorrido|trayecto|ruta|camino)|"
     r"en todas partes|todas las (?:calles|carreteras|vias)|"
-    r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade"
+    r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade)\b"
 )
 """Words that say that something holds on every road of the route."""
+DENIED = re.compile(r"\b(?:no|not|n't|nicht|kein\w*|pas|ni|non|sin|sans|ohne|without)\b")
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
 RIGHT_FIRST = re.compile(
@@ -94,7 +96,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     return brief.model_copy(
         update={
             "left_hand": brief.left_hand or says_left_hand(words, by_place=True),
-            "stretches": _alike(roads, words),
+            "stretches": _alike(brief, roads, words),
         }
     )
 
@@ -113,30 +115,38 @@ def _with_one_way_behind(brief: Brief) -> Brief:
     return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
 
 
-def _alike(roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
-    """Returns the roads with the lanes and the centre line of those that have any, where the words say that
-    all have the same.
+def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
+    """Returns the roads of a route with the lanes and the centre line of those that have any, where the words
+    say that all have the same. Where lanes end, begin or lead to ramps, roads have different lanes.
     """
-    whole = [part for part in _parts(words) if ALL_THE_WAY.search(part) and not PLACED.search(part)]
-    if any(LANES.search(part) for part in whole):
-        roads = _with_shared(roads, OF_LANES)
+    parts = [part for part in _parts(words) if not PLACED.search(part)]
+    whole = [part for part in parts if any(_is_meant(part, each) for each in ALL_THE_WAY.finditer(part))]
+    has_changes = any(each.kind in (*RAMPS, *LANE_KINDS) for each in brief.junctions)
+    if not has_changes and any(LANES.search(part) for part in whole):
+        roads = _with_shared(roads, OF_LANES, lambda road: not road.motorway)
     if any(pattern.search(part) for part in whole for pattern in LINES.values()):
-        roads = _with_shared(roads, ("centre",))
+        roads = _with_shared(roads, ("centre",), _has_centre_line)
     return roads
 
 
-def _with_shared(roads: tuple[Brief, ...], names: tuple[str, ...]) -> tuple[Brief, ...]:
-    """Returns the roads, those that have none of some fields with the values of the others; as they are if
-    these differ.
+def _is_meant(part: str, found: re.Match[str]) -> bool:
+    return not DENIED.search(part[: found.start()])
+
+
+def _with_shared(
+    roads: tuple[Brief, ...], names: tuple[str, ...], can_have: Callable[[Brief], bool]
+) -> tuple[Brief, ...]:
+    """Returns the roads, those that have none of some fields, and can have them, with the values of the
+    others; as they are if these differ, or if they are one-way.
     """
     usual = Brief()
     values = [{name: getattr(road, name) for name in names} for road in roads]
     none = {name: getattr(usual, name) for name in names}
     given = [each for each in values if each != none]
-    if not given or any(each != given[0] for each in given):
+    if not given or any(each != given[0] for each in given) or given[0].get("against") == exactly(0):
         return roads
     return tuple(
-        road.model_copy(update=given[0]) if own == none else road
+        road.model_copy(update=given[0]) if own == none and can_have(road) else road
         for road, own in zip(roads, values, strict=True)
     )
 
