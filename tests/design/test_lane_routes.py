@@ -256,6 +256,19 @@ def test_what_is_said_of_a_road_before_a_lane_ends_holds_behind_it() -> None:
     ]
 
 
+def test_a_road_that_leads_straight_across_a_junction_has_the_same_lanes() -> None:
+    def counts(line: str) -> list[tuple[tuple[int, int], bool]]:
+        roads = drafted(line, 1).roads
+        return [(member.profile.count, member.profile.median > 0) for _, member in roads]
+
+    wide = ((2, 2), True)
+    assert counts("| divided lanes=2 against=2 // crossroads straight lights //") == [wide, wide]
+    assert counts("| lanes=2 against=1 // t_junction straight ways=left+straight //") == [((2, 1), False)] * 2
+    assert counts("| oneway // crossroads straight //") == [((1, 0), False)] * 2
+    assert counts("| lanes=2 against=2 // crossroads straight // | lanes=1 against=1")[1] == ((1, 1), False)
+    assert counts("| lanes=2 against=2 // crossroads left //")[1] == ((1, 1), False)
+
+
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
     for seed in range(3):
         route = drafted("merge ramp // | motorway", seed)

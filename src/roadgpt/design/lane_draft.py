@@ -125,7 +125,7 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """Returns the lanes of each road of a route, before, between and behind its junctions.
 
     Where nothing is required, a road has one lane in each direction, and what a ramp joins or leaves is one
-    carriageway of a motorway; a road that continues one with three lanes or more has as many.
+    carriageway of a motorway; a road that leads on straight across a junction has as many as before it.
 
     Args:
         brief: the requirements.
@@ -149,8 +149,9 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
 
 
 def _continued(brief: Brief) -> list[Brief]:
-    """Returns the requirements for the roads; where those for lanes are left open, they are those of the road
-    that continues it across a junction, if it has so many lanes that fewer would lead nowhere.
+    """Returns the requirements for the roads. Where those for lanes are left open, they are those of the road
+    before it that leads straight across a junction; and those of a road that continues it, if that has so
+    many lanes that fewer would lead nowhere.
     """
     roads, places = list(brief.roads), brief.junctions
     for n, place in enumerate(places):
@@ -159,6 +160,15 @@ def _continued(brief: Brief) -> list[Brief]:
     for n, place in reversed(list(enumerate(places))):
         if _is_one_road(place):
             roads[n] = _of_same_road(roads[n + 1], roads[n])
+    for n, place in enumerate(places):
+        following = places[n + 1].kind if n + 1 < len(places) else None
+        if (
+            _leads_straight_on(place)
+            and following not in (*RAMPS, "roundabout")
+            and not _has_lanes(roads[n + 1])
+        ):
+            update = {name: getattr(roads[n], name) for name in ("lanes", "against", "divided")}
+            roads[n + 1] = roads[n + 1].model_copy(update=update)
     for n, place in enumerate(places):
         if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
             roads[n + 1] = _with_lanes_of(roads[n], roads[n + 1])
@@ -186,9 +196,18 @@ def _of_same_road(known: Brief, road: Brief) -> Brief:
     )
 
 
+def _leads_straight_on(place: JunctionClause) -> bool:
+    return place.take == "straight" and place.kind != "roundabout"
+
+
+def _has_lanes(road: Brief) -> bool:
+    """Returns whether something is required of the lanes of a road."""
+    return road.lanes is not None or road.against is not None or road.divided or road.motorway
+
+
 def _leads_on(place: JunctionClause) -> bool:
     """Returns whether the lanes of the road before a junction lead to those of the road behind it."""
-    return place.kind == "y_junction" or (place.take == "straight" and place.kind != "roundabout")
+    return place.kind == "y_junction" or _leads_straight_on(place)
 
 
 def _with_lanes_of(known: Brief, road: Brief) -> Brief:

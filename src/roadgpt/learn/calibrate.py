@@ -18,7 +18,7 @@ from roadgpt.learn.generator import Pair
 Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.012  # share of these valid descriptions that may be refused; for new ones it will be higher
 STEPS = 30
-CAUTION = 1.7
+CAUTION = 2.5
 """How many right readings of routes one wrong reading counts as: a sure reading that is wrong is worse than a
 doubt too many.
 """
