@@ -77,6 +77,20 @@ def test_nothing_is_added_where_words_leave_a_choice(asked: str, words: str) -> 
     assert with_whole_drive(brief, words) == brief
 
 
+@pytest.mark.parametrize(
+    ("asked", "words", "line"),
+    [
+        ("junction right stop", "out of a side street, stop, right", "t_junction right stop"),
+        ("junction left yield", "aus einer Seitenstraße nach links", "t_junction left yield"),
+        ("junction left", "left at the junction into a side street", "junction left"),
+        ("crossroads right stop", "from the side road, stop, right", "crossroads right stop"),
+        ("junction straight", "out of a side street, straight on", "junction straight"),
+    ],
+)
+def test_a_side_street_ends_at_a_t_junction(asked: str, words: str, line: str) -> None:
+    assert with_whole_drive(read_plan(asked), words) == read_plan(line)
+
+
 def test_a_line_is_on_the_roads_that_can_have_it() -> None:
     asked = read_plan("| centre=solid // crossroads straight // | oneway // crossroads left // | up")
     found = with_whole_drive(asked, "overtaking is forbidden everywhere")

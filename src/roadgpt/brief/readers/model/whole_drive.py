@@ -44,7 +44,7 @@ ALL_THE_WAY = re.compile(
     r"\b(?:all the way|throughout|everywhere|(?:the|my|our|this) (?:whole|entire|complete)(?! \d)|"
     r"from start to (?:finish|end)|(?:all|every|each)(?: of)?(?: the| my)? roads?|"
     r"uberall|durchgehend|durchweg|(?:ganze|gesamte)[nr]? (?:strecke|route|fahrt|weg)|"
-    r"(?:alle|allen|jede|jeder) strassen?|partout|tou(?:t|te) (?:le|la|du)|d'un bout a l'autre|"
+    r"(?:alle|allen|jede|jeder) stra(?:ss|ß)en?|partout|tou(?:t|te) (?:le|la|du)|d'un bout a l'autre|"
     r"(?:toutes les|chaque) (?:routes?|rues?)|tod[oa] (?:el|la) (?:recorrido|trayecto|ruta|camino)|"
     r"en todas partes|todas las (?:calles|carreteras|vias)|"
     r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade)\b"
@@ -53,6 +53,14 @@ ALL_THE_WAY = re.compile(
 DENIED = re.compile(r"\b(?:no|not|n't|nicht|kein\w*|pas|ni|non|sin|sans|ohne|without)\b")
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
+SIDE_STREET = re.compile(
+    r"\b(?:out of|from|leav\w+) (?:an?|the|my|our) side (?:street|road)|"
+    r"\baus (?:einer|der|meiner|unserer) (?:neben|seiten)stra(?:ss|ß)e|"
+    r"\b(?:d'une|de la|de ma) (?:petite )?(?:rue|route) (?:laterale|secondaire)|"
+    r"\b(?:de|desde) (?:una|la|mi) (?:calle|carretera|via) (?:lateral|secundaria)|"
+    r"\bda(?:lla| una) (?:strada|via|stradina) (?:laterale|secondaria)"
+)
+"""The route begins on a side street: it ends at the next junction, which is then a T-junction."""
 RIGHT_FIRST = re.compile(
     r"right[- ]?before[- ]?left|(?:priority|precedence) (?:to|from) the right|give[- ]way to the right|"
     r"rechts[- ]?vor[- ]?links|rechtsvor(?:tritt|rang)|priorite a (?:la )?droite|"
@@ -82,12 +90,12 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     A single road is returned as it is. A centre line is added where the words say one kind of line and no
     place, no part of the plan has a line, and on every road that has oncoming traffic on the same
     carriageway. Lines and lanes of some roads are those of all roads where the words say so. Junctions where
-    cars from the right go first get no sign to give way. A one-way road on which the route goes on is that
-    of the road behind the junction.
+    cars from the right go first get no sign to give way. A side street ends at a T-junction. A one-way road
+    on which the route goes on is that of the road behind the junction.
     """
     if not brief.junctions and brief.map is None:
         return brief
-    brief = _with_one_way_behind(_without_signs(brief, words))
+    brief = _out_of_side_street(_with_one_way_behind(_without_signs(brief, words)), words)
     line = None if any(each.centre for each in brief.stretches) else _line_said(words)
     roads = tuple(
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
@@ -99,6 +107,16 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
             "stretches": _alike(brief, roads, words),
         }
     )
+
+
+def _out_of_side_street(brief: Brief, words: str) -> Brief:
+    """Returns the Brief with a T-junction where a side street ends and the kind is left open."""
+    first = brief.junctions[0] if brief.junctions else None
+    is_open = first is not None and first.kind == "junction" and first.take in ("left", "right")
+    if first is None or not is_open or first.arms or not SIDE_STREET.search(plain(words)):
+        return brief
+    known = first.model_copy(update={"kind": "t_junction"})
+    return brief.model_copy(update={"junctions": (known, *brief.junctions[1:])})
 
 
 def _with_one_way_behind(brief: Brief) -> Brief:
