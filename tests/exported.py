@@ -2,10 +2,13 @@
 
 import os
 import shutil
+import subprocess
 import sys
+import xml.etree.ElementTree as ET
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pytest
@@ -33,6 +36,22 @@ ROADS = {
     "far away": Road.through([[-60_000, 90_000, 500], [-59_900, 90_050, 505], [-59_800, 90_000, 500]]),
 }
 """By name: one of each kind that an exporter meets."""
+
+
+def asam_says(file: Path) -> tuple[list[str], dict[str, int]]:
+    """Issues that ASAM's checker of scenarios finds, and how many of its checks ended how."""
+    result, settings = file.with_suffix(".xqar"), file.with_suffix(".settings")
+    settings.write_text(
+        f'<Config><Param name="InputFile" value={quoteattr(str(file))}/>'
+        '<CheckerBundle application="xoscBundle">'
+        f'<Param name="resultFile" value={quoteattr(str(result))}/></CheckerBundle></Config>'
+    )
+    checker = [sys.executable, "-W", "ignore", "-m", "qc_openscenario.main", "-c", str(settings)]
+    subprocess.run(checker, capture_output=True, check=True)
+    root = ET.parse(result).getroot()
+    ends = [checker.get("status", "") for checker in root.iter("Checker")]
+    issues = [f"{issue.get('ruleUID')}: {issue.get('description')}" for issue in root.iter("Issue")]
+    return issues, {end: ends.count(end) for end in set(ends)}
 
 
 def drive(road: Road, world: World = WORLD) -> Poses:

@@ -267,6 +267,9 @@ def test_a_road_that_leads_straight_across_a_junction_has_the_same_lanes() -> No
     assert counts("| oneway // crossroads straight //") == [((1, 0), False)] * 2
     assert counts("| lanes=2 against=2 // crossroads straight // | lanes=1 against=1")[1] == ((1, 1), False)
     assert counts("| lanes=2 against=2 // crossroads left //")[1] == ((1, 1), False)
+    line = "| oneway // crossroads straight // | centre=solid"
+    assert counts(line)[1] == ((1, 1), False)
+    assert inspect(drafted(line, 1), read_plan(line), WIDE) == ()
 
 
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:

@@ -1,36 +1,17 @@
 """OpenSCENARIO: ASAM's checker finds nothing, and the car is told where the road says."""
 
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from exported import ROADS, WORLD, drive
+from exported import ROADS, WORLD, asam_says, drive
 from roadgpt.export import Poses, save
 from roadgpt.road import Road, World
 
 REAR_AXLE, GRAVITY_HEIGHT = -1.47, 0.56  # m, of the simulator's car
-
-
-def asam_says(file: Path) -> tuple[list[str], dict[str, int]]:
-    """Issues that ASAM's checker finds, and how many of its checks ended how."""
-    result, settings = file.with_suffix(".xqar"), file.with_suffix(".settings")
-    settings.write_text(
-        f'<Config><Param name="InputFile" value={quoteattr(str(file))}/>'
-        '<CheckerBundle application="xoscBundle">'
-        f'<Param name="resultFile" value={quoteattr(str(result))}/></CheckerBundle></Config>'
-    )
-    checker = [sys.executable, "-W", "ignore", "-m", "qc_openscenario.main", "-c", str(settings)]
-    subprocess.run(checker, capture_output=True, check=True)
-    root = ET.parse(result).getroot()
-    ends = [checker.get("status", "") for checker in root.iter("Checker")]
-    issues = [f"{issue.get('ruleUID')}: {issue.get('description')}" for issue in root.iter("Issue")]
-    return issues, {end: ends.count(end) for end in set(ends)}
 
 
 def saved(road: Road, folder: Path, world: World = WORLD) -> tuple[ET.Element, ET.Element]:

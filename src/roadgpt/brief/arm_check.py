@@ -3,13 +3,12 @@
 from itertools import product
 
 from roadgpt.brief.amount import meets, span
-from roadgpt.brief.junctions import ARMS, BENDS, JunctionClause, JunctionKind, is_about
+from roadgpt.brief.junctions import ARMS, BENDS, SKEW, JunctionClause, JunctionKind, is_about
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import BriefError
 
 WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")
 """The kinds of junctions at which arms that the route does not take can be one-way."""
-SKEWEST = 70.0  # degrees; crossroads whose roads are less apart are skew
 FULL = 360  # degrees
 ANGLES: dict[JunctionKind, Range] = {
     "t_junction": Range(55, 90),
@@ -25,7 +24,7 @@ TURNS: dict[JunctionKind, Range] = {
     "star": Range(30, 140),
 }
 """The angles in degrees by which a route can turn to one side."""
-FORK_GAPS = (87, 153)  # degrees, between neighbouring arms of a fork
+FORK_GAPS = (87.0, 153.0)  # degrees, between neighbouring arms of a fork of which angles are required
 
 
 def check_arms(junction: JunctionClause) -> None:
@@ -108,7 +107,7 @@ def _go_together(junction: JunctionClause) -> bool:
         turns = range(int(TURNS["crossroads"].lo), int(TURNS["crossroads"].hi) + 1)
         return any(_allows(junction, turn, min(turn, 180 - turn)) for turn in turns)
     if junction.kind == "y_junction":
-        gaps = range(FORK_GAPS[0], FORK_GAPS[1] + 1)
+        gaps = range(int(FORK_GAPS[0]), int(FORK_GAPS[1]) + 1)
         thirds = ((gap, other, FULL - gap - other) for gap, other in product(gaps, gaps))
         return any(_allows(junction, 180 - parts[0], min(parts)) for parts in thirds if max(parts) in gaps)
     if junction.kind == "star":
@@ -120,4 +119,4 @@ def _allows(junction: JunctionClause, turn: float, least: float) -> bool:
     """Returns whether the route may turn by an angle where the closest roads are ``least`` degrees apart."""
     turns = junction.degrees is None or is_about(turn, junction.degrees)
     is_between = junction.angle is None or is_about(least, junction.angle)
-    return turns and is_between and (not junction.skew or least < SKEWEST)
+    return turns and is_between and (not junction.skew or least < SKEW)

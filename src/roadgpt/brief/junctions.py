@@ -77,6 +77,7 @@ other limits are usual figures.
 """
 ACROSS = Range(18, 70)
 """The outer diameters in metres with which roundabouts can be built."""
+SKEW = 70.0  # degrees; crossroads whose roads are less apart are skew
 SIDE = 25.0  # degrees; a smaller change of direction is straight on
 TAKES: Mapping[Take, str] = {
     "left": "turn left",

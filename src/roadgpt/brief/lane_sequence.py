@@ -2,9 +2,9 @@
 
 from typing import TYPE_CHECKING
 
-from roadgpt.brief.amount import span
+from roadgpt.brief.amount import meets, span
 from roadgpt.brief.junctions import RAMPS, JunctionClause
-from roadgpt.brief.words import Range, overlap
+from roadgpt.brief.words import Range
 from roadgpt.errors import BriefError
 
 if TYPE_CHECKING:
@@ -45,14 +45,9 @@ def _check_step(place: JunctionClause, before: "Brief", after: "Brief", step: in
     if before.lanes is None or after.lanes is None:
         return
     own = span(before.lanes)
-    if not _meet(Range(own.lo + step, own.hi + step), span(after.lanes)):
+    if not meets(after.lanes, Range(own.lo + step, own.hi + step)):
         what = {-1: "one lane fewer", 0: "as many lanes", 1: "one lane more"}[step]
         raise BriefError(
             f"behind a {place.name} there is {what}, but the road before it has {before.lanes} and the one "
             f"behind it {after.lanes}; change one of them"
         )
-
-
-def _meet(one: Range, other: Range) -> bool:
-    both = overlap(one, other)
-    return both is not None and both.lo <= both.hi

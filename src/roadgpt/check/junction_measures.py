@@ -23,7 +23,6 @@ T_OTHERS = 55.0  # degrees, least other gap
 Y_GAP = (85.0, 155.0)  # degrees, every gap between the arms of a fork
 LINE = 35.0  # degrees, that opposite arms of crossroads may be off one line
 STEP = 0.5  # m, between stations at which the width of a lane is measured
-SKEW = 70.0  # degrees; a smaller gap makes crossroads skew
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from roadgpt.brief.junctions import (
     NAMES,
     RAMPS,
     SIZES,
+    SKEW,
     TAKES,
     JunctionClause,
     bends_as,
@@ -25,7 +26,6 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import (
-    SKEW,
     MeasuredJunction,
     MeasuredLanes,
     is_beside_ramp,
@@ -195,7 +195,9 @@ def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Itera
     yield from _of_ramp(found, asked)
     if asked.all_way and set(found.all_controls) != {asked.control}:
         yield f"asked for {asked.control} at every arm, has {', '.join(found.all_controls)}"
-    if asked.others_stop and not set(found.all_controls) <= {"priority", "stop"}:
+    give_way = {*found.all_controls} - {"priority"}
+    nobody_does = bool(asked.only_out) and not give_way  # all other roads lead away only
+    if asked.others_stop and give_way != {"stop"} and not nobody_does:
         yield f"asked for stop signs for the others, has {', '.join(found.all_controls)}"
 
 

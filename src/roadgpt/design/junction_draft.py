@@ -8,7 +8,7 @@ from typing import Literal, cast
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.arm_check import ANGLES
+from roadgpt.brief.arm_check import ANGLES, FORK_GAPS
 from roadgpt.brief.junction_check import MOST_ARMS_OF_MINI
 from roadgpt.brief.junctions import (
     ARMS,
@@ -38,9 +38,8 @@ STRAIGHT = 14.0  # degrees, that an arm straight ahead may be off
 CLEAR = 40.0  # degrees, least turn of an arm to the left or right
 SLIGHTEST = SIDE + 3  # degrees, the same where angles are required
 ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off their usual directions
-SKEW = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
+SLANTS = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
-WIDE_FORK = (87.0, 153.0)  # degrees, the same where angles are required
 STAR = 50.0  # degrees, least gap of a star junction
 NARROW_STAR = 38.0  # degrees, the same where angles are required
 EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
@@ -132,12 +131,12 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
         return [_near(angle, STRAIGHT if angle == 0 else ACROSS, rng) for angle in usual]
     if clause.kind == "crossroads":
         if clause.skew:
-            slant = float(rng.uniform(*SKEW)) * (1 if rng.random() < 0.5 else -1)
+            slant = float(rng.uniform(*SLANTS)) * (1 if rng.random() < 0.5 else -1)
             return sorted([slant - 180 if slant > 0 else slant, 0.0, slant if slant > 0 else slant + 180])
         across = float(rng.uniform(90 - ACROSS, 90 + ACROSS))
         return [across - 180, _near(0.0, ACROSS / 2, rng), across]
     if clause.kind == "y_junction":
-        gaps = FORK if clause.degrees is None and clause.angle is None else WIDE_FORK
+        gaps = FORK if clause.degrees is None and clause.angle is None else FORK_GAPS
         left, right = (float(gap) for gap in rng.uniform(*gaps, size=2))
         while not gaps[0] <= 360 - left - right <= gaps[1]:
             left, right = (float(gap) for gap in rng.uniform(*gaps, size=2))

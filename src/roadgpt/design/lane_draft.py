@@ -162,13 +162,8 @@ def _continued(brief: Brief) -> list[Brief]:
             roads[n] = _of_same_road(roads[n + 1], roads[n])
     for n, place in enumerate(places):
         following = places[n + 1].kind if n + 1 < len(places) else None
-        if (
-            _leads_straight_on(place)
-            and following not in (*RAMPS, "roundabout")
-            and not _has_lanes(roads[n + 1])
-        ):
-            update = {name: getattr(roads[n], name) for name in ("lanes", "against", "divided")}
-            roads[n + 1] = roads[n + 1].model_copy(update=update)
+        if _leads_straight_on(place) and following not in (*RAMPS, "roundabout"):
+            roads[n + 1] = _with_same_lanes(roads[n], roads[n + 1])
     for n, place in enumerate(places):
         if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
             roads[n + 1] = _with_lanes_of(roads[n], roads[n + 1])
@@ -200,9 +195,16 @@ def _leads_straight_on(place: JunctionClause) -> bool:
     return place.take == "straight" and place.kind != "roundabout"
 
 
-def _has_lanes(road: Brief) -> bool:
-    """Returns whether something is required of the lanes of a road."""
-    return road.lanes is not None or road.against is not None or road.divided or road.motorway
+def _with_same_lanes(known: Brief, road: Brief) -> Brief:
+    """Returns the requirements for a road, with the lanes and the median of another one if nothing is
+    required of its own, and if they leave room for the centre line that is required.
+    """
+    has_lanes = road.lanes is not None or road.against is not None or road.divided or road.motorway
+    has_no_centre = known.divided or (known.against is not None and span(known.against).hi == 0)
+    if has_lanes or (road.centre is not None and has_no_centre):
+        return road
+    update = {name: getattr(known, name) for name in ("lanes", "against", "divided")}
+    return road.model_copy(update=update)
 
 
 def _leads_on(place: JunctionClause) -> bool:

@@ -1,5 +1,7 @@
-"""What words say of a whole route, and the network left out: traffic on the left, the centre line, lanes, and
-that cars from the right go first.
+"""What words say of a route, and the network left out.
+
+Of the whole route: traffic on the left, the centre line, lanes, and that cars from the right go first. Of a
+part: that a side street ends at a T-junction, and that a one-way road which the route takes goes on behind.
 """
 
 import re
