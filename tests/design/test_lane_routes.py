@@ -64,6 +64,14 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "roundabout", "take": "straight", "ring_lanes": 2}],
         **TWO_EACH,
     },
+    "| lanes=2 against=2 // crossroads right": {"sequence": [{"kind": "X", "take": "right"}], **TWO_EACH},
+    "| lanes=2 // t_junction left ways=left+right lights": {
+        "sequence": [{"kind": "T", "take": "left", "exits": ["left", "right"]}],
+        "between": [{"lanes": 2}, None],
+    },
+    "| motorway // diverge main // | motorway // merge main side=right": {
+        "sequence": [{"kind": "diverge", "take": "main"}, {"kind": "merge", "take": "main", "side": "right"}],
+    },
     "crossroads left stop all_way // | lanes=3 against=3": {
         "sequence": [{"kind": "X", "take": "left", "all_control": "stop"}],
         "between": [None, {"lanes": 3, "lanes_against": 3}],
@@ -256,7 +264,7 @@ def test_what_is_said_of_a_road_before_a_lane_ends_holds_behind_it() -> None:
     ]
 
 
-def test_a_road_that_leads_straight_across_a_junction_has_the_same_lanes() -> None:
+def test_a_road_behind_a_junction_has_the_lanes_of_the_road_before() -> None:
     def counts(line: str) -> list[tuple[tuple[int, int], bool]]:
         roads = drafted(line, 1).roads
         return [(member.profile.count, member.profile.median > 0) for _, member in roads]
@@ -266,7 +274,9 @@ def test_a_road_that_leads_straight_across_a_junction_has_the_same_lanes() -> No
     assert counts("| lanes=2 against=1 // t_junction straight ways=left+straight //") == [((2, 1), False)] * 2
     assert counts("| oneway // crossroads straight //") == [((1, 0), False)] * 2
     assert counts("| lanes=2 against=2 // crossroads straight // | lanes=1 against=1")[1] == ((1, 1), False)
-    assert counts("| lanes=2 against=2 // crossroads left //")[1] == ((1, 1), False)
+    assert counts("| lanes=2 against=2 // crossroads left //")[1] == ((2, 2), False)
+    assert counts("| lanes=2 // crossroads left //")[1] == ((1, 1), False)
+    assert counts("| oneway // crossroads left //")[1] == ((1, 1), False)
     line = "| oneway // crossroads straight // | centre=solid"
     assert counts(line)[1] == ((1, 1), False)
     assert inspect(drafted(line, 1), read_plan(line), WIDE) == ()

@@ -40,6 +40,7 @@ SLIGHTEST = SIDE + 3  # degrees, the same where angles are required
 ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off their usual directions
 SLANTS = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
+MANY_ARMS = 5  # besides that of arrival; several then lead to the same side
 STAR = 50.0  # degrees, least gap of a star junction
 NARROW_STAR = 38.0  # degrees, the same where angles are required
 EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
@@ -154,7 +155,8 @@ def _across(clause: JunctionClause, rng: Rng) -> float | None:
     low, high = ANGLES[clause.kind].lo, 180 - ANGLES[clause.kind].lo
     drawn = float(rng.uniform(max(asked.lo, low), max(asked.lo, low, min(asked.hi, high))))
     side = (clause.take or "").rpartition("_")[2]
-    is_left = side == "left" if clause.degrees and side else rng.random() < 0.5
+    leaves = clause.degrees is not None or "straight" in clause.ways  # it turns by the angle, not by the rest
+    is_left = side == "left" if leaves and side else rng.random() < 0.5
     return drawn if is_left else 180 - drawn
 
 
@@ -263,6 +265,8 @@ def _towards(clause: JunctionClause, angles: Sequence[float]) -> int | None:
         return same[0] if same else None
     if take in ("left", "right"):
         same = lefts if take == "left" else rights
+        if len(angles) >= MANY_ARMS:
+            return min(same, key=lambda n: abs(abs(angles[n]) - 90), default=None)
         return same[0] if len(same) == 1 and sides.count(take) == 1 else None
     same = sorted(lefts if take in ("sharp_left", "slight_left") else rights, key=lambda n: abs(angles[n]))
     same = [n for n in same if bends_as(take, angles[n])]

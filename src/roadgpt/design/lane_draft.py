@@ -162,7 +162,7 @@ def _continued(brief: Brief) -> list[Brief]:
             roads[n] = _of_same_road(roads[n + 1], roads[n])
     for n, place in enumerate(places):
         following = places[n + 1].kind if n + 1 < len(places) else None
-        if _leads_straight_on(place) and following not in (*RAMPS, "roundabout"):
+        if _keeps_lanes(place, roads[n]) and following not in (*RAMPS, "roundabout"):
             roads[n + 1] = _with_same_lanes(roads[n], roads[n + 1])
     for n, place in enumerate(places):
         if _leads_on(place) and (n + 1 == len(places) or places[n + 1].kind != "roundabout"):
@@ -193,6 +193,16 @@ def _of_same_road(known: Brief, road: Brief) -> Brief:
 
 def _leads_straight_on(place: JunctionClause) -> bool:
     return place.take == "straight" and place.kind != "roundabout"
+
+
+def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
+    """Returns whether a road behind a junction of which nothing is required has the lanes of the road before.
+
+    One that leads straight on has; one behind a turn only if the lanes of both directions are required.
+    """
+    is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
+    turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
+    return _leads_straight_on(place) or (turns and is_said)
 
 
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:

@@ -37,7 +37,7 @@ from roadgpt.network import NetworkDesign, build_route
 from roadgpt.network.design import PlaceDesign, ends_route
 from roadgpt.network.growing import length_inside
 from roadgpt.network.lane_design import LanesDesign, RampDesign
-from roadgpt.network.ramps import length_beside
+from roadgpt.network.ramps import BESIDE, length_beside
 from roadgpt.network.stretch_profiles import profiles_between
 from roadgpt.plural import plural
 from roadgpt.road import Profile, Segment, World
@@ -54,6 +54,7 @@ HURRIED = 1 / 8  # of haste from the start, for each junction beyond the second
 CURVED = 0.4  # share of roads without requirements that have a turn
 SHORTEST = 30.0  # m, of a road without requirements
 SHORTEST_WITH_LANES = 80.0  # m, where lanes end, begin or are changed
+SHORTEST_BETWEEN_RAMPS = 2 * BESIDE + 40.0  # m, where a ramp that leaves lies before one that joins
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
 MOST = 130.0  # m, of one such road
 TURNING = 45.0  # m more for such a road with a turn
@@ -212,6 +213,8 @@ class NetworkSearch:
     def _shortest(self, n: int) -> float:
         """Returns the least length in metres of a road of which no length is required."""
         around = self.brief.junctions[max(n - 1, 0) : n + 1]
+        if [place.kind for place in around] == ["diverge", "merge"]:
+            return SHORTEST_BETWEEN_RAMPS
         changes = any(place.kind in LANE_KINDS for place in around) or self.lanes[n].forward > 1
         return SHORTEST_WITH_LANES if changes else SHORTEST
 

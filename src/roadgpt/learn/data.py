@@ -11,7 +11,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
-from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, SLOT_TOKENS, tokens_of
+from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOKENS, tokens_of
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
@@ -140,7 +140,7 @@ def examples(
             pair = replace(pair, text=with_talk(pair.text, pair.lang, rng))
         is_left_out = is_held_out(pair.text) or (is_of_routes and is_for_roads_only(pair))
         made = None if is_left_out else example(pair, pieces, rng)
-        if made:
+        if made and (is_of_routes or max(made.tokens) < len(OF_ROADS)):
             yield made
 
 

@@ -12,7 +12,6 @@ import torch
 from torch import Tensor, nn
 
 from roadgpt.brief.readers.model import MEANINGS, ROUTES, ModelReader
-from roadgpt.brief.readers.model.vocabulary import TOKENS
 from roadgpt.errors import LearnError
 from roadgpt.learn.calibrate import calibrated
 from roadgpt.learn.generator import Pair
@@ -145,7 +144,8 @@ def export_checkpoints(
         pieces = read_vocabulary(checkpoint / "pieces.txt")
         state = torch.load(checkpoint / "checkpoint.pt", map_location="cpu", weights_only=True)
         layers = decoder_layers(state["reader"])
-        reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
+        tokens = state["reader"]["bias"].shape[0]
+        reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
         reader.load_state_dict(state["reader"])
         export(reader, folder, name, 7 if name == ROUTES else 8)
         (folder / "pieces.txt").write_text("\n".join(pieces), encoding="utf-8")

@@ -12,7 +12,7 @@ import torch
 from torch import nn
 from torch.nn import functional
 
-from roadgpt.brief.readers.model.vocabulary import TOKENS
+from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, batches, examples
 from roadgpt.learn.generator import Pair
@@ -118,12 +118,13 @@ def _started(
     kept: dict[str, torch.Tensor] | None, weights: Path | None, pieces: Sequence[str], plan: TrainingSettings
 ) -> ReaderNetwork:
     """Returns the network with the weights of a checkpoint, of an exported reader or of MiniLM."""
+    tokens = len(TOKENS if plan.is_of_routes else OF_ROADS)
     if kept is None and weights and weights.is_dir():
         exported = exported_weights(weights, plan.ending)
         kept = {name: torch.from_numpy(array) for name, array in exported.items()}
-        kept = grown(kept, len(TOKENS), plan.decoder_layers or decoder_layers(kept), plan.seed)
+        kept = grown(kept, tokens, plan.decoder_layers or decoder_layers(kept), plan.seed)
     layers = decoder_layers(kept) if kept else plan.decoder_layers or NetworkSizes().decoder_layers
-    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=len(TOKENS), decoder_layers=layers))
+    reader = ReaderNetwork(NetworkSizes(pieces=len(pieces), tokens=tokens, decoder_layers=layers))
     if kept:
         reader.load_state_dict(kept)
     elif weights:

@@ -24,11 +24,14 @@ from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, 
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
+from roadgpt.brief.readers.model.other_roads import with_other_roads
+from roadgpt.brief.readers.model.own_lane import without_own_lane
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
@@ -48,6 +51,7 @@ MEANINGS = "meanings.txt"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
+NEARLY = 0.7  # difference of score
 NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
@@ -117,7 +121,10 @@ class ModelReader:
         ensemble, found = self.scored(words)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
-        brief = self._brief(words, text, _as_listed(found, text) or found[0], ensemble)
+        draft = _as_listed(found, text) or _that_can_be(found)
+        brief = self._brief(words, text, draft, ensemble)
+        if draft is not found[0] and is_of_junctions(draft.line):
+            brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
     def read_change(self, words: str, key: Callable[[str], str]) -> ChangeReading:
@@ -158,7 +165,7 @@ class ModelReader:
         if draft.is_refusal:
             return UncalibratedReading(draft.line, {})
         try:
-            brief = with_whole_drive(with_checked_counts(read_plan(draft.line), text), words)
+            brief = _brief_of(draft.line, text, words)
         except BriefError:
             return None
         return UncalibratedReading(plan(normal(brief)), features(draft, text))
@@ -277,7 +284,7 @@ class ModelReader:
         wrote, if they differ from ``text`` and from the tokens of ``draft``.
         """
         try:
-            brief = with_whole_drive(with_checked_counts(read_plan(draft.line), text), words)
+            brief = _brief_of(draft.line, text, words)
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
@@ -322,6 +329,12 @@ class ModelReader:
         return settings
 
 
+def _brief_of(line: str, text: SlottedText, words: str) -> Brief:
+    """Returns the Brief of a plan, with what the words leave no choice about."""
+    brief = with_counted_map(with_checked_counts(read_plan(line), text), text)
+    return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
+
+
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
     """Returns the small numbers of a change request (positions and counts) that its plan lacks."""
     if draft.is_refusal:
@@ -349,14 +362,25 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
     return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
 
 
+def _that_can_be(found: Sequence[ScoredPlan]) -> ScoredPlan:
+    """Returns the likeliest plan; or if its junctions contradict each other, one that is nearly as likely and
+    does not contradict itself.
+    """
+    first = found[0]
+    if first.is_refusal or not is_of_junctions(first.line) or _can_be_kept(first.line):
+        return first
+    near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
+    return next((draft for draft in near if _can_be_kept(draft.line)), first)
+
+
 def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
     """Returns the likeliest plan that asks for something other than the Brief; empty if there is none."""
     said = normal(brief).model_copy(update={"beside": ()})
     for draft in found:
         if draft.is_refusal or not _can_be_kept(draft.line):
             continue
-        other = with_whole_drive(read_plan(draft.line), brief.words)
-        other = with_diameters(other, draft.tokens, slotted(brief.words))
+        text = slotted(brief.words)
+        other = with_diameters(_brief_of(draft.line, text, brief.words), draft.tokens, text)
         line = plan(normal(other).model_copy(update={"beside": ()}))
         if line != plan(said):
             return line

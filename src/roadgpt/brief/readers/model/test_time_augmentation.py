@@ -10,12 +10,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import log
 
+from roadgpt.brief.junctions import NAMES
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.bounds import bounded
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
 from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes
+from roadgpt.brief.readers.model.second_look import Condition, condition_missed
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
 from roadgpt.errors import RoadGPTError
@@ -83,6 +85,10 @@ class VariantPlans:
         """The normal form of the likeliest plan."""
         return max(self.plans, key=lambda key: self.plans[key][0])
 
+    def with_plans(self, more: dict[str, tuple[float, WrittenPlan]]) -> "VariantPlans":
+        """Returns the plans together with further plans for the same variant."""
+        return VariantPlans({**more, **self.plans}, self.refusal)
+
     @property
     def is_clear(self) -> bool:
         """True if the network is nearly certain whether to refuse the description and which plan is right."""
@@ -114,14 +120,33 @@ def scored_plans(
     is_change = key is not None
     normal_form = key or _normal_form
 
-    def looks(words: str, is_mirrored: bool) -> list[VariantPlans]:
+    def looks(words: str, is_mirrored: bool, within: Condition | None = None) -> list[VariantPlans]:
         text = shown(slotted(words, is_change))
-        return [_plans_of_variant(each, text, refuse_from, is_mirrored, normal_form) for each in networks]
+        return [
+            _plans_of_variant(each, text, refuse_from, is_mirrored, normal_form, within) for each in networks
+        ]
 
     text = shown(slotted(words, is_change))
-    variants = looks(words, False)
-    for other, is_mirrored in [] if _are_clear(variants) else _others(words):
-        variants += looks(other, is_mirrored)
+    variants, others = looks(words, False), list[tuple[str, bool]]()
+    if not _are_clear(variants):
+        others = _others(words)
+        variants += [look for other in others for look in looks(*other)]
+    found = _best_first(variants, text)
+    missed = condition_missed(text, found[0].tokens) if found and not is_change else None
+    if missed is None or not all(each.knows([*NAMES]) for each in networks):
+        return found
+    again = [look for other in ((words, False), *others) for look in looks(*other, missed)]
+    both = [look.with_plans(more.plans) for look, more in zip(variants, again, strict=True)]
+    least = found[0].score - missed.worth
+
+    def is_out(draft: ScoredPlan) -> bool:
+        return not missed.holds(draft.tokens) or draft.score < least
+
+    return tuple(sorted(_best_first(both, text), key=is_out))
+
+
+def _best_first(variants: Sequence[VariantPlans], text: SlottedText) -> tuple[ScoredPlan, ...]:
+    """Returns all plans that were written for the variants, with their scores, the likeliest first."""
     variants = [variant for variant in variants if variant.plans]
     keys = dict.fromkeys(key for variant in variants for key in variant.plans)
     found = [_scored(key, variants, text) for key in keys]
@@ -153,10 +178,12 @@ def _plans_of_variant(
     refuse_from: float,
     is_mirrored: bool,
     normal_form: Callable[[str], str],
+    within: Condition | None,
 ) -> VariantPlans:
     plans: dict[str, tuple[float, WrittenPlan]] = {}
     chance = 0.0
-    for written in network.write(network.encode(text), text, refuse_from):
+    barred = within.barred if within else lambda tokens: ()
+    for written in network.write(network.encode(text), text, refuse_from, barred=barred):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens
         tokens = tokens if text.is_change else with_ring_sizes(bounded(tokens, text), text)

@@ -100,7 +100,11 @@ NETWORKS = [
     "d=", *NEWER_FLAGS, "angle=", "in=", "out=", "dead_ends=", "taper=",
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
-TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES, *NETWORKS]))
+OF_ROADS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
+"""All tokens of single roads and changes. Networks for these know no others, which shows that a plan is
+beyond them.
+"""
+TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OF_ROADS, *NETWORKS]))
 """All tokens; the weights know them by their positions, so new ones stand at the end."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 PIECE = re.compile(
