@@ -33,6 +33,7 @@ from roadgpt.errors import BriefError
 LARGEST_ANGLE = 240.0  # degrees; a longer turn would cross its own beginning
 SMALLEST_ANGLE = 10.0  # degrees; a smaller turn is measured as straight
 SHORTEST_ROAD = 20.0  # metres
+LONGEST_ROAD = 5000.0  # metres, of roads whose length is open
 MOST_TURNS = 200.0
 MOST_TURNING = 3000.0  # degrees of all turns together
 GRADES = {slope: meaning.grade or Range() for slope, meaning in SLOPES.items()}
@@ -368,10 +369,12 @@ def _length(brief: Brief, limits: _Limits) -> None:
         raise BriefError(f"a road of {most:g} m is too short; ask for {SHORTEST_ROAD:g} m or more")
     if least > longest:
         raise BriefError(f"{most:g} m is too short for all that; ask for {least:.0f} m or for fewer turns")
-    climb = span(brief.climb)
+    climb, grade = span(brief.climb), min(limits.steepest, span(brief.steepest).hi)
     for way, height in (("climb", climb.lo), ("fall", -climb.hi)):
-        if height > longest * limits.steepest / 100:
+        if height > longest * grade / 100:
             raise BriefError(f"{most:g} m of road cannot {way} {height:g} m; ask for a longer road")
+        if height > LONGEST_ROAD * grade / 100:
+            raise BriefError(f"{LONGEST_ROAD:g} m of road cannot {way} {height:g} m; ask for less height")
 
 
 def _many(amount: Amount, noun: str) -> str:

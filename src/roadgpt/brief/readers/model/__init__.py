@@ -16,29 +16,23 @@ from typing import Any, NamedTuple, Self
 
 import numpy as np
 
-from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, at_least
-from roadgpt.brief.normal import normal, total
-from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.normal import normal
+from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
-from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
-from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
-from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
-from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import without_own_lane
+from roadgpt.brief.readers.model.plan_choice import brief_of, can_be_kept, most_plausible
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
-from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.readers.model.word_meanings import read_meanings
 from roadgpt.brief.refusal import MOST_CHARACTERS, ContradictionError, TooMuchError, refused
 from roadgpt.brief.words import SURE
@@ -51,7 +45,6 @@ MEANINGS = "meanings.txt"
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
 ALMOST = 2.0  # difference of score
-NEARLY = 0.7  # difference of score
 NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
 """What follows 'encoder' and 'decoder' in the names of the second network's files."""
@@ -121,7 +114,7 @@ class ModelReader:
         ensemble, found = self.scored(words)
         if not found:
             raise BriefError(NOT_ONE_ROAD)
-        draft = _as_listed(found, text) or _that_can_be(found)
+        draft = most_plausible(found, text)
         brief = self._brief(words, text, draft, ensemble)
         if draft is not found[0] and is_of_junctions(draft.line):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
@@ -159,13 +152,13 @@ class ModelReader:
         """
         text = slotted(words)
         _, found = self.scored(words, refuse_from)
-        draft = (_as_listed(found, text) or found[0]) if found else None
+        draft = most_plausible(found, text) if found else None
         if draft is None:
             return None
         if draft.is_refusal:
             return UncalibratedReading(draft.line, {})
         try:
-            brief = _brief_of(draft.line, text, words)
+            brief = brief_of(draft.line, text, words)
         except BriefError:
             return None
         return UncalibratedReading(plan(normal(brief)), features(draft, text))
@@ -246,7 +239,7 @@ class ModelReader:
     def _without_refusal(self, words: str, text: SlottedText, ensemble: Ensemble) -> Brief | None:
         """Returns the Brief of the likeliest plan that is no refusal; None if it contradicts itself."""
         found = ensemble.scored(words, NEVER)
-        if not found or not _can_be_kept(found[0].line):
+        if not found or not can_be_kept(found[0].line):
             return None
         try:
             return self._as_brief(words, text, found[0], ensemble)
@@ -284,7 +277,7 @@ class ModelReader:
         wrote, if they differ from ``text`` and from the tokens of ``draft``.
         """
         try:
-            brief = _brief_of(draft.line, text, words)
+            brief = brief_of(draft.line, text, words)
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
@@ -329,12 +322,6 @@ class ModelReader:
         return settings
 
 
-def _brief_of(line: str, text: SlottedText, words: str) -> Brief:
-    """Returns the Brief of a plan, with what the words leave no choice about."""
-    brief = with_counted_map(with_checked_counts(read_plan(line), text), text)
-    return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
-
-
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
     """Returns the small numbers of a change request (positions and counts) that its plan lacks."""
     if draft.is_refusal:
@@ -346,65 +333,18 @@ def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:
     )
 
 
-def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan whose turns have the sides listed in the words; None if there is no list or
-    no such plan.
-    """
-    sides = listed_sides(text)
-    if not sides or not found or found[0].is_refusal:
-        return None
-    is_route = is_of_junctions(found[0].line)
-    kept = (
-        draft
-        for draft in found
-        if not draft.is_refusal and is_of_junctions(draft.line) == is_route and _can_be_kept(draft.line)
-    )
-    return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
-
-
-def _that_can_be(found: Sequence[ScoredPlan]) -> ScoredPlan:
-    """Returns the likeliest plan; or if its junctions contradict each other, one that is nearly as likely and
-    does not contradict itself.
-    """
-    first = found[0]
-    if first.is_refusal or not is_of_junctions(first.line) or _can_be_kept(first.line):
-        return first
-    near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
-    return next((draft for draft in near if _can_be_kept(draft.line)), first)
-
-
 def _other(found: Sequence[ScoredPlan], brief: Brief) -> str:
     """Returns the likeliest plan that asks for something other than the Brief; empty if there is none."""
     said = normal(brief).model_copy(update={"beside": ()})
     for draft in found:
-        if draft.is_refusal or not _can_be_kept(draft.line):
+        if draft.is_refusal or not can_be_kept(draft.line):
             continue
         text = slotted(brief.words)
-        other = with_diameters(_brief_of(draft.line, text, brief.words), draft.tokens, text)
+        other = with_diameters(brief_of(draft.line, text, brief.words), draft.tokens, text)
         line = plan(normal(other).model_copy(update={"beside": ()}))
         if line != plan(said):
             return line
     return ""
-
-
-def _can_be_kept(line: str) -> bool:
-    try:
-        brief = read_plan(line)
-        check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
-    except BriefError:
-        return False
-    return all(map(_sides_add_up, normal(brief).stretches or (normal(brief),)))
-
-
-def _sides_add_up(brief: Brief) -> bool:
-    """True if the numbers of left and right turns can add up to the number of turns."""
-    turns = brief.turns or total(brief.clauses)
-    sides = (brief.left, brief.right)
-    least = sum(side.lo or 0 for side in sides if side)
-    if turns.hi is not None and least > turns.hi:
-        return False
-    most = [side.hi if side else None for side in sides]
-    return None in most or turns.lo is None or sum(number or 0 for number in most) >= turns.lo
 
 
 def _text(words: str) -> SlottedText:

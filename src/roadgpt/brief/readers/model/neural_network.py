@@ -1,6 +1,6 @@
 """The network behind the model reader: two ONNX graphs, run by onnxruntime on one core."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -129,7 +129,7 @@ class NeuralNetwork:
         text: SlottedText,
         refuse_from: float = 0.5,
         width: int = WIDTH,
-        barred: Callable[[Sequence[str]], Sequence[str]] = lambda tokens: (),
+        barred: Sequence[str] = (),
     ) -> tuple[WrittenPlan, ...]:
         """Returns the likeliest plans for a description, best first, from a beam search.
 
@@ -139,8 +139,7 @@ class NeuralNetwork:
             refuse_from: smallest probability of a refusal, from 0 to 1, at which a refusal is allowed as a
                 plan; with a value above 1, refusals are never allowed.
             width: number of plans that the beam search keeps at each step.
-            barred: returns which tokens must not follow the tokens of a plan, besides those that the grammar
-                rules out.
+            barred: tokens with which no plan shall begin.
         """
         drafts, done = [Draft.of(text)], list[Draft]()
         own, refusal = _nothing(across), 0.0
@@ -153,8 +152,7 @@ class NeuralNetwork:
                 refusal = float(np.exp(logs[0, REFUSED]).sum())
                 if refusal < refuse_from:
                     logs[0] = _without(logs[0], REFUSED)
-            for row, draft in enumerate(drafts):
-                logs[row, [NUMBER_OF[word] for word in barred(draft.tokens)]] = -np.inf
+                logs[0, [NUMBER_OF[word] for word in barred]] = -np.inf
             total = logs + np.array([[sum(draft.chances)] for draft in drafts], dtype=np.float32)
             likeliest = np.argsort(total, axis=None)[::-1][: 2 * width]
             longer, rows = list[Draft](), list[int]()

@@ -2,26 +2,32 @@
 
 import re
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause, Way
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
 ONE_WAY_ONLY = re.compile(
-    r"\b(?:only|nothing but|all|two) (?:the )?one[- ]?way (?:streets?|roads?)(?: only| cross| meet)?|"
-    r"one[- ]?way (?:streets?|roads?) (?:only|throughout|everywhere|cross)|"
-    r"(?:all|every|each)(?: of)?(?: the)? (?:streets?|roads?) (?:are |is |being )?one[- ]?way|"
-    r"(?:nur|lauter|ausschliesslich|nichts als|zwei) einbahnstra(?:ss|ß)en|alle stra(?:ss|ß)en sind einbahn|"
-    r"(?:que|uniquement|rien que|toutes) (?:des |les )?(?:rues|routes) (?:sont )?(?:a|en) sens unique|"
-    r"(?:solo|todas) (?:las )?(?:calles|carreteras) (?:son )?de sentido unico|"
-    r"(?:solo|tutte) (?:le )?strade (?:sono )?a senso unico"
+    r"\bone[- ]?way (?:streets|roads) (?:only|throughout|everywhere)\b|"
+    r"\b(?:nothing but|only) one[- ]?way (?:streets|roads)\b(?! (?:is|are))|"
+    r"\ball (?:the )?(?:streets|roads) (?:are )?one[- ]?way\b|"
+    r"\b(?:nur|lauter|ausschliesslich) einbahnstra(?:ss|ß)en\b|alle stra(?:ss|ß)en sind einbahnstra|"
+    r"\b(?:que|uniquement|rien que) des (?:rues|routes) a sens unique|"
+    r"\btoutes les (?:rues|routes) (?:sont )?a sens unique|"
+    r"\b(?:solo (?:hay )?|todas las )(?:calles|carreteras) (?:son )?de sentido unico|"
+    r"\b(?:solo |tutte le )strade (?:sono )?a senso unico"
 )
 """All roads are one-way, those that the route does not take as well."""
-STOPS = re.compile(
-    r"\bstops?\b|stoppschild|stoppstra|\bpanneaux? (?:de )?stop|\barret|\bpare\b|senal(?:es)? de alto"
+STOP_SIGNS = re.compile(
+    r"stop signs?|stopp?(?:schild|tafel|zeichen)|panneaux? (?:de )?stop|senal(?:es)? de (?:stop|alto)|"
+    r"(?:cartell[oi]|segnal[ei]) di stop"
 )
 DENIED = re.compile(
-    r"\b(?:no|not|without|never|don't|doesn't|kein\w*|nicht|ohne|pas|sans|sin|non|senza)\b[^.,;]*$"
+    r"(?:\b(?:no|not|without|never|cannot|neither|nor|kein\w*|nicht|nie|ohne|pas|aucun|ni|sans|jamais|sin|"
+    r"ningun|tampoco|non|nessun|ne|senza)|n['’]t)\b[^.,;]*$"
 )
+ONE_WAY = exactly(0)
+"""The oncoming lanes of a one-way road."""
 FROM: dict[Way, Way] = {"left": "right", "right": "left", "straight": "left"}
 """The side from which traffic comes on a one-way road that the route crosses or turns into, by its take."""
 
@@ -32,18 +38,24 @@ def with_other_roads(brief: Brief, words: str) -> Brief:
     If all streets are one-way, so are these. If the route has priority at one junction and stops at none, a
     stop sign is that of the others.
     """
-    said = plain(words)
-    junctions = brief.junctions
-    if all(road.against is not None and road.against.hi == 0 for road in brief.stretches) and (
-        ONE_WAY_ONLY.search(said)
-    ):
-        junctions = tuple(map(_one_way, junctions))
+    said, junctions, roads = plain(words), brief.junctions, brief.stretches
+    if _says(ONE_WAY_ONLY, said) and junctions:
+        roads = tuple(
+            each if each.against else each.model_copy(update={"against": ONE_WAY}) for each in roads
+        )
+        if all(each.against == ONE_WAY for each in roads):
+            junctions = tuple(map(_one_way, junctions))
+        else:
+            roads = brief.stretches
     first = [n for n, each in enumerate(junctions) if each.control == "priority"]
-    has_stop = any(not DENIED.search(said[: found.start()]) for found in STOPS.finditer(said))
-    if has_stop and len(first) == 1 and all(each.control != "stop" for each in junctions):
+    if len(first) == 1 and _says(STOP_SIGNS, said) and all(each.control != "stop" for each in junctions):
         known = junctions[first[0]].model_copy(update={"others_stop": True})
         junctions = (*junctions[: first[0]], known, *junctions[first[0] + 1 :])
-    return brief.model_copy(update={"junctions": junctions})
+    return brief.model_copy(update={"junctions": junctions, "stretches": roads})
+
+
+def _says(pattern: re.Pattern[str], said: str) -> bool:
+    return any(not DENIED.search(said[: found.start()]) for found in pattern.finditer(said))
 
 
 def _one_way(junction: JunctionClause) -> JunctionClause:

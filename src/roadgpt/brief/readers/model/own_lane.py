@@ -6,14 +6,12 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
 BEGINS = re.compile(
-    r"\b(?:in|on) the (left|right)(?:most|-hand| hand)? lane\b|"
-    r"\b(?:auf|in) de[rm] (linken|rechten) (?:fahr)?(?:spur|streifen)\b|"
-    r"\b(?:sur|dans) la (?:voie|file) de (gauche|droite)\b|"
-    r"\b(?:en|por) el carril (?:de la )?(izquierd[ao]|derech[ao])\b|"
-    r"\b(?:nella|sulla|in) corsia (?:di )?(sinistra|destra)\b"
-)
-CHANGES = re.compile(
-    r"\b(?:chang|switch|mov[ei]|get over|pull|shift|wechs|pass|depla|rabat|deboit|cambi|pas[ao]|spost|einord)"
+    r"\b(?:start|begin|set off|setting off|starting|beginning)\w*(?: out| off)? (?:in|on) the (left|right)"
+    r"(?:most|-hand| hand)? lane\b|"
+    r"\b(?:beginn|start)\w*(?: wir| man)? (?:auf|in) de[rm] (linken|rechten) (?:fahr)?(?:spur|streifen)\b|"
+    r"\b(?:commenc|demarr|part)\w* (?:sur|dans) la (?:voie|file) de (gauche|droite)\b|"
+    r"\b(?:empez|empiez|sal)\w* (?:en|por) el carril (?:de la )?(izquierd[ao]|derech[ao])\b|"
+    r"\b(?:cominc|iniz|part)\w* (?:nella|sulla|in) corsia (?:di )?(sinistra|destra)\b"
 )
 LEFT = ("left", "linken", "gauche", "izquierdo", "izquierda", "sinistra")
 
@@ -23,13 +21,13 @@ def without_own_lane(brief: Brief, words: str) -> Brief:
     the car begins: "start in the right lane, then change to the left one" has one change.
     """
     begins = BEGINS.search(plain(words))
-    if len(brief.junctions) < 2 or begins is None or CHANGES.search(plain(words)[: begins.start()]):
+    if len(brief.junctions) < 2 or begins is None:
         return brief
     own = "left" if next(filter(None, begins.groups())) in LEFT else "right"
     first, second = brief.junctions[:2]
-    changes = {first.kind, second.kind} == {"lane_change"}
-    if not changes or first.take != own or second.take == own:
-        return brief
     before, behind, *roads = brief.stretches
-    kept = behind if before.is_open else before
-    return brief.model_copy(update={"junctions": brief.junctions[1:], "stretches": (kept, *roads)})
+    changes = {first.kind, second.kind} == {"lane_change"}
+    if not changes or first.take != own or second.take == own or (before.length and behind.length):
+        return brief
+    road = behind if before.is_open else before.model_copy(update={"length": before.length or behind.length})
+    return brief.model_copy(update={"junctions": brief.junctions[1:], "stretches": (road, *roads)})

@@ -66,8 +66,7 @@ UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
 """Numbers that a plan may contain whatever the text says: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
-LEAST = {"arms=": 3}
-"""The smallest numbers that make sense: "a two-lane roundabout" has no two arms."""
+LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
 END = "<end>"
 IN_WORDS = {"against": ONE_WAY, "len": HALFWAY}
 """Words in place of an amount, by the key of a road."""
@@ -133,8 +132,7 @@ class Numbers:
         if key == "hills=" and not self.evidence.hills:
             return [number for number in COUNTS if number in self.said]
         if key not in UNIT_OF:
-            least = LEAST.get(key, 0)
-            return [number for number in (*COUNTS, *fitting) if self.value(number) >= least]
+            return [each for each in (*COUNTS, *fitting) if self.value(each) >= LEAST.get(key, 0)]
         unsaid = UNSAID.get(key, ())
         is_meant = {
             "deg=": self.evidence.angles,

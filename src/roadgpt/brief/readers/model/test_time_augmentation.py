@@ -10,16 +10,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from math import log
 
-from roadgpt.brief.junctions import NAMES
+from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.bounds import bounded
+from roadgpt.brief.readers.model.map_words import asks_for_map
 from roadgpt.brief.readers.model.mirror import in_mirror, in_mirror_tokens
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork, WrittenPlan
 from roadgpt.brief.readers.model.ring_sizes import with_ring_sizes
-from roadgpt.brief.readers.model.second_look import Condition, condition_missed
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.vocabulary import REFUSALS, plan_of
+from roadgpt.brief.readers.model.vocabulary import REFUSALS, TOKENS, plan_of
 from roadgpt.errors import RoadGPTError
 
 UNSEEN = 1.5
@@ -31,6 +31,8 @@ SURE = -0.1
 held out from training, 781 got such a plan, and the other variants changed none of their readings."""
 LEAST_UNLIKELY = 0.03
 """Added before a logarithm is taken, so that it is finite for a plan with probability 1."""
+NOT_A_MAP = tuple(token for token in TOKENS if token != MAP)
+"""All tokens but the one with which plans of maps begin."""
 UNDECIDED = (0.03, 0.97)
 """If the probability of a refusal lies between these values, the other variants are read as well."""
 
@@ -85,10 +87,6 @@ class VariantPlans:
         """The normal form of the likeliest plan."""
         return max(self.plans, key=lambda key: self.plans[key][0])
 
-    def with_plans(self, more: dict[str, tuple[float, WrittenPlan]]) -> "VariantPlans":
-        """Returns the plans together with further plans for the same variant."""
-        return VariantPlans({**more, **self.plans}, self.refusal)
-
     @property
     def is_clear(self) -> bool:
         """True if the network is nearly certain whether to refuse the description and which plan is right."""
@@ -120,10 +118,10 @@ def scored_plans(
     is_change = key is not None
     normal_form = key or _normal_form
 
-    def looks(words: str, is_mirrored: bool, within: Condition | None = None) -> list[VariantPlans]:
+    def looks(words: str, is_mirrored: bool, barred: Sequence[str] = ()) -> list[VariantPlans]:
         text = shown(slotted(words, is_change))
         return [
-            _plans_of_variant(each, text, refuse_from, is_mirrored, normal_form, within) for each in networks
+            _plans_of_variant(each, text, refuse_from, is_mirrored, normal_form, barred) for each in networks
         ]
 
     text = shown(slotted(words, is_change))
@@ -132,17 +130,11 @@ def scored_plans(
         others = _others(words)
         variants += [look for other in others for look in looks(*other)]
     found = _best_first(variants, text)
-    missed = condition_missed(text, found[0].tokens) if found and not is_change else None
-    if missed is None or not all(each.knows([*NAMES]) for each in networks):
+    wants_map = not is_change and asks_for_map(text) and all(each.knows([MAP]) for each in networks)
+    if not found or not wants_map or found[0].tokens[0] in (MAP, *REFUSALS):
         return found
-    again = [look for other in ((words, False), *others) for look in looks(*other, missed)]
-    both = [look.with_plans(more.plans) for look, more in zip(variants, again, strict=True)]
-    least = found[0].score - missed.worth
-
-    def is_out(draft: ScoredPlan) -> bool:
-        return not missed.holds(draft.tokens) or draft.score < least
-
-    return tuple(sorted(_best_first(both, text), key=is_out))
+    again = [look for other in ((words, False), *others) for look in looks(*other, barred=NOT_A_MAP)]
+    return _best_first(again, text) or found
 
 
 def _best_first(variants: Sequence[VariantPlans], text: SlottedText) -> tuple[ScoredPlan, ...]:
@@ -178,11 +170,10 @@ def _plans_of_variant(
     refuse_from: float,
     is_mirrored: bool,
     normal_form: Callable[[str], str],
-    within: Condition | None,
+    barred: Sequence[str],
 ) -> VariantPlans:
     plans: dict[str, tuple[float, WrittenPlan]] = {}
     chance = 0.0
-    barred = within.barred if within else lambda tokens: ()
     for written in network.write(network.encode(text), text, refuse_from, barred=barred):
         chance = written.refusal
         tokens = in_mirror_tokens(written.tokens) if is_mirrored else written.tokens

@@ -1,0 +1,77 @@
+"""Chooses among the plans that the networks wrote, and makes a Brief of one."""
+
+from collections.abc import Sequence
+
+from roadgpt.brief.feasible import check
+from roadgpt.brief.model import Brief
+from roadgpt.brief.normal import normal, total
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.count_correction import with_checked_counts
+from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.map_words import with_counted_map
+from roadgpt.brief.readers.model.mirror import is_of_junctions
+from roadgpt.brief.readers.model.other_roads import with_other_roads
+from roadgpt.brief.readers.model.own_lane import without_own_lane
+from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.readers.model.whole_drive import with_whole_drive
+from roadgpt.errors import BriefError
+
+NEARLY = 0.7  # difference of score
+
+
+def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
+    """Returns the likeliest plan whose turns have the sides that the words list.
+
+    If there is no list or no such plan, it is the likeliest one; or if its junctions contradict each other,
+    one that is nearly as likely and does not contradict itself.
+    """
+    first = found[0]
+    listed = _as_listed(found, text)
+    if listed is not None or first.is_refusal or not is_of_junctions(first.line) or can_be_kept(first.line):
+        return listed or first
+    near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
+    return next((draft for draft in near if can_be_kept(draft.line)), first)
+
+
+def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
+    """Returns the likeliest plan whose turns have the sides listed in the words; None if there is no list or
+    no such plan.
+    """
+    sides = listed_sides(text)
+    if not sides or found[0].is_refusal:
+        return None
+    is_route = is_of_junctions(found[0].line)
+    kept = (
+        draft
+        for draft in found
+        if not draft.is_refusal and is_of_junctions(draft.line) == is_route and can_be_kept(draft.line)
+    )
+    return next((draft for draft in kept if sides_of(read_plan(draft.line)) == sides), None)
+
+
+def brief_of(line: str, text: SlottedText, words: str) -> Brief:
+    """Returns the Brief of a plan, with what the words leave no choice about."""
+    brief = with_counted_map(with_checked_counts(read_plan(line), text), text)
+    return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
+
+
+def can_be_kept(line: str) -> bool:
+    """Returns whether a plan can be read and does not contradict itself."""
+    try:
+        brief = read_plan(line)
+        check(brief, map_size=None, min_radius=0.0)  # the limits of a World are checked in brief.read
+    except BriefError:
+        return False
+    return all(map(_sides_add_up, normal(brief).stretches or (normal(brief),)))
+
+
+def _sides_add_up(brief: Brief) -> bool:
+    """True if the numbers of left and right turns can add up to the number of turns."""
+    turns = brief.turns or total(brief.clauses)
+    sides = (brief.left, brief.right)
+    least = sum(side.lo or 0 for side in sides if side)
+    if turns.hi is not None and least > turns.hi:
+        return False
+    most = [side.hi if side else None for side in sides]
+    return None in most or turns.lo is None or sum(number or 0 for number in most) >= turns.lo
