@@ -23,6 +23,8 @@ from roadgpt.brief.readers.model.slots import slotted
         ("Un tramo plano sin curvas hasta el cruce", False),
         ("Un réseau sans feux: tout droit au carrefour", False),
         ("a town with two crossroads", False),
+        ("not just a map, but a route over two crossroads", False),
+        ("nicht nur eine Karte", False),
     ],
 )
 def test_a_map_without_a_route_is_heard(words: str, is_map: bool) -> None:
@@ -98,6 +100,8 @@ def test_blocks_and_dead_ends_of_maps_follow_from_the_words(asked: str, words: s
         ("crossroads straight priority", "I have priority and no stop sign", "crossroads straight priority"),
         ("crossroads straight priority", "priority, then a bus stop", "crossroads straight priority"),
         ("crossroads straight priority", "j'ai priorité, aucun panneau stop", "crossroads straight priority"),
+        ("crossroads straight priority", "there isn't a stop sign", "crossroads straight priority"),
+        ("crossroads straight priority", "there isn’t a stop sign", "crossroads straight priority"),
         (
             "| oneway // crossroads right",
             "One-way streets only, right at the crossroads.",

@@ -72,11 +72,11 @@ def test_bert_written_down_in_numpy_gives_what_the_graph_gives(weights: dict[str
 
 def test_every_parameter_of_the_network_is_there(weights: dict[str, np.ndarray]) -> None:
     torch = pytest.importorskip("torch", reason="comes with the extra 'learn'")
-    from roadgpt.brief.readers.model.vocabulary import TOKENS
+    from roadgpt.brief.readers.model.vocabulary import OF_ROADS
     from roadgpt.learn.network import NetworkSizes, ReaderNetwork
 
     reader = ReaderNetwork(
-        NetworkSizes(pieces=len(weights["pieces.weight"]), tokens=len(TOKENS), decoder_layers=LAYERS)
+        NetworkSizes(pieces=len(weights["pieces.weight"]), tokens=len(OF_ROADS), decoder_layers=LAYERS)
     )
     reader.load_state_dict({name: torch.from_numpy(array) for name, array in weights.items()})
 

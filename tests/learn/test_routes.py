@@ -9,6 +9,7 @@ import pytest
 
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model import WEIGHTS
 from roadgpt.brief.readers.model.mirror import (
     in_mirror_plan,
     in_mirror_tokens,
@@ -16,11 +17,13 @@ from roadgpt.brief.readers.model.mirror import (
     mirrored,
 )
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.vocabulary import TOKENS, plan_of, tokens_of
-from roadgpt.learn.data import NETWORK, is_for_roads_only
+from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS, plan_of, tokens_of
+from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.learn.data import NETWORK, example, examples, is_for_roads_only
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.routes import route_of, routes
 from roadgpt.learn.standard import standard
+from roadgpt.reading import read_text
 
 DATA = Path(__file__).parents[2] / "data"
 
@@ -173,6 +176,16 @@ def test_no_pair_of_networks_is_also_one_of_roads() -> None:
     assert len(networks) > 10_000
     assert len(roads) > 10_000
     assert not networks & roads
+
+
+def test_networks_for_single_roads_learn_no_token_of_routes() -> None:
+    """So they cannot write a junction, and the reader sees that a route is beyond them."""
+    pieces = WordPieces(read_text(WEIGHTS / "pieces.txt").split("\n"))
+    pair = Pair("left at the T", "t_junction left", "f", "en")
+    road = Pair("a left bend", "turn left", "f", "en")
+    assert max(example(pair, pieces).tokens) >= len(OF_ROADS)  # type: ignore[union-attr]
+    written = list(islice(examples(3, [pair, road], pieces, {"hand": 1.0}), 20))
+    assert {max(each.tokens) for each in written} < {*range(len(OF_ROADS))}
 
 
 def texts_of(folder: Path) -> set[str]:

@@ -125,7 +125,8 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """Returns the lanes of each road of a route, before, between and behind its junctions.
 
     Where nothing is required, a road has one lane in each direction, and what a ramp joins or leaves is one
-    carriageway of a motorway; a road that leads on straight across a junction has as many as before it.
+    carriageway of a motorway. A road that leads on straight across a junction has as many as before it; so
+    has one behind a turn if the lanes of both directions are required before it.
 
     Args:
         brief: the requirements.
@@ -150,7 +151,7 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
 
 def _continued(brief: Brief) -> list[Brief]:
     """Returns the requirements for the roads. Where those for lanes are left open, they are those of the road
-    before it that leads straight across a junction; and those of a road that continues it, if that has so
+    before if that keeps its lanes across the junction; and those of a road that continues it, if that has so
     many lanes that fewer would lead nowhere.
     """
     roads, places = list(brief.roads), brief.junctions

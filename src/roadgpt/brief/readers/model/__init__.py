@@ -116,7 +116,7 @@ class ModelReader:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found, text)
         brief = self._brief(words, text, draft, ensemble)
-        if draft is not found[0] and is_of_junctions(draft.line):
+        if is_of_junctions(draft.line) and not can_be_kept(found[0].line):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 

@@ -7,6 +7,7 @@ from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import ARMS
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.slots import SlottedText
 
 ONLY_A_MAP = re.compile(
@@ -18,10 +19,11 @@ ONLY_A_MAP = re.compile(
 )
 ONE = r"one|single|ein(?:e[nm]?|zige\w*)?|une?|seul|un[ao]?|solo"
 NONE = r"no|without(?: any)?|kein\w*|ohne|aucune?|pas d '|sans|ningun\w*|sin|nessun\w*|senza"
-DEAD_ENDS = re.compile(
-    rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?(?:dead(?: -)? ends?|cul - de - sacs?|sackgassen?|impasses?|"
-    r"(?:callejon\w*|calles?) sin salida|vicol[io] ciec(?:o|hi)|strad[ae] senza uscita)\b"
+DEAD_END = (
+    r"(?:dead(?: -)? ends?|cul - de - sacs?|sackgassen?|impasses?|(?:callejon\w*|calles?) sin salida|"
+    r"vicol[io] ciec(?:o|hi)|strad[ae] senza uscita)"
 )
+DEAD_ENDS = re.compile(rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?{DEAD_END}\b")
 BLOCKS = re.compile(
     rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?(?:blocks?|(?:hauser)?blocke?|ilots?|manzanas?|isolat[oi])\b"
 )
@@ -40,19 +42,15 @@ SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)strassen?|rues? (?:laterale|secondaire|transversale)s?|"
     r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
 )
-TREE = re.compile(
-    r"(?:dead(?: -)? end|end dead|cul - de - sac|sackgasse|impasse|sin salida|ciechi|cieco|"
-    r"senza uscita)"
-)
+TREE = re.compile(rf"\b(?:{DEAD_END}|end dead)\b")
 NOT_A_TREE = re.compile(
-    r"\b(?:none|not|nicht|pas|nessuna|ninguna?|keine[rs]?|aucune)\b[^.;]{0,25}"
-    r"(?:dead(?: -)? end|cul - de - sac|sackgasse|impasse|sin salida|ciec|senza uscita)"
+    rf"\b(?:none|not|nicht|pas|nessuna|ninguna?|keine[rs]?|aucune)\b[^.;]{{0,25}}{DEAD_END}\b"
 )
 
 
 def asks_for_map(text: SlottedText) -> bool:
     """Returns whether a description says that it wants a map without a route."""
-    return ONLY_A_MAP.search(_said(text)) is not None
+    return says(ONLY_A_MAP, _said(text))
 
 
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:

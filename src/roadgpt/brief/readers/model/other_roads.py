@@ -5,6 +5,7 @@ import re
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause, Way
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.numerals import plain
 
 ONE_WAY_ONLY = re.compile(
@@ -22,10 +23,6 @@ STOP_SIGNS = re.compile(
     r"stop signs?|stopp?(?:schild|tafel|zeichen)|panneaux? (?:de )?stop|senal(?:es)? de (?:stop|alto)|"
     r"(?:cartell[oi]|segnal[ei]) di stop"
 )
-DENIED = re.compile(
-    r"(?:\b(?:no|not|without|never|cannot|neither|nor|kein\w*|nicht|nie|ohne|pas|aucun|ni|sans|jamais|sin|"
-    r"ningun|tampoco|non|nessun|ne|senza)|n['’]t)\b[^.,;]*$"
-)
 ONE_WAY = exactly(0)
 """The oncoming lanes of a one-way road."""
 FROM: dict[Way, Way] = {"left": "right", "right": "left", "straight": "left"}
@@ -39,7 +36,7 @@ def with_other_roads(brief: Brief, words: str) -> Brief:
     stop sign is that of the others.
     """
     said, junctions, roads = plain(words), brief.junctions, brief.stretches
-    if _says(ONE_WAY_ONLY, said) and junctions:
+    if says(ONE_WAY_ONLY, said) and junctions:
         roads = tuple(
             each if each.against else each.model_copy(update={"against": ONE_WAY}) for each in roads
         )
@@ -48,14 +45,10 @@ def with_other_roads(brief: Brief, words: str) -> Brief:
         else:
             roads = brief.stretches
     first = [n for n, each in enumerate(junctions) if each.control == "priority"]
-    if len(first) == 1 and _says(STOP_SIGNS, said) and all(each.control != "stop" for each in junctions):
+    if len(first) == 1 and says(STOP_SIGNS, said) and all(each.control != "stop" for each in junctions):
         known = junctions[first[0]].model_copy(update={"others_stop": True})
         junctions = (*junctions[: first[0]], known, *junctions[first[0] + 1 :])
     return brief.model_copy(update={"junctions": junctions, "stretches": roads})
-
-
-def _says(pattern: re.Pattern[str], said: str) -> bool:
-    return any(not DENIED.search(said[: found.start()]) for found in pattern.finditer(said))
 
 
 def _one_way(junction: JunctionClause) -> JunctionClause:

@@ -11,6 +11,7 @@ from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.left_hand import NEGATED, says_left_hand
 from roadgpt.brief.model import Brief, CentreLine
+from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.numerals import plain
 
 LINES: dict[CentreLine, re.Pattern[str]] = {
@@ -52,7 +53,6 @@ ALL_THE_WAY = re.compile(
     r"ovunque|dappertutto|tutt[oa] (?:il|la|l') ?(?:percorso|tragitto|strada|giro)|tutte le strade)\b"
 )
 """Words that say that something holds on every road of the route."""
-DENIED = re.compile(r"\b(?:no|not|n't|nicht|kein\w*|pas|ni|non|sin|sans|ohne|without)\b")
 LANES = re.compile(r"\blanes?\b|spur|streifen|\bvoies?\b|carril|corsi[ae]\b")
 OF_LANES = ("lanes", "against", "divided")
 SIDE_STREET = re.compile(
@@ -140,17 +140,13 @@ def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, .
     say that all have the same. Where lanes end, begin or lead to ramps, roads have different lanes.
     """
     parts = [part for part in _parts(words) if not PLACED.search(part)]
-    whole = [part for part in parts if any(_is_meant(part, each) for each in ALL_THE_WAY.finditer(part))]
+    whole = [part for part in parts if says(ALL_THE_WAY, part)]
     has_changes = any(each.kind in (*RAMPS, *LANE_KINDS) for each in brief.junctions)
     if not has_changes and any(LANES.search(part) for part in whole):
         roads = _with_shared(roads, OF_LANES, lambda road: not road.motorway)
     if any(pattern.search(part) for part in whole for pattern in LINES.values()):
         roads = _with_shared(roads, ("centre",), _has_centre_line)
     return roads
-
-
-def _is_meant(part: str, found: re.Match[str]) -> bool:
-    return not DENIED.search(part[: found.start()])
 
 
 def _with_shared(

@@ -1,0 +1,22 @@
+"""Whether a phrase of a description is denied, in five languages."""
+
+import re
+
+DENIED = re.compile(
+    r"(?:\b(?:no|not|without|never|cannot|neither|nor|nicht|nie|kein\w*|ohne|pas|ni|aucune?|sans|jamais|sin|"
+    r"ningun[ao]?|tampoco|non|nessun[ao]?|ne|senza)|n['’]t)\b[^.,;:!?]*$"
+)
+
+
+def is_denied(before: str) -> bool:
+    """Returns whether a word that denies something stands in the part of a sentence before a phrase.
+
+    Args:
+        before: the text before the phrase, in lower case without accents.
+    """
+    return DENIED.search(before) is not None
+
+
+def says(pattern: re.Pattern[str], said: str) -> bool:
+    """Returns whether a text in lower case without accents has a phrase somewhere that is not denied."""
+    return any(not is_denied(said[: found.start()]) for found in pattern.finditer(said))
