@@ -83,8 +83,8 @@ __all__ = [
 ]
 
 PLAN = "plan"
-"""The name of the plan reader. A plan may list a roundabout or the like in ``beside(...)``: the road is then
-built without it. If another reader does so, ``read`` refuses the description."""
+"""The name of the plan reader. If a plan lists a roundabout or the like in ``beside(...)``, the road is built
+without it. If another reader lists one in ``Brief.beside``, ``read`` raises NotBuiltError."""
 
 
 class Reader(Protocol):
@@ -216,9 +216,9 @@ def alternatives(
 def remarks(brief: Brief, map_size: float, friction: float | None = None) -> tuple[str, ...]:
     """Returns what the user should know about a road of this Brief, as sentences without full stops.
 
-    For each thing in ``brief.beside`` they say that it is not built, must be given as a number, is set by an
-    option, or sets the friction. They also say what "motorway" requires, and whether the map can hold a
-    motorway.
+    For each thing in ``brief.beside``, a sentence says that the thing is not built, must be given as a
+    number, is set by an option, or sets the friction. For a motorway, a sentence says what the word requires
+    and whether the map can hold such a road.
 
     Args:
         brief: the Brief.
@@ -236,7 +236,7 @@ def reader_of(name: str, chat: ChatSettings | None = None) -> Reader:
         chat: settings of the language model, for readers that use one; None takes the user's settings.
 
     Raises:
-        PartError: no such reader is installed, or the folder holds no weights.
+        PartError: no such reader is installed, the reader takes no folder, or the folder holds no weights.
     """
     part, _, folder = name.partition(":")
     return _made(part, settings_for(plugins.find("readers", part), chat), folder)

@@ -1,4 +1,4 @@
-"""Defines the Amount, a number as a description gives it, and the base of immutable values."""
+"""Defines Amount, a number as a description gives it, and Frozen, the base class of immutable values."""
 
 from collections.abc import Iterator
 from math import inf
@@ -10,7 +10,7 @@ from roadgpt.brief.words import Range
 
 
 class Frozen(BaseModel):
-    """Base of immutable values that are compared by content and read from and written to JSON."""
+    """Base class of immutable values that are compared by content and read from and written to JSON."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -51,13 +51,13 @@ class Amount(Frozen):
 
 
 def span(amount: Amount | None) -> Range:
-    """Returns the interval of numbers that an amount allows; None allows every number."""
+    """Returns the range of numbers that an amount allows; None allows every number."""
     lo, hi = (amount.lo, amount.hi) if amount else (None, None)
     return Range(-inf if lo is None else lo, inf if hi is None else hi)
 
 
 def meets(amount: Amount | None, possible: Range) -> bool:
-    """Returns whether an amount allows a number of a range; None allows every number."""
+    """Returns whether an amount allows at least one number of a range; None allows every number."""
     own = span(amount)
     return max(own.lo, possible.lo) <= min(own.hi, possible.hi)
 

@@ -1,4 +1,7 @@
-"""Finds contradictions in what is required of the arms of a junction: one-way roads, ways on, and angles."""
+"""Finds contradictions in the requirements for the arms of a junction: one-way roads, ways on, and angles.
+
+The arms are the roads that meet at the junction.
+"""
 
 from itertools import product
 
@@ -8,7 +11,7 @@ from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import BriefError
 
 WITH_ONE_WAY_ARMS: tuple[JunctionKind, ...] = ("t_junction", "crossroads")
-"""The kinds of junctions at which arms that the route does not take can be one-way."""
+"""The kinds of junctions at which an arm that the route does not use can be one-way."""
 FULL = 360  # degrees
 ANGLES: dict[JunctionKind, Range] = {
     "t_junction": Range(55, 90),
@@ -16,19 +19,19 @@ ANGLES: dict[JunctionKind, Range] = {
     "crossroads": Range(40, 90),
     "star": Range(40, 65),
 }
-"""The angles in degrees that the two least distant arms of a junction can have."""
+"""The range of the smallest angle between two arms of a junction, in degrees."""
 TURNS: dict[JunctionKind, Range] = {
     "t_junction": Range(55, 125),
     "y_junction": Range(30, 90),
     "crossroads": Range(40, 140),
     "star": Range(30, 140),
 }
-"""The angles in degrees by which a route can turn to one side."""
-FORK_GAPS = (87.0, 153.0)  # degrees, between neighbouring arms of a fork of which angles are required
+"""The range of the angle by which a route can turn left or right at a junction, in degrees."""
+FORK_GAPS = (87.0, 153.0)  # degrees between neighbouring arms of a fork for which an angle is required
 
 
 def check_arms(junction: JunctionClause) -> None:
-    """Checks what is required of the arms of a junction.
+    """Checks the requirements for the arms of a junction.
 
     Raises:
         BriefError: The requirements contradict each other, or no junction has such arms; the message says
@@ -94,7 +97,7 @@ def _check_angles(junction: JunctionClause) -> None:
 
 
 def _turns(junction: JunctionClause) -> Range:
-    """Returns the angles in degrees by which the route can turn there, in the direction that is required."""
+    """Returns the angles in degrees by which the route can turn at the junction in the required direction."""
     kinds = [kind for kind in TURNS if junction.kind in (kind, "junction")]
     found = [TURNS[kind] for kind in kinds if meets(junction.arms, ARMS[kind])] or [TURNS["star"]]
     turns = Range(min(each.lo for each in found), max(each.hi for each in found))

@@ -62,25 +62,25 @@ ON_ROUTES = {
     "exit": "take the exit on the right",
     "lane_change": "change to the left lane",
 }
-"""The things that are built as parts of a route, with words that ask for them. Here they are named only by
-plans, and by readers that do not know routes."""
+"""The things that are built as parts of a route, by name, with words that ask for them. In ``Brief.beside``,
+these names come only from plans and from readers that do not know routes."""
 NETWORKS = (*ON_ROUTES, "loop")
-"""Names of the things that are not a single road. If a reader names one of them beside a road, ``brief.read``
-raises NotBuiltError, which proposes the road without it."""
+"""Names of the things that are not a single road. If a reader other than ``plan`` puts one of them into
+``Brief.beside``, ``brief.read`` raises NotBuiltError, which proposes the road without this thing."""
 NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
     "compared": "how one part compares with another is not built yet; give each its own number",
     "alike": "equal or evenly spaced parts are not built yet; give each its own number",
 }
-"""Wishes that are understood, but that so far must be given as numbers: their names, with the remarks."""
+"""Wishes that RoadGPT understands but cannot build without a number, by name, with the remark for each."""
 OPTIONS = {
     "lanes": "the number of lanes is set with --lanes, such as --lanes 2+1",
     "lane_width": "the width of lanes is set with --lane-width, such as --lane-width 3",
     "bank": "superelevation is set with --bank, such as --bank auto",
     "speed": "the speed limit is set with --speed-limit, such as --speed-limit 50",
 }
-"""Properties that are set by an option, not by a description: their names, with the remarks."""
+"""Properties that are set by an option, not by a description, by name, with the remark for each."""
 SAID_OTHERWISE = NEEDS_NUMBERS | OPTIONS
 BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
@@ -90,7 +90,7 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
     Args:
         names: names from ``Brief.beside``.
-        friction: friction coefficient of the road; with None, a surface among the things sets it.
+        friction: friction coefficient that the user has set; with None, a surface in ``names`` sets it.
     """
     for name in names:
         if name in ON_ROUTES:
@@ -107,10 +107,10 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 
 def networks_in(names: Iterable[str]) -> str:
-    """Returns why those things that are not a single road are not built beside one; empty if there are none.
+    """Returns a sentence on why the NETWORKS among the names are not built; empty if there are none.
 
-    The sentence has no full stop, such as "it is not clear where a roundabout should be; say it in driving
-    order, such as 'a roundabout, second exit'".
+    The sentence has no full stop: "it is not clear where a roundabout should be; say it in driving order,
+    such as 'a roundabout, second exit'".
     """
     named = [name for name in names if name in NETWORKS]
     if not named:
@@ -123,7 +123,7 @@ def networks_in(names: Iterable[str]) -> str:
 
 
 def friction_of(names: Iterable[str]) -> float | None:
-    """Returns the friction of the slipperiest surface among the names; None if no surface is named."""
+    """Returns the friction coefficient of the slipperiest surface among the names; None if there is none."""
     return min((SURFACES[name].friction for name in names if name in SURFACES), default=None)
 
 

@@ -56,9 +56,10 @@ def check(
     max_grade: float = STEEPEST / 100,
     road_width: float = ROAD_WIDTH,
 ) -> None:
-    """Checks, from the numbers of a Brief alone, whether some road could satisfy it.
+    """Checks, from the numbers of a Brief alone, whether some road could satisfy the Brief.
 
-    Of a route with junctions, each junction and each road is checked.
+    For a route with junctions, each junction, each road and the sequence of lanes are checked. Whether a
+    route or a map of roads has room on the map is not checked.
 
     Args:
         brief: the requirements; the Brief need not be in normal form.
@@ -107,7 +108,7 @@ def is_possible(
     min_radius: float = LEAST_RADIUS,
     max_grade: float = STEEPEST / 100,
 ) -> bool:
-    """Returns whether ``check`` finds nothing wrong with a Brief."""
+    """Returns whether ``check`` finds nothing wrong with a Brief; the arguments are those of ``check``."""
     try:
         check(brief, map_size, min_radius, max_grade)
     except BriefError:

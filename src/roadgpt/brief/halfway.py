@@ -16,7 +16,7 @@ WHOLE_LENGTH = re.compile(r"\|\|[^|]*\blen=(\d+(?:\.\d+)?)(?![\d.])")
 
 
 def without_halfway(line: str) -> str:
-    """Returns a plan with the length of the road instead of the word.
+    """Returns a plan with a range of lengths, such as "len=180..220", in place of each word "halfway".
 
     Raises:
         BriefError: The plan does not give the length of the whole route as one number.
@@ -30,7 +30,10 @@ def without_halfway(line: str) -> str:
 
 
 def with_halfway(line: str) -> str:
-    """Returns a plan with the word instead of a length, where the length is half of that of the route."""
+    """Returns a plan with the word "halfway" in place of each length that means half of the whole route.
+
+    A plan that does not give the length of the whole route as one number is returned unchanged.
+    """
     found = WHOLE_LENGTH.search(line)
     return (
         line if found is None else re.sub(rf"{re.escape(_length(float(found[1])))}(?![\d.])", HALFWAY, line)

@@ -33,22 +33,23 @@ POSSIBLE: dict[JunctionKind, tuple[str, ...]] = {
     "lane_gain": (),
     "lane_change": ("left", "right"),
 }
-"""The ways on that a kind of junction has; every way on is possible at the others."""
+"""The values of ``take`` that are possible at a kind of junction. At kinds that are not listed, the route can
+go every way except "ramp" and "main", and back only at a roundabout."""
 FIXED_ARMS: dict[JunctionKind, int] = {
     kind: int(arms.lo) for kind, arms in ARMS.items() if arms.lo == arms.hi and kind not in RAMPS
 }
-"""The kinds whose number of arms is fixed, with this number."""
+"""The number of arms of each kind that always has the same number, except for merges and exits."""
 MOST_BLOCKS = 8
 MOST_OF_KIND = 12
 MOST_ARMS_OF_MINI = 4  # with more, kerbs between them would have radii below 3 m
-CIRCULATORY = 10.0  # m, by which the outer diameter of a roundabout exceeds that of its island, about
+CIRCULATORY = 10.0  # m, about: the outer diameter of a roundabout minus the diameter of its island
 
 
 def check_junction(junction: JunctionClause) -> None:
     """Checks whether a junction can meet its requirements.
 
     Raises:
-        BriefError: It cannot; the message says what to change.
+        BriefError: The junction cannot meet its requirements; the message says what to change.
     """
     name, possible = junction.name, ARMS[junction.kind]
     is_ring = junction.kind == "roundabout"
@@ -94,7 +95,7 @@ def check_junction(junction: JunctionClause) -> None:
 
 LENGTHS = Range(10, 1500)  # m, of a lane for acceleration or deceleration, and of tapers
 OF_LANES = ("kind", "take", "side", "length", "taper")
-"""The fields that merges, exits and places where lanes change can have."""
+"""The fields of a JunctionClause that can be set for merges, exits, lane drops, gains and changes."""
 
 
 def _check_fields_of_lanes(junction: JunctionClause) -> None:
@@ -117,7 +118,7 @@ def check_turning_back(brief: "Brief") -> None:
     """Checks that a route ends after it has turned back at a roundabout.
 
     Raises:
-        BriefError: A junction, or requirements for a road, follow.
+        BriefError: Another junction, or requirements for the road, follow after turning back.
     """
     backs = [n for n, junction in enumerate(brief.junctions) if junction.take == "back"]
     if backs and (backs[0] < len(brief.junctions) - 1 or not brief.stretches[-1].is_open):
@@ -149,10 +150,10 @@ def _check_take(junction: JunctionClause, name: str) -> None:
 
 
 def check_lanes(brief: "Brief") -> None:
-    """Checks the lanes that a Brief requires of a road.
+    """Checks the lanes, the median and the centre line that a Brief requires of a road.
 
     Raises:
-        BriefError: A road cannot have them; the message says what to change.
+        BriefError: No road can meet these requirements; the message says what to change.
     """
     if not meets(brief.lanes, Range(1, MOST_LANES)):
         raise BriefError(
@@ -240,7 +241,7 @@ def _check_diameter(junction: JunctionClause) -> None:
 
 
 def _around(size: Range) -> Range:
-    """Returns the range of a size with the diameters between it and its neighbours."""
+    """Returns the range of a size, 1 m wider at both ends, so that no diameter lies between two sizes."""
     return Range(size.lo - 1, size.hi + 1)
 
 

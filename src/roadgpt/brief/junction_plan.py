@@ -2,8 +2,8 @@
 
     straight 80 // crossroads left lights // | up // roundabout exit=3 arms=4 || len=300
 
-Junctions and the roads between them alternate, separated by ``//``. Each road is a plan of its own; a road of
-which nothing is required is left out. What holds for the whole route follows after ``||``.
+Junctions and the roads between them alternate, separated by ``//``. Each road is a plan of its own; a road
+without requirements is left out. Requirements for the whole route follow after ``||``.
 """
 
 from typing import get_args
@@ -27,7 +27,7 @@ KEYS = ("degrees", "angle", "exit", "arms", "radius", "outer", "lanes", "length"
 SHORT = {"degrees": "deg", "radius": "r", "length": "len"}
 LONG = {short: name for name, short in SHORT.items()}
 SIDES = {"ways": "ways", "only_in": "in", "only_out": "out"}
-"""The fields that name sides, and how a plan writes them."""
+"""The fields of a JunctionClause that list sides, with their keys in a plan."""
 FIELDS = {key: name for name, key in SIDES.items()}
 SIDE = "side="
 DIAMETER = "d"
@@ -48,7 +48,7 @@ def junction_plan(junction: JunctionClause) -> str:
 
 
 def word_of(field: str) -> str:
-    """Returns how plans write a field of a JunctionClause."""
+    """Returns the key of a field of a JunctionClause in plans, such as "len" for "length"."""
     return SHORT.get(field, SIDES.get(field, field))
 
 
@@ -63,10 +63,10 @@ def is_junction(text: str) -> bool:
 
 
 def read_junction(text: str) -> JunctionClause:
-    """Returns the junction that a part of a plan describes.
+    """Returns the junction that a part of a plan describes; the part must not be empty.
 
     Raises:
-        BriefError: A word or number is not part of the plan language, or is given twice.
+        BriefError: A word or number is not part of the plan language, or a field is given twice.
     """
     kind, *words = text.split()
     fields: dict[str, object] = {"kind": kind}

@@ -1,6 +1,7 @@
 """Defines what a description can ask of a junction on the route, and what its words mean.
 
-Merges, exits of motorways, and places where lanes end, begin or are changed stand in one order with them.
+Merges, motorway exits, lane drops, lane gains and lane changes are listed together with the junctions, in
+driving order.
 """
 
 from collections.abc import Mapping
@@ -12,13 +13,13 @@ from roadgpt.brief.amount import Amount, Frozen, span
 from roadgpt.brief.words import Range
 
 PlainKind = Literal["t_junction", "y_junction", "crossroads", "star", "roundabout"]
-"""The kinds of junctions at which no road is a ramp."""
+"""The named kinds of junctions that have no ramps."""
 MapJunctionKind = Literal[PlainKind, "junction"]
 JunctionKind = Literal[MapJunctionKind, "merge", "diverge", "lane_drop", "lane_gain", "lane_change"]
 LaneKind = Literal["lane_drop", "lane_gain", "lane_change"]
 RAMPS: tuple[JunctionKind, ...] = ("merge", "diverge")
 LANE_KINDS: tuple[JunctionKind, ...] = get_args(LaneKind)
-"""The kinds that are no junctions: the road goes on with other lanes, or the route changes its lane."""
+"""The kinds that are not junctions: a lane ends, a lane begins, or the route changes to another lane."""
 Take = Literal[
     "left",
     "right",
@@ -51,7 +52,7 @@ NAMES: Mapping[JunctionKind, tuple[str, ...]] = {
 }
 """The English words for each kind; RoadGPT's own texts use the first one.
 
-A "junction" is of any kind but a roundabout, because the description names none.
+The kind "junction" means that the description names no kind; any kind but a roundabout is then possible.
 """
 ARMS: Mapping[JunctionKind, Range] = {
     "t_junction": Range(3, 3),
@@ -64,20 +65,20 @@ ARMS: Mapping[JunctionKind, Range] = {
     "diverge": Range(3, 3),
     **dict.fromkeys(LANE_KINDS, Range(2, 2)),
 }
-"""The number of arms of each kind, with the road on which the route arrives."""
+"""The number of arms of each kind, including the road on which the route arrives."""
 SIZES: Mapping[IslandSize, Range] = {
     "mini": Range(13, 25),
     "normal": Range(26, 45),
     "large": Range(46, 70),
 }
-"""The outer diameter of a roundabout in metres, for words that say its size.
+"""The range of the outer diameter of a roundabout in metres, for each word for its size.
 
-Mini: below 28 m is "compact" or "mini" in CD 116 Geometric design of roundabouts (National Highways); the
-other limits are usual figures.
+CD 116 Geometric design of roundabouts (National Highways) calls a roundabout of less than 28 m "compact" or
+"mini"; the other limits are usual figures.
 """
 ACROSS = Range(18, 70)
 """The outer diameters in metres with which roundabouts can be built."""
-SKEW = 70.0  # degrees; crossroads whose roads are less apart are skew
+SKEW = 70.0  # degrees; crossroads with a smaller angle between two neighbouring arms are skew
 SIDE = 25.0  # degrees; a smaller change of direction is straight on
 TAKES: Mapping[Take, str] = {
     "left": "turn left",
@@ -98,26 +99,26 @@ CONTROLS: Mapping[Control, str] = {
     "lights": "with traffic lights",
     "none": "without signs",
 }
-ABOUT = 5.0  # degrees, around an angle that is given as one number
+ABOUT = 5.0  # degrees: the tolerance of an angle that is given as one number
 BENDS = {"slight": Range(SIDE, 75), "sharp": Range(95, 180)}
 """How many degrees the route turns if it bears slightly, or turns sharply, to a side."""
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def side_of(turn: float) -> Way:
-    """Returns the side of a change of direction in degrees, left positive."""
+    """Returns the side to which a change of direction (``turn``, in degrees, left positive) leads."""
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def bends_as(take: Take | None, turn: float) -> bool:
     """Returns whether a change of direction in degrees is as slight or as sharp as a take such as
-    "slight_left"; true for takes that say neither.
+    "slight_left" says. The side is not compared; the result is True for takes without "slight" or "sharp".
     """
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
 def is_about(degrees: float, asked: Amount) -> bool:
-    """Returns whether an angle is the required one, within ``ABOUT`` of a single number."""
+    """Returns whether an angle in degrees is as required; a single number has the tolerance ``ABOUT``."""
     wanted, slack = span(asked), ABOUT if asked.exact else 0.0
     return degrees in Range(wanted.lo - slack, wanted.hi + slack)
 
@@ -127,26 +128,26 @@ class JunctionClause(Frozen):
 
     kind: JunctionKind
     take: Take | None = None
-    """Where the route goes on; in a fork, "left" and "right" are the leftmost and the rightmost way."""
+    """Where the route goes on; at a fork, "left" and "right" are the leftmost and the rightmost way."""
     exit: Amount | None = None
-    """The number of the exit at a roundabout, counted along the ring; the last one leads back."""
+    """The number of the exit at a roundabout, counted in driving direction; the last exit leads back."""
     arms: Amount | None = None
-    """The number of roads that meet, with the one on which the route arrives."""
+    """The number of roads that meet, including the road on which the route arrives."""
     ways: tuple[Way, ...] = ()
-    """The sides to which one can leave, other than back; empty if the description does not say."""
+    """The sides to which a car can leave, other than back; empty if the description does not say."""
     control: Control | None = None
     only_in: tuple[Way, ...] = ()
-    """The sides on which a one-way road leads to the junction: nobody leaves on it."""
+    """The sides with a one-way road that leads to the junction; no car can leave on this road."""
     only_out: tuple[Way, ...] = ()
-    """The sides on which a one-way road leads away from the junction."""
+    """The sides with a one-way road that leads away from the junction."""
     degrees: Amount | None = None
-    """The change of direction of the route, in degrees, positive to either side."""
+    """The angle by which the route turns, in degrees, positive both to the left and to the right."""
     angle: Amount | None = None
-    """The angle in degrees between those two neighbouring arms that are the least apart."""
+    """The smallest angle between two neighbouring arms, in degrees."""
     skew: bool = False
     """Whether two neighbouring arms of a crossroads are less than 70 degrees apart."""
     size: IslandSize | None = None
-    """The size of a roundabout, if the description gives a word."""
+    """The size of a roundabout, if the description gives a word such as "mini" for it."""
     radius: Amount | None = None
     """The radius of the central island of a roundabout in metres."""
     outer: Amount | None = None
@@ -156,11 +157,13 @@ class JunctionClause(Frozen):
     side: Side | None = None
     """The side of the ramp of a merge or an exit, or of the lane that ends or begins."""
     length: Amount | None = None
-    """The length in metres of the lane for acceleration or deceleration, or of the taper of a lane."""
+    """The length in metres: at a merge or an exit, of the acceleration or deceleration lane; where a lane of
+    the road ends or begins, of its taper.
+    """
     taper: Amount | None = None
-    """The length in metres in which the lane for acceleration or deceleration ends or begins."""
+    """The length in metres of the taper of the acceleration or deceleration lane."""
     all_way: bool = False
-    """Whether every arm has the sign or the light of the route."""
+    """Whether every arm has the same sign or traffic light as the arm on which the route arrives."""
     others_stop: bool = False
     """Whether the roads that give way to the route have stop signs."""
     crosswalk: bool = False

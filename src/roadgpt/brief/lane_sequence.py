@@ -1,4 +1,4 @@
-"""Finds contradictions between the lanes of the roads of a route and what the route passes between them."""
+"""Finds contradictions between the lanes of a route's roads and the lane changes and ramps between them."""
 
 from typing import TYPE_CHECKING
 
@@ -11,17 +11,18 @@ if TYPE_CHECKING:
     from roadgpt.brief.model import Brief
 
 STEPS = {"lane_drop": -1, "lane_gain": 1, "lane_change": 0}
-"""By how many lanes the road behind a place where lanes change differs from the road before it."""
-LEAST_BESIDE_RAMP = 28.0  # m; the rule ``ramp_too_short`` gives the source
-LEAST_LANE = 17.0  # m, before the taper, which counts as 28 with one of 60 m: what that rule requires
-WIDE_IN_TAPER = 0.196  # of a taper, in which the lane is still wider than 0.9 of its width
+"""The number of lanes of the road behind a place where lanes change, minus that of the road before it."""
+LEAST_BESIDE_RAMP = 28.0  # m; source: the rule ``ramp_too_short``
+LEAST_LANE = 17.0  # m, before the taper; with the wide part of a taper of 60 m, these are the required 28 m
+WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wider than 0.9 of its full width
 
 
 def check_lane_sequence(brief: "Brief") -> None:
-    """Checks the lanes of the roads of a route, each with what stands before and behind it.
+    """Checks the numbers of lanes before and behind each place, and the lengths of the lanes beside ramps.
 
     Raises:
-        BriefError: They contradict each other; the message says what to change.
+        BriefError: The numbers of lanes contradict each other, or the acceleration or deceleration lane of a
+            merge or an exit is too short; the message says what to change.
     """
     for n, place in enumerate(brief.junctions):
         before, after = brief.stretches[n : n + 2]

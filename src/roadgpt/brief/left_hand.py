@@ -1,4 +1,4 @@
-"""Left-hand traffic: the words in five languages that ask for it."""
+"""Finds the words that ask for left-hand traffic, in five languages."""
 
 import re
 
@@ -40,7 +40,7 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
 
     Args:
         words: the description.
-        by_place: whether "as in Scotland" asks for it, too.
+        by_place: True if naming a country ("as in Scotland") also asks for it.
     """
     said = unaccented(words)
     found = [*SAYS.finditer(said), *(BY_PLACE.finditer(said) if by_place else ())]
@@ -48,8 +48,10 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
 
 
 def with_driving_side(brief: Brief, words: str) -> Brief:
-    """Returns the Brief with traffic on the left if the words ask for it; "left-hand traffic" alone names no
-    other cars.
+    """Returns the Brief with traffic on the left if the Brief or the words ask for it; otherwise unchanged.
+
+    The phrase "left-hand traffic" does not ask for other cars: without another word for traffic, "traffic" is
+    removed from ``beside``.
     """
     if not (brief.left_hand or says_left_hand(words)):
         return brief

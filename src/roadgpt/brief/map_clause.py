@@ -1,6 +1,6 @@
-"""Defines what a description can ask of a map of roads without a route, and how a plan says it.
+"""Defines what a description can ask of a map of roads, and how a plan writes these requirements.
 
-map columns=3 rows=2 lights        a grid with three by two blocks
+map columns=3 rows=2 lights        a grid of three by two blocks with traffic lights
 map crossroads x3; roundabout      three crossroads and a roundabout, joined by roads
 map columns=2 rows=2 route=left+straight   a grid, and where the route through it goes at its junctions
 """
@@ -38,14 +38,14 @@ class MapClause(Frozen):
     rows: Amount | None = None
     """The number of blocks of a grid from south to north."""
     length: Amount | None = None
-    """The distance in metres between neighbouring junctions of a grid."""
+    """The distance in metres between neighbouring junctions."""
     junctions: tuple[JunctionCount, ...] = ()
     dead_ends: Amount | None = None
-    """The number of roads that end nowhere, as those that lead out of the map do."""
+    """The number of dead ends; a road that leads out of the map also counts as a dead end."""
     control: Control | None = None
     """The sign or light of all junctions."""
     route: tuple[Way, ...] = Field((), max_length=LONGEST_ROUTE)
-    """Where the route goes at the junctions that it passes; empty: it is drawn freely."""
+    """Where the route goes at the junctions that it passes, in driving order; if empty, it is random."""
 
     @model_validator(mode="after")
     def _one_form(self) -> Self:
@@ -80,7 +80,8 @@ def read_map(line: str) -> MapClause:
     """Returns the map that a plan describes.
 
     Raises:
-        BriefError: A word or number is not part of the plan language, or is given twice.
+        BriefError: A word or number is not part of the plan language, a field is given twice, or the plan
+            gives neither a grid nor junctions, or both.
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
@@ -117,7 +118,7 @@ def read_ways(text: str) -> tuple[Way, ...]:
     """Returns the ways that a route takes at junctions, from a text such as "left, straight".
 
     Raises:
-        BriefError: A word is neither left, right nor straight, or there are too many.
+        BriefError: A word is neither left, right nor straight, or there are no words or more than 12.
     """
     words = [word for word in re.split(r"[+,\s]+", text) if word]
     ways: list[Way] = [way for word in words for way in get_args(Way) if way == word]
@@ -133,7 +134,7 @@ def with_route(asked: MapClause | None, text: str) -> MapClause:
     """Returns a map whose route goes where a text such as "left,straight" says.
 
     Raises:
-        BriefError: There is no map, or the text cannot be read.
+        BriefError: ``asked`` is None, or the text cannot be read.
     """
     if asked is None:
         raise BriefError(

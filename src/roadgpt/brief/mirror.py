@@ -1,7 +1,7 @@
 """Exchanges left and right in requirements.
 
 Traffic on the left is the mirror image of traffic on the right: a route with traffic on the left meets a
-Brief where its mirror image meets the mirrored Brief.
+Brief exactly if the mirror image of the route meets the mirrored Brief.
 """
 
 from typing import get_args
@@ -20,7 +20,8 @@ OTHER_TAKE: dict[Take, Take] = {
 def mirrored(brief: Brief) -> Brief:
     """Returns the same requirements with left and right exchanged, and with traffic on the other side.
 
-    The numbers of exits stay: they are counted in the direction in which traffic drives around a roundabout.
+    The numbers of exits stay, because exits are counted in the direction in which traffic drives around a
+    roundabout. ``map`` also stays as it is.
     """
     whole = _with_other_sides(brief)
     return whole.model_copy(

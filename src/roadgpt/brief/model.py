@@ -139,12 +139,12 @@ class Brief(Frozen):
     """The words of the description that were not understood."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0
     junctions: tuple[JunctionClause, ...] = ()
-    """The junctions that the route passes, in driving order. With junctions, ``stretches`` has the
-    requirements for the roads between them; of the fields above, only ``length``, ``beside``, ``unused`` and
-    ``confidence`` then hold for the whole route.
+    """The junctions that the route passes, in driving order. If there are any, ``stretches`` has the
+    requirements for the roads; of the fields above, only ``words``, ``length``, ``beside``, ``unused`` and
+    ``confidence`` are then used, for the whole route.
     """
     stretches: "tuple[Brief, ...]" = ()
-    """The roads before, between and after the junctions; one more than there are junctions."""
+    """The requirements for the roads before, between and after the junctions: one more than junctions."""
     lanes: Amount | None = None
     """The number of lanes in the direction of the drive."""
     against: Amount | None = None
@@ -158,7 +158,7 @@ class Brief(Frozen):
     map: MapClause | None = None
     """The map of roads that is required instead of one road; then no other requirement is given."""
     other: str = ""
-    """The plan of the second likeliest reading, if the reader is not sure of this one; otherwise empty."""
+    """The plan of the second likeliest reading, if the reader is not sure of this Brief; otherwise empty."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -184,10 +184,10 @@ class Brief(Frozen):
 
     @property
     def lanes_text(self) -> str | None:
-        """The required lanes as text, such as "2+1"; None if none are required.
+        """The numbers of lanes along and against the drive, such as "2+1"; None if neither is required.
 
-        A side of which nothing is required has one lane; but no lane leads against the drive on a motorway,
-        which is one carriageway.
+        A direction without a requirement gets one lane, but a motorway, which is one carriageway, then gets
+        no lane against the drive.
         """
         if self.lanes is None and self.against is None:
             return None
@@ -201,13 +201,14 @@ class Brief(Frozen):
 
     @property
     def is_of_network(self) -> bool:
-        """Whether a network is required: junctions, a map, a median, or traffic on the left."""
+        """Whether a road network is required: for junctions, a map, a median, or traffic on the left."""
         return bool(self.junctions or self.map is not None or self.divided or self.left_hand)
 
     @property
     def roads(self) -> "tuple[Brief, ...]":
-        """The roads before, between and after the junctions, or the only road, which needs a turn unless
-        other turns are asked for.
+        """The requirements for the roads before, between and after the junctions, or for the only road.
+
+        The only road needs at least one turn if it has neither clauses nor a number of turns.
         """
         if self.stretches:
             return self.stretches
@@ -229,5 +230,5 @@ class Brief(Frozen):
 
     @property
     def friction(self) -> float | None:
-        """The friction of the slipperiest surface that the words name; None if they name none."""
+        """The friction coefficient of the slipperiest surface in ``beside``; None if there is no surface."""
         return friction_of(self.beside)

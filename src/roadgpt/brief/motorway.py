@@ -1,9 +1,9 @@
-"""Motorways, freeways, Autobahnen: what these words require, and whether the map can hold such a road.
+"""Defines what words such as "motorway" require, and whether the map can hold such a road.
 
-The readers read "motorway" as a road with sweeping turns. An actual motorway has wider turns than that: if
-the map can hold them, every turn gets a radius of 600 m or more, and no place is steeper than 5 percent. On a
-smaller map, the turns are only sweeping ones, and ``remarks`` reports this. Requirements for the turns
-themselves ("a motorway with a hairpin") take precedence over those of the word "motorway".
+The readers read "motorway" as a road with sweeping turns. The turns of an actual motorway are wider: every
+turn gets a radius of 600 m or more if the map and the required length can hold such turns. Otherwise the
+turns are only sweeping, and ``remarks`` reports this. In both cases, no place is steeper than 5 percent.
+Requirements for turns and slopes ("a motorway with a hairpin") take precedence over those of the word.
 
 Sources: AASHTO, A Policy on Geometric Design of Highways and Streets (2018), for 70 mph: radii of 2,040 ft or
 more (622 m) at 6 percent superelevation, grades up to 5 percent in mountains, curves at least 15 ft long per
@@ -42,18 +42,18 @@ NOT_ONE = _bag(
     "no not without off from to towards toward near beside leaving leave join joining over under",
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",
 )
-"""Words that, right before "motorway", mean that the road is not a motorway, or only near one."""
-BACK = 3  # how many words before "motorway" are checked
+"""Words that mean, up to three words before "motorway", that the road is not one, or only near one."""
+BACK = 3  # how many words before "motorway" are searched for NOT_ONE
 PARTS_OF_ONE = _bag(
     "exit exits ramp ramps slip interchange junction entrance bridge services ausfahrt auffahrt"
 )
-"""Words that, right after "motorway", name another road that belongs to the motorway, such as a ramp."""
+"""Words that, right after "motorway", name only a part of it, such as a ramp or a bridge."""
 OPEN_KINDS = frozenset({"turn", "s_bend", "winding"})
 """The kinds of turns whose radius is not fixed by their kind."""
 SHORTEST_CURVE = 320.0  # metres
 BETWEEN = 17.5  # metres from one turn to the next, at least
 LEADS = 33.0  # metres of straight before the first turn and after the last turn together
-SIDES = 1.3  # sides of the map that a nearly straight road may take up
+SIDES = 1.3  # a nearly straight road may be this many sides of the map long
 COMFORT = 1.5  # the proposed map is this many times the least length of the road
 ROUND = 500.0  # metres: the proposed map is rounded up to this
 STEEP = ("steeply_up", "steeply_down")
@@ -89,7 +89,10 @@ def has_low_grades(brief: Brief) -> bool:
 
 
 def remarks(brief: Brief, map_size: float) -> tuple[str, ...]:
-    """Returns sentences, without full stops, on what "motorway" requires and whether this map can hold it."""
+    """Returns sentences, without full stops, on what "motorway" requires and whether the map can hold it.
+
+    Empty if the Brief asks for no motorway; ``map_size`` is the side of the map in metres.
+    """
     if not brief.motorway:
         return ()
     wide, low = f"turns of {MOTORWAY_RADIUS:g} m radius or more", f"grades of {MOTORWAY_GRADE:g} % or less"

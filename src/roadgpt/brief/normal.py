@@ -44,7 +44,10 @@ PLAIN: dict[Slope, Slope] = {
 
 
 def normal(brief: Brief) -> Brief:
-    """Returns the normal form of a Brief; a Brief in normal form is returned unchanged."""
+    """Returns the normal form of a Brief; a Brief in normal form is returned unchanged.
+
+    For a route with junctions, the requirements for each road are brought into normal form.
+    """
     if brief.junctions or brief.map is not None:
         stretches = tuple(map(_normal_stretch, brief.stretches))
         return brief.model_copy(update={**UNSAID, "stretches": stretches})

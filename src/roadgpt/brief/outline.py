@@ -59,7 +59,7 @@ class Feature:
 
     def limits(self, *more: str) -> str:
         """Returns the requirements as text, such as ': to the left, 25 to 120 degrees'; empty if there are
-        none. ``more`` are further requirements.
+        none. The texts in ``more`` are added at the end.
         """
         spans = {name: getattr(self, name) for name in FEATURE}
         if self.kind == "straight":
@@ -94,7 +94,7 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Outline:
-    """All requirements of a Brief, as ranges for measurable values."""
+    """All requirements of a Brief for one road, as ranges for measurable values; None sets no requirement."""
 
     groups: tuple[Group, ...]
     """The features in driving order; if any feature is a turn, the groups name all turns of the road."""

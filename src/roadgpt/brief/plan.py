@@ -112,8 +112,8 @@ def read_plan(line: str) -> Brief:
     """Returns the Brief that a plan describes.
 
     Raises:
-        BriefError: a word, key or number is not part of the plan language, a field is given twice, or the
-            plan is a refusal.
+        BriefError: a word, key or number is not part of the plan language, a field is given twice, roads and
+            junctions do not alternate, or the plan is a refusal.
     """
     if line.lstrip().startswith("!"):
         raise refused(line)
@@ -121,7 +121,7 @@ def read_plan(line: str) -> Brief:
         return _read_network(without_halfway(line))
     if is_map(line):
         return _read_map(line)
-    road, _, whole = line.partition(WHOLE)  # of a single road, | and || ask the same
+    road, _, whole = line.partition(WHOLE)  # for a single road, | and || mean the same
     clauses, _, own = road.partition("|")
     wishes = f"{own} {whole}"
     fields: dict[str, object] = {

@@ -23,7 +23,7 @@ def read_amount(text: str) -> Amount:
     """Returns the amount that a plan gives.
 
     Raises:
-        BriefError: The text is not an amount.
+        BriefError: The text is not an amount, or the first number of a range is the larger one.
     """
     match = AMOUNT.fullmatch(text)
     if not match or not (match[1] or match[3]) or (match[1] and match[3] and not match[2]):

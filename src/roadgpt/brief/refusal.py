@@ -1,4 +1,4 @@
-"""Defines errors and messages for refused descriptions, and the greatest length of a description.
+"""Defines errors and messages for refused descriptions, and the largest length of a description.
 
 ``TooMuchError`` and ``NoRoomError`` contain the Brief, because a larger map may hold the road.
 ``AnotherRoadError`` contains the plan and the Brief of a road that can be built.
@@ -10,7 +10,7 @@ from roadgpt.brief.words import SURFACES
 from roadgpt.errors import BriefError
 
 MOST_CHARACTERS = 2000
-"""Longest description that is read."""
+"""The largest number of characters in a description."""
 EXAMPLE = "say for example 'an uphill road with 3 turns'"
 """The end of the message for a description that is empty or says nothing about a road."""
 ADVICE = {
@@ -21,7 +21,7 @@ ADVICE = {
     " possible; leave that out",
     "!unclear": "what is wanted is not said; say what the road should be like, or what is to change where",
 }
-"""The refusals of the plan language, with the message of each if no cause is named."""
+"""The refusals of the plan language, with the message for a refusal that names no cause."""
 CLASHING = {
     "turns": "the number of turns",
     "sides": "left and right",
@@ -34,7 +34,7 @@ CLASHING = {
     "climb": "its heights",
     "length": "its length",
 }
-"""Causes of a contradiction, with the requirements that contradict each other."""
+"""Causes of a contradiction, with their wording in the message."""
 BEYOND = {
     "grade": "grades above 15 percent",
     "radius": "radii below 15 m",
@@ -43,7 +43,7 @@ BEYOND = {
     "turns": "more than 12 turns on a map of 250 m",
     "loop": "a road that crosses itself",
 }
-"""Causes of an impossibility, with what cannot be built."""
+"""Causes for which a road cannot be built, with their wording in the message."""
 
 
 BY_OPTION = {
@@ -51,7 +51,7 @@ BY_OPTION = {
     **{name: f"the surface is set with --friction {each.friction:g}" for name, each in SURFACES.items()},
     "climb": "a height in metres cannot be changed yet; say the slope in percent",
 }
-"""Requests that a description cannot make, but an option or other words can, with the advice for each."""
+"""Wishes that must be given by an option or in other words, by name, with the advice for each."""
 OF_CAUSES = {"!contradiction": CLASHING, "!impossible": NOT_BUILT | BEYOND | BY_OPTION}
 """The causes that each refusal can have, with the wording of each cause in the message."""
 
@@ -60,7 +60,7 @@ def causes_of(line: str) -> tuple[str, str]:
     """Returns the kind of a refusal, such as "!impossible", and its causes in words ("" if it names none).
 
     Raises:
-        BriefError: the plan is no refusal, or has causes that this kind of refusal cannot have.
+        BriefError: the plan is not a refusal, or has causes that this kind of refusal cannot have.
     """
     kind, *causes = line.split()
     known = OF_CAUSES.get(kind, {})
@@ -70,7 +70,7 @@ def causes_of(line: str) -> tuple[str, str]:
 
 
 def refused(line: str) -> BriefError:
-    """Returns the error for a plan that is a refusal, such as '!impossible roundabout'."""
+    """Returns, without raising it, the error for a plan that is a refusal, such as '!impossible loop'."""
     try:
         kind, said = causes_of(line)
     except BriefError as error:
@@ -102,8 +102,8 @@ class AnotherRoadError(BriefError):
     """Raised if a description cannot be built as it is, but another road may be what is meant.
 
     Attributes:
-        offer: why the description cannot be built, and what is offered instead; a plan or a road can follow
-            behind a colon.
+        offer: why the description cannot be built, and what is offered instead; a colon and the plan, or a
+            description of the road, can be added.
         plan: the plan of the road that is offered.
         brief: the requirements of this plan.
     """
@@ -114,13 +114,13 @@ class AnotherRoadError(BriefError):
 
 
 class NotBuiltError(AnotherRoadError):
-    """Raised if a reader names something beside a road that cannot be there, such as a roundabout; the road
-    without it is offered.
+    """Raised if a reader puts something into ``Brief.beside`` that cannot stand beside a road, such as a
+    roundabout; offers the road without this thing.
     """
 
 
 class ContradictionError(AnotherRoadError):
-    """Raised if a description contradicts itself; the likeliest plan that does not is offered."""
+    """Raised if a description contradicts itself; offers the likeliest plan without a contradiction."""
 
 
 class NoRoomError(BriefError):

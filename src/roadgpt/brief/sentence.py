@@ -14,7 +14,7 @@ CENTRES: dict[CentreLine, str] = {
     "none": "no centre line",
 }
 WAVY = ("serpentine", "zigzag", "winding", "slalom")
-"""The kinds whose name covers all their turns, so that a count is the number of turns."""
+"""The kinds whose name stands for several turns; their ``count`` is the number of these turns."""
 
 
 def sentence(brief: Brief) -> str:

@@ -49,7 +49,7 @@ MOST_LANES = 4  # in one direction
 
 
 def nearest(number: float, *ranges: Range) -> float:
-    """Returns the number in all of these ranges that is nearest to a number; they overlap."""
+    """Returns the number nearest to ``number`` that lies in all of the ranges, which must overlap."""
     low, high = max(each.lo for each in ranges), min(each.hi for each in ranges)
     return min(max(number, low), high)
 
@@ -145,8 +145,8 @@ SLOPES: Mapping[Slope, Meaning] = {
 LEAST_GRADE = 1.0  # percent: a road that climbs or falls less is level
 FIGURE_WINS = 0.6
 """If a description gives both a word and a number, such as a "wide" turn and its radius, the number takes
-precedence. It may lie outside the usual range of the word: down to this factor times the lower end, or up to
-the upper end divided by this factor."""
+precedence. The number may lie outside the usual range of the word: down to this factor times the lower end,
+or up to the upper end divided by this factor."""
 
 MOUNTAIN = Range(4, 15)
 """The grade of the steepest place of 'a mountain road' in percent, up or down."""
@@ -238,7 +238,7 @@ COUNTS = {"turns": "turn", "left": "left turn", "right": "right turn"}
 """The nouns for the fields of the Brief and the Outline that count turns, by the name of the field."""
 
 WHOLE_SLOPES = {"up": "climbs", "down": "falls", "flat": "is level"}
-"""What the whole road does; it stands after 'the whole road' and 'a road that'."""
+"""The verb for each slope of the whole road, for texts such as 'the whole road climbs'."""
 
 
 class Surface(NamedTuple):
@@ -369,7 +369,7 @@ def _rows(title: str, heads: tuple[str, ...], rows: Iterable[tuple[str, ...]]) -
 
 
 SURE = 0.8
-"""If the confidence is below this, a reading is wrong so often that the user is asked or warned."""
+"""Readings with a confidence (0 to 1) below this are wrong so often that the user is asked or warned."""
 
 
 def unaccented(words: str) -> str:

@@ -5,8 +5,8 @@ The search's goal decides how valuable a candidate is:
 failures   the higher its predicted probability of failing, the more valuable; cells with few failures so
            far have a higher weight
 coverage   the fewer tests its predicted cell has, the more valuable
-hardest    the smaller the mean of the predicted margins minus their spread, the more valuable
-boundary   as for failures, but most valuable where failing is as likely as not
+hardest    the smaller the mean of the predicted margins minus their standard deviation, the more valuable
+boundary   as for failures, but the value peaks near a predicted probability of failing of 0.5
 """
 
 from collections import Counter
@@ -40,7 +40,8 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
         goal: what the search looks for.
         n: largest number of candidates to return.
         expected: the surrogate's predictions for the candidates.
-        counts: for each map, the number of failures so far in each cell; for the goal "coverage", of tests.
+        counts: for each map, the number of failures so far in each cell; for the goal "coverage", the number
+            of tests.
     """
     weight = (expected.margins <= 0.0).astype(float) if goal != "coverage" else np.ones_like(expected.margins)
     maps = [CountedCells.of(cells, known) for cells, known in zip(expected.cells, counts, strict=True)]
@@ -64,21 +65,23 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
 
 
 class CountedCells(NamedTuple):
-    """The predicted cells of one map, numbered anew from 0, and what is known of each."""
+    """The predicted cells of one map, numbered anew from 0, and the count in each cell."""
 
     cells: NDArray[np.intp]
+    """New cell numbers, ``(trees, n)``."""
     known: Array
+    """Number of failures, or of tests, in each cell, by new cell number."""
 
     @classmethod
     def of(cls, cells: NDArray[np.intp], counts: Counter[int]) -> "CountedCells":
-        """Numbers the cells anew, so that the counts are an array."""
+        """Returns the cells with new, consecutive numbers, so that the counts fit in an array."""
         used, index = np.unique(cells, return_inverse=True)
         return cls(index.reshape(cells.shape), np.array([float(counts[int(cell)]) for cell in used]))
 
 
 def is_far(shape: PlanShape, known: PlanShape | None, least: float) -> bool:
-    """Returns whether the shape is at least ``least`` metres RMS away from every one of the stacked shapes;
-    True if there are none.
+    """Returns whether a shape is at least ``least`` metres RMS away from each shape in ``known``, which
+    ``stacked`` makes. Also returns True if ``known`` is None or ``least`` is 0.
     """
     return known is None or not least or float(apart(shape, known).min()) >= least
 
@@ -91,14 +94,15 @@ def stacked(shapes: Sequence[PlanShape]) -> PlanShape:
 
 
 def spread_out(features: Sequence[Array], n: int, hazard: Array) -> list[int]:
-    """Chooses candidates as long as the surrogate has too few drives to learn from; returns their indices.
+    """Returns the indices of candidates chosen without predictions, for use while the surrogate has too few
+    drives to learn from.
 
     The chosen roads are among the half of the candidates that looks hardest, and their features are diverse.
 
     Args:
         features: the surrogate's features of each candidate.
-        n: number of candidates to choose.
-        hazard: one number per candidate; the larger, the harder the road looks.
+        n: number of candidates to choose; if there are fewer, all are chosen.
+        hazard: one number per candidate, ``(len(features),)``; the larger, the harder the road looks.
     """
     order = np.argsort(-hazard, kind="stable")[: max(n, (len(features) + 1) // 2)]
     signs = np.array([features[i] for i in order])

@@ -22,8 +22,8 @@ class BatchScheduler:
     """Requests batches of tests from the generator of one cell.
 
     Batch k is requested once all tests of batch k - 2 have ended. By then the generator has received the
-    results of batches 0 to k - 2, and no others. If the tests of the cell run one after another, every batch
-    consists of one test, and it is requested once all earlier tests have ended.
+    results of batches 0 to k - 2, and no others. If the tests of the cell run one after another, each batch
+    consists of one test and is requested once all earlier tests have ended.
     """
 
     def __init__(self, cell: Cell, store: Store) -> None:
@@ -41,7 +41,7 @@ class BatchScheduler:
 
     @property
     def asked(self) -> int:
-        """Number of tests that the generator has been asked for so far."""
+        """Number of tests that the generator has proposed so far."""
         return sum(batch.n for batch in self.batches[-1:]) + (
             self.batches[-1].first - 1 if self.batches else 0
         )
@@ -82,8 +82,8 @@ class BatchScheduler:
     def ask(self, pool: Pool) -> list[tuple[int, Proposal]]:
         """Requests the next batch, stores it, and returns its tests with their numbers.
 
-        Closes the cell and returns an empty list if the generator has nothing left to propose, or if no road
-        could be designed.
+        Closes the cell and returns an empty list if the generator has nothing left to propose, or if at
+        least three tests have ended and none of them has a road.
 
         Raises:
             RoadGPTError: the generator proposes more tests than were requested, or asks for a draft in a cell

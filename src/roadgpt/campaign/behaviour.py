@@ -49,9 +49,10 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "CLIMB": (-40.0, 40.0),  # m
     "LENGTH": (20.0, 620.0),  # m
 }
-"""The range of the map along each axis; values beyond it belong to the outermost cell."""
+"""The range of the map along each axis; values beyond this range belong to the outermost cell."""
 
 DEGREES = (0.0, 180.0)
+"""The range of the map along the axes DEGREES_1, DEGREES_2, and so on."""
 
 
 def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:

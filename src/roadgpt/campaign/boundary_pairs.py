@@ -21,7 +21,9 @@ class Measure(NamedTuple):
     """
 
     field: str
+    """Name of the field of ``Element`` that holds the property."""
     called: str
+    """Name of the property in texts."""
     unit: str
     scale: float
     """The difference in this property that counts as a distance of 1 between two roads."""
@@ -39,11 +41,12 @@ OF_STRAIGHT = (GRADE, Measure("length", "length", " m", 10.0))
 
 @dataclass(frozen=True)
 class BoundaryPair:
-    """A road on which the car kept its lane, and the most similar road on which it failed."""
+    """A road on which the car kept its lane, and a similar road on which the car failed."""
 
     kept: int
     """Number of the test that passed."""
     lost: int
+    """Number of the test that failed."""
     distance: float
     """Distance between the two roads: the square root of the sum of squared differences over all turns and
     straights, where 10 m of a straight, 2 m of a radius or a clothoid, 10 degrees of a turn and 1 % of a
@@ -52,8 +55,8 @@ class BoundaryPair:
 
 
 def distance(one: Elements, other: Elements) -> float:
-    """Returns the distance between two roads, as defined in ``BoundaryPair.distance``; infinite if the
-    roads do not correspond.
+    """Returns the distance between two roads, as defined in ``BoundaryPair.distance``. The distance is
+    infinite if the roads do not correspond.
     """
     if [np.sign(element.turn) for element in one] != [np.sign(element.turn) for element in other]:
         return np.inf
@@ -65,8 +68,9 @@ def distance(one: Elements, other: Elements) -> float:
 
 
 def weightiest(kept: Elements, lost: Elements) -> str:
-    """Returns the largest difference between corresponding roads, in units of ``Measure.scale``, as text:
-    'turn 2: radius 15.4 m, then 14.9 m'. Returns '' if the roads do not differ.
+    """Returns the largest difference between two corresponding roads as text, such as 'turn 2: radius 15.4 m,
+    then 14.9 m'. Differences are compared in units of ``Measure.scale``. Returns '' if the roads do not
+    differ.
     """
     most, found = 0.0, ""
     turns = straights = 0
@@ -95,7 +99,8 @@ def _figure(element: Element, measure: Measure) -> str:
 def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
     """Returns the boundary pairs among the results of one cell, the closest pair first.
 
-    The closest corresponding roads are paired first; each test is in at most one pair.
+    The closest corresponding roads are paired first; each test is in at most one pair. Tests that neither
+    passed nor failed, and roads with junctions, are left out.
     """
     roads = {
         r.number: elements_of(r.plain_design.segments)
@@ -108,7 +113,7 @@ def pairs_of(results: Sequence[Result]) -> list[BoundaryPair]:
 
 
 def paired(roads: dict[int, Elements], kept: Sequence[int], lost: Sequence[int]) -> list[BoundaryPair]:
-    """Returns boundary pairs, as ``pairs_of`` does, but from the elements of the roads instead of results.
+    """Returns boundary pairs, as ``pairs_of`` does, but takes the elements of the roads instead of results.
 
     Args:
         roads: the elements of each road, by test number.

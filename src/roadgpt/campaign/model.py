@@ -15,7 +15,7 @@ from roadgpt.run.model import Outcome, Request
 from roadgpt.verdict.verdict import Cause, Side
 
 Goal = Literal["failures", "coverage", "hardest", "boundary"]
-"""The goal of a search; a cell without a goal makes a number of roads and does not search."""
+"""The goal of a search; a cell without a goal makes the requested number of roads and does not search."""
 GOALS: tuple[Goal, ...] = get_args(Goal)
 
 WITHOUT_GOAL, WITH_GOAL = "words", "quality_diversity"
@@ -39,7 +39,7 @@ class Budget(Frozen):
 
     @property
     def most(self) -> int:
-        """The largest number of tests."""
+        """The largest number of tests; 10,000,000 if ``tests`` is None."""
         return self.tests or MOST_TESTS
 
 
@@ -148,8 +148,8 @@ class Generator(Protocol):
     """Proposes tests, batch by batch; a generator is constructed with a Cell.
 
     Before batch k is requested, the generator has received the results of batches 0 to k - 2, in order of the
-    test numbers, and no later results. Its state may depend only on its cell and on these results, and its
-    random numbers in a batch come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
+    test numbers, and no later results. The generator's state may depend only on its Cell and these results.
+    The random numbers for batch k come from ``np.random.default_rng([cell.request.seed, k])``. Therefore a
     campaign's results depend neither on the number of workers nor on interruptions.
 
     A generator that searches has an attribute ``goals``, which lists the goals that it supports. A generator

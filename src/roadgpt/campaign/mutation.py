@@ -67,7 +67,7 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the first elements of one road followed by the last elements of another road.
+    """Returns the first elements of one road followed by the last elements of another road, at most 24.
 
     The position at which each road is cut is random.
     """
@@ -97,7 +97,7 @@ def interpolated(one: Elements, other: Elements, share: float) -> Elements | Non
 
 
 def varied(parents: Sequence[Elements], rng: Rng, world: World, numeric: float, rounds: int = 1) -> Elements:
-    """Returns a mutation of one parent, or a crossover of two, half of which are mutated too.
+    """Returns a mutation of one parent, or a crossover of two parents; half of the crossovers are mutated.
 
     Args:
         parents: the elements of one road, or of two.
@@ -217,7 +217,9 @@ def _enlarged(elements: Elements, rng: Rng, world: World) -> Elements:
 
 
 def redrawn(elements: Elements, rng: Rng, world: World) -> Elements:
-    """Draws the sides and figures of all turns anew, leaves out most straights, and shortens the others."""
+    """Draws direction, angle, radius and transition of all turns anew, leaves out most straights, and draws
+    the lengths of the others anew, up to 30 m.
+    """
     least = world.limits.min_radius * OVER_LEAST_RADIUS
     most, spared = float(rng.uniform(*REDRAWN)), rng.uniform(0.0, SPARED)
     out = []

@@ -173,7 +173,9 @@ class Record:
             return Plan.model_validate_json(self.meta("plan")).came_with(self.path)
 
     def total(self) -> int | None:
-        """Returns the number of tests requested; None if the campaign has only a time limit."""
+        """Returns the number of tests that the plan requests in all cells; None if the plan has only a time
+        limit.
+        """
         tests = self.plan().budget.tests
         return tests and tests * len(self.names())
 
@@ -252,7 +254,7 @@ class Record:
         return seed_of_driver(result.number, result.proposal)
 
     def file(self, number: int) -> str:
-        """Returns the path of a test's ``test.NNNN.json``; empty for a test in a store."""
+        """Returns the empty text, because the tests in a store have no file ``test.NNNN.json``."""
         del number
         return ""
 
@@ -289,7 +291,9 @@ class Record:
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns the number, batch and proposal of each remaining test of a cell."""
+        """Returns the number, batch and proposal of each test of a cell that was proposed and has not ended,
+        in order of the numbers.
+        """
         rows = self.query(
             "SELECT tests.number, batch, seed, origin, design FROM tests JOIN details USING (cell, number) "
             "WHERE tests.cell = ? AND outcome IS NULL ORDER BY tests.number",

@@ -34,9 +34,9 @@ class SearchSettings(Frozen):
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = USUAL_AXES
     """Names of the features that are the axes of the map."""
     also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] | None = None
-    """Names of the features that are the axes of a second map, on which failures in new cells count as much;
-    empty: there is no second map. None: MAX_CURV and DIR_COV beside the usual axes, and no second map beside
-    others.
+    """Names of the features that are the axes of a second map; failures in new cells of either map count the
+    same. Empty: there is no second map. None: MAX_CURV and DIR_COV if ``axes`` has its default value,
+    otherwise no second map.
     """
     archive: Literal["grid", "cvt"] = "grid"
     """Kind of map: "grid" has the cells of a grid, "cvt" the neighbourhoods of evenly spread centroids."""
@@ -74,7 +74,8 @@ def settings_of(cell: Cell) -> SearchSettings:
     """Returns the settings of a generator.
 
     Raises:
-        UsageError: a setting is unknown or out of range, or the cell's roads are splines or have junctions.
+        UsageError: a setting is unknown or out of range, the cell's roads are splines, or the description
+            asks for what only networks have, such as junctions or medians.
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
@@ -113,10 +114,10 @@ def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidat
 
 
 def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
-    """Returns n proposals made from candidates.
+    """Returns up to n proposals made from candidates.
 
-    If there are fewer than n candidates and the cell has a description, the workers draft the remaining
-    roads.
+    If there are fewer than n candidates, the workers draft the remaining roads, provided that the cell has a
+    description.
     """
     seed = cell.request.seed
     found = [

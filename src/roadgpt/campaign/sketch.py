@@ -1,9 +1,9 @@
-"""Sketches of roads: turns and straights with a place on the map, and what a surrogate must know of them.
+"""Makes sketches of roads: turns and straights with a place on the map, and their surrogate features.
 
     VariationTask --mutate--> place on the map --> Sketch --chosen--> build --> every rule --> Candidate
 
 A sketch takes about a tenth of the time of a candidate, because no road is built and no rule is applied. So
-a search can look at many, and build only those that it wants to drive.
+a search can compare many sketches, and build only the roads that it wants to drive.
 """
 
 from typing import NamedTuple
@@ -33,10 +33,10 @@ from roadgpt.design.writing import design_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design
 
-TRIES = 6  # mutations that are tried for one sketch, until one has room on the map
+TRIES = 6  # mutations that are tried for one sketch, until one fits on the map
 ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
 ANEW = 0.5  # probability that the turns of a draft are redrawn before these rounds
-BOLD = 2  # of these; later tries mostly change only numbers, which violates fewer requirements
+BOLD = 2  # of TRIES; later tries mostly change only numbers, which violates fewer requirements
 
 
 class Sketch(NamedTuple):
@@ -53,7 +53,9 @@ class Sketch(NamedTuple):
 
 
 def sketch(task: VariationTask) -> Sketch | None:
-    """Returns the sketch that a task describes; None if no mutation has room on the map."""
+    """Returns the sketch that a task describes; None if no mutation fits on the map and has the required
+    number of turns.
+    """
     rng = np.random.default_rng(task.seed)
     if task.kind == "wild":
         found = drafted(task.setting, rng)
@@ -75,8 +77,8 @@ def sketch(task: VariationTask) -> Sketch | None:
 
 
 def sketch_of(known: tuple[Design, VariationContext]) -> tuple[Sketch, PlanShape]:
-    """Returns the sketch of a design, with the same features as if it had been sketched first, and the shape
-    of its plan.
+    """Returns the sketch of an existing design, and the shape of its plan. The features are the same as if
+    the road had begun as a sketch.
 
     Args:
         known: the design, and the requirements, world and rules of its cell.

@@ -18,7 +18,7 @@ LEAF = 2  # roads in one leaf, at least
 FEWEST = 10  # roads; with fewer, there is nothing to learn from
 FAILED = (
     -0.3
-)  # m, learnt for every failure: a drive ends where it fails, so its margin says nothing of how badly
+)  # m, learnt for every failure: a drive ends where it fails, so its margin does not tell how badly it fails
 MOST = 1500  # roads to learn from, the latest ones
 LEAST_SQUARE = 1e-9  # of a guess, so that nothing is divided by 0
 
@@ -38,9 +38,9 @@ class Surrogate:
             features: the features of each road, ``(n, features)``, as returned by ``surrogate_features_of``.
             outcomes: the values to predict for each road, ``(n, k)``: the margin in metres, as returned by
                 ``target_of``, and features of the drive.
-            guesses: for outcomes that are nearly proportional to one of some features, the columns of these
-                features by the column of the outcome. The trees then learn the difference from the feature
-                that fits best, so that values beyond all known ones can be predicted.
+            guesses: for the column of each outcome that is nearly proportional to a feature, the columns of
+                the features to choose from. The trees learn only how the outcome deviates from the
+                best-fitting feature, so that values beyond all known values can be predicted.
         """
         known, looks = np.asarray(outcomes[-MOST:], float), np.asarray(features[-MOST:], float)
         self._factors: dict[int, tuple[int, float]] = {}

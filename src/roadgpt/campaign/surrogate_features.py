@@ -7,8 +7,9 @@ road. The features include the largest averages of this curvature in left and in
 several lengths, how fast the curvature changes, the length of the straight before the tightest bend, slopes,
 and crests.
 
-A drive ends where the car leaves its lane, so the standard deviation of its steering (STD_SA) depends on how
-far it came. It is therefore estimated for the whole road and as far as some places where the car may fail.
+A drive ends where the car leaves its lane, so the standard deviation of the steering angle (STD_SA) depends
+on how far the car came. STD_SA is therefore estimated from the start to the end of the road, and from the
+start to each of several places where the car may fail.
 """
 
 from collections.abc import Sequence
@@ -58,7 +59,9 @@ NAMES = (
     "rush_right",
 )
 STEERING = tuple(NAMES.index(name) for name in NAMES if name.startswith("steering"))
-"""Features of which one is nearly proportional to STD_SA, depending on where the car leaves its lane."""
+"""Indices of the features that estimate STD_SA up to different places. STD_SA is nearly proportional to one
+of them; which one depends on where the car leaves its lane.
+"""
 
 
 class RoadSamples(NamedTuple):
@@ -158,8 +161,8 @@ def _squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> 
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Estimates how hard each road is, without a drive: returns the largest curvature of its lane,
-    averaged over about 13 m, as a multiple of 0.06 1/m. ``signs`` holds the features of each road.
+    """Returns an estimate of how hard each of n roads is, ``(n,)``, without a drive: the largest curvature of
+    the lane, averaged over about 13 m, as a multiple of 0.06 1/m. ``signs`` holds the features of each road.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]

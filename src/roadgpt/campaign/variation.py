@@ -25,7 +25,7 @@ from roadgpt.errors import DesignError, RoadGPTError
 from roadgpt.road import Design, Road, World, build
 
 TRIES = 8  # mutations that are tried for one candidate, at most
-BOLD = 3  # of these; later tries mostly change only numbers, which violates fewer requirements
+BOLD = 3  # of TRIES; later tries mostly change only numbers, which violates fewer requirements
 NUMERIC = (0.4, 0.9)  # probability that only numbers change: in the bold tries, and in the others
 NOBODY = Brief()
 
@@ -78,7 +78,10 @@ class Candidate(NamedTuple):
 
 
 def make_candidate(task: VariationTask) -> Candidate | None:
-    """Returns the candidate that a task describes; None if no valid road was found that meets the Brief."""
+    """Returns the candidate that a task describes; None if no valid road was found that meets the Brief.
+
+    Tasks of the kind "wild" are not for this function, but for ``sketch.sketch``.
+    """
     rng = np.random.default_rng(task.seed)
     setting = task.setting
     if task.kind == "between":

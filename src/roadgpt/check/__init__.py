@@ -42,9 +42,7 @@ RULE_SETS = {
     ),
     "sbft": ("sbft",),
 }
-"""The rules of each set in the order in which they are applied. The first Finding is given as the reason why
-a road is invalid.
-"""
+"""The names of the rules of each set, in the order in which they are applied."""
 NETWORK_RULES = (
     "finite",
     "too_short",
@@ -63,7 +61,9 @@ NETWORK_RULES = (
     "lanes_do_not_match",
     "unreachable",
 )
-"""The rules that the set "strict" applies to networks, in this order. Rules of other packages follow them."""
+"""The names of the rules of networks, in the order in which they are applied. Rules that other packages
+register are applied after these.
+"""
 
 
 class Rule(Protocol):
@@ -80,7 +80,8 @@ class NetworkRule(Protocol):
     def __call__(self, network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
         """Returns one Finding for each violation; an empty tuple if there is none.
 
-        The route is one through this network, None if there is none; stations of findings are its stations.
+        ``route`` leads through this network; None if there is no route. The stations of the findings are
+        stations of the route.
         """
         ...
 
@@ -89,7 +90,8 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
     """Returns the findings of all rules of a set, in the order of the rules.
 
     A road without findings is valid. If there are findings, the first one is given as the reason why the road
-    is invalid. With "strict", a Route is checked by the rules of networks.
+    is invalid. After a finding with ``stops``, no further rules of the set are applied. With "strict", the
+    network of a Route is checked by the rules of networks, and the Route is compared with the brief.
 
     Args:
         road: The road to check.
@@ -120,13 +122,15 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
 def inspect_network(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
     """Returns the findings of all rules of networks, in the order of the rules.
 
+    After a finding with ``stops``, no further rules are applied.
+
     Args:
         network: The network to check.
         route: A route through this network; None if there is none.
         world: The map and the limits.
 
     Raises:
-        PartError: No rules of networks are installed, or one of ours is missing.
+        PartError: No rules of networks are installed, or a rule of ``NETWORK_RULES`` is missing.
     """
     found = list[Finding]()
     for _, rule in network_rules_of():
@@ -141,7 +145,7 @@ def network_rules_of() -> tuple[tuple[str, NetworkRule], ...]:
     """Returns the name and the function of each rule of networks, in the order in which they are applied.
 
     Raises:
-        PartError: No rules of networks are installed, or one of ours is missing.
+        PartError: No rules of networks are installed, or a rule of ``NETWORK_RULES`` is missing.
     """
     others = tuple(name for name in plugins.names("network_rules") if name not in NETWORK_RULES)
     names = (*NETWORK_RULES, *others)

@@ -1,6 +1,6 @@
 """Computes where the roads of a network lie: their ends, their carriageways, and which of these overlap.
 
-All roads are computed together, and a network is computed once for all rules that ask for it.
+All roads are computed together. The result for a network is cached, so that all rules share it.
 """
 
 import math
@@ -29,8 +29,10 @@ Indices = NDArray[np.intp]
 
 
 class EndPose(NamedTuple):
-    """The centre line at one end of a road: the point in metres, the heading along the road in radians, and
-    the grade along the road as a ratio.
+    """The centre line at one end of a road: the point in metres, the heading in radians, and the grade as a
+    ratio.
+
+    Heading and grade are those in the direction of increasing stations, at both ends.
     """
 
     x: float
@@ -40,7 +42,7 @@ class EndPose(NamedTuple):
     grade: float
 
     def beside(self, t: float) -> tuple[float, float]:
-        """Returns the point (x, y) in metres ``t`` metres to the left of the centre line."""
+        """Returns the point (x, y), in metres, that lies ``t`` metres to the left of the centre line."""
         return self.x - t * math.sin(self.heading), self.y + t * math.cos(self.heading)
 
 
@@ -50,10 +52,11 @@ class Overlap(NamedTuple):
     one: NetworkRoad
     other: NetworkRoad
     area: float
-    """The area in square metres that both cover."""
+    """The area in square metres that both roads cover."""
     x: float
-    """The centroid of this area in metres, as is ``y``."""
+    """x of the centroid of this area, in metres."""
     y: float
+    """y of the centroid of this area, in metres."""
 
 
 class _Pieces(NamedTuple):
@@ -65,7 +68,7 @@ class _Pieces(NamedTuple):
     k0: Array
     dk: Array
     heading: Array
-    """The heading at the start of the piece in radians, as ``x`` and ``y`` are its start in metres."""
+    """The heading at the start of the piece in radians; ``x`` and ``y`` are the start in metres."""
     x: Array
     y: Array
 
@@ -123,8 +126,8 @@ class Footprint:
 
     @cached_property
     def _edges(self) -> tuple[Array, Array, Array, Indices]:
-        """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, their stations
-        on their roads, and the index of the first point of each road, with ``n`` behind the last one.
+        """Returns the points ``(n, 2)`` of all right edges in metres, those of all left edges, the stations
+        of the points on their roads, and the index of the first point of each road, followed by ``n``.
         """
         index, u = self._stations()
         owner = self._pieces.owner[index]
@@ -172,7 +175,10 @@ class Footprint:
 
     @cached_property
     def bounds(self) -> Array:
-        """The smallest x and y and the largest x and y of each carriageway ``(n, 4)``, within ``SLACK``."""
+        """The smallest x and y and the largest x and y of each carriageway in metres, shape ``(n, 4)``.
+
+        A carriageway may extend beyond these bounds by up to ``SLACK`` metres.
+        """
         right, left, _, first = self._edges
         low = np.minimum.reduceat(np.minimum(right, left), first[:-1])
         high = np.maximum.reduceat(np.maximum(right, left), first[:-1])
@@ -182,7 +188,7 @@ class Footprint:
         """Returns the point (x, y) at which the carriageway of the road with index ``n`` reaches one of its
         bounds, and the station of the road there, in metres.
 
-        ``side`` is the index of the bound in a row of ``bounds``.
+        ``side`` is the index of this bound in a row of ``bounds``, 0 to 3.
         """
         right, left, s, first = self._edges
         here = slice(first[n], first[n + 1])
@@ -194,7 +200,7 @@ class Footprint:
 
     @cached_property
     def polygons(self) -> NDArray[Any]:
-        """The carriageway of each road as a polygon of shapely, in the order of ``network.roads``."""
+        """The carriageways as shapely polygons, shape ``(n,)``, in the order of ``network.roads``."""
         import shapely
 
         right, left, _, first = self._edges
@@ -207,7 +213,7 @@ class Footprint:
 
     @cached_property
     def overlaps(self) -> tuple[Overlap, ...]:
-        """The pairs of roads that overlap, apart from connecting roads of the same junction."""
+        """The pairs of roads that overlap. Connecting roads of the same junction are not compared."""
         import shapely
 
         i, j = _near(self.bounds)
@@ -228,7 +234,7 @@ class Footprint:
 
     @cached_property
     def folded(self) -> tuple[NetworkRoad, ...]:
-        """The roads whose own edges meet: each overlaps itself or nearly does."""
+        """The roads whose edges touch or cross each other: such a road overlaps itself, or nearly does."""
         import shapely
 
         is_valid = shapely.is_valid(self.polygons)
@@ -237,12 +243,12 @@ class Footprint:
 
 @lru_cache(maxsize=2)
 def footprint(network: Network) -> Footprint:
-    """Returns the Footprint of a network; it is kept for the next rule that asks."""
+    """Returns the Footprint of a network. The Footprints of the last two networks are cached."""
     return Footprint(network)
 
 
 def _before(values: Array, first: Indices) -> Array:
-    """Returns, for each value, the sum of the values before it, from the one at ``first`` onwards."""
+    """Returns, for each value, the sum of the values from index ``first`` up to the value before this one."""
     total = np.cumsum(values) - values
     return np.asarray(total - total[first])
 

@@ -1,7 +1,7 @@
 """Measures the junctions that a route passes: kind, directions, exits and signs, on the finished geometry.
 
-The direction of an arm is that of the line from its contact to the point 15 m farther out, so a bend there
-counts as well.
+The direction of an arm is that of the straight line from its contact with the junction to the point 15 m
+farther out (on a shorter road, to the other end), so a bend within these 15 m changes the direction.
 """
 
 import math
@@ -30,19 +30,22 @@ class MeasuredJunction:
     """A junction as a route passes it. Angles are in degrees, lengths in metres."""
 
     s: float
-    """Station at which the route enters it."""
+    """Station at which the route enters the junction."""
     kinds: tuple[JunctionKind, ...]
-    """The kinds that it may be called; empty for none."""
+    """The kinds that the junction may be called; empty if its angles fit no kind."""
     gaps: tuple[float, ...]
     """Angles between neighbouring arms, counter-clockwise from the arm of arrival; clockwise with traffic on
     the left."""
     turn: float
-    """Change of direction of the route, left positive; 180 for a way back."""
+    """Change of direction of the route, left positive; 180 if the route leaves on the arm of arrival."""
     exit: int
-    """Number of the arm on which the route leaves, counted in the same order as ``gaps``."""
+    """Number of the arm on which the route leaves, in the same order as ``gaps``: 1 for the first arm after
+    the arm of arrival, the highest number for the arm of arrival itself."""
     ways: tuple[float, ...]
-    """Changes of direction to all arms but the one of arrival, in the same order as ``gaps``."""
+    """Changes of direction from the arm of arrival to each other arm, left positive, in the same order as
+    ``gaps``."""
     control: Control
+    """The sign or the light that the route meets."""
     outer: float | None
     """Outer diameter of a roundabout; None for other junctions."""
     island: float | None
@@ -50,19 +53,20 @@ class MeasuredJunction:
     is_ramp: bool | None = None
     """Whether the route comes from the ramp (merge) or goes to it (diverge); None for other junctions."""
     ramp_side: Side | None = None
-    """The side of the ramp of a merge or exit."""
+    """The side of the main road on which the ramp of a merge or exit lies; None for other junctions."""
     beside: float | None = None
-    """Length of the full lane for acceleration or deceleration of a merge or exit."""
+    """Length of the lane for acceleration or deceleration of a merge or exit, without the taper; None for
+    other junctions."""
     taper: float | None = None
-    """Length of the rest of this lane, where it ends or begins."""
+    """Length of the taper of this lane; None for other junctions."""
     ring_lanes: int = 0
-    """The number of lanes of a ring; 0 for other junctions."""
+    """The number of lanes of the ring of a roundabout; 0 for other junctions."""
     all_controls: tuple[Control, ...] = ()
-    """The sign or the light of each arm with lanes into the junction."""
+    """The sign or the light of each arm that has lanes into the junction."""
     only_in: tuple[Way, ...] = ()
-    """The sides of arms from which all traffic drives to the junction."""
+    """The sides of one-way arms that lead to the junction; the arm of arrival is left out."""
     only_out: tuple[Way, ...] = ()
-    """The sides of arms on which all traffic drives away from the junction."""
+    """The sides of one-way arms that lead away from the junction."""
 
     @property
     def arms(self) -> int:
@@ -71,12 +75,12 @@ class MeasuredJunction:
 
     @property
     def sides(self) -> tuple[Way, ...]:
-        """The side of each way."""
+        """The side to which each change of direction in ``ways`` leads: "left", "straight" or "right"."""
         return tuple(side_of(turn) for turn in self.ways)
 
     @property
     def ways_on(self) -> tuple[Way, ...]:
-        """The sides to which one can leave."""
+        """The sides to which traffic can leave: ``sides`` without those of ``only_in``."""
         on = list(self.sides)
         for side in self.only_in:
             on.remove(side)
@@ -84,7 +88,7 @@ class MeasuredJunction:
 
 
 def measured_junctions(route: Route) -> list[MeasuredJunction]:
-    """Returns the junctions that a route passes, in driving order; each roundabout is one."""
+    """Returns the junctions that a route passes, in driving order. A roundabout counts as one junction."""
     return [_measured(route.network, passage) for passage in route.passages]
 
 
@@ -98,7 +102,8 @@ class MeasuredLanes:
     side: Side | None
     """The side of the lane that ends or begins, or to which the route changes."""
     behind: float = 0.0
-    """How far behind ``s`` the lane ends, begins or is changed, in metres; negative for before it."""
+    """Distance in metres along the route from ``s`` to the place where the lane becomes too narrow for a car
+    (drop) or wide enough (gain), or to the middle of the first change of lanes; negative if before ``s``."""
 
 
 def measured_places(route: Route) -> list[MeasuredJunction | MeasuredLanes]:
@@ -142,7 +147,10 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
 
 
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
-    """Returns whether one of two roads that continue each other has the lane of a ramp."""
+    """Returns whether road ``one`` begins at a merge, or road ``two``, which continues it, ends at an exit.
+
+    Such a road has the lane for acceleration or deceleration beside it.
+    """
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
     return any(
         (number := network.junction_at.get(end)) is not None and network.junction(number).kind == kind
@@ -176,9 +184,10 @@ def side_of_ramp(network: Network, junction: Junction) -> Side:
 
 
 def lengths_beside_ramp(network: Network, junction: Junction) -> tuple[float, float]:
-    """Returns the length in metres of the lane for acceleration or deceleration, and that of its taper.
+    """Returns the lengths in metres of the lane for acceleration or deceleration and of its taper.
 
-    It counts while the lane is wider than 0.9 of its full width. Both are 0 if there is no such lane.
+    The taper is the part in which the lane is at most 0.9 of its full width. Both lengths are 0 if there is
+    no such lane.
     """
     way = _way_of_ramp(network, junction)
     beside = network.road((way.outgoing if junction.kind == "merge" else way.incoming).road)
@@ -240,7 +249,7 @@ def _lanes(network: Network, end: RoadEnd) -> tuple[int, int]:
 
 
 def direction_of(network: Network, end: RoadEnd) -> float:
-    """Returns the direction of an arm out of its junction in degrees."""
+    """Returns the direction of an arm out of its junction, in degrees counter-clockwise from +x."""
     road = network.road(end.road).road
     far = min(OUT, road.length)
     near, away = (0.0, far) if end.contact == "start" else (road.length, road.length - far)
@@ -253,7 +262,7 @@ def _wrapped(angle: float) -> float:
 
 
 def kinds_of(gaps: list[float]) -> tuple[JunctionKind, ...]:
-    """Returns the kinds that a junction may be called, by the angles in degrees between its arms."""
+    """Returns the kinds that fit the angles in degrees between neighbouring arms; empty if none fits."""
     found: list[JunctionKind] = []
     least, *_, most = sorted(gaps)
     if len(gaps) == 3:

@@ -11,8 +11,8 @@ from roadgpt.geometry import CubicProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.network import NetworkRoad
 
-GRID = np.linspace(0.0, 1.0, 33)  # of a piece whose lane varies in width
-INSIDE = 1e-9  # m from the end of a road, so that the width is that before its end
+GRID = np.linspace(0.0, 1.0, 33)  # ratio of the length of a piece, where its lane varies in width
+INSIDE = 1e-9  # m before the end of a road, where the width is evaluated instead of at the end
 
 
 class LaneBend(NamedTuple):
@@ -26,8 +26,8 @@ def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -
     """Returns the tightest bend of a line through the right lane of a connecting road.
 
     The line is at ``share`` of the width of the lane to the right of the centre line: 0.5 for the middle of
-    the lane, 1 for its right edge. It may not be an arc even where the centre line is one, because the width
-    may vary. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
+    the lane, 1 for its right edge. Where the width varies, the line is not an arc even if the centre line is
+    one. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
 
     Args:
         member: The connecting road.
@@ -35,7 +35,8 @@ def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -
         only_right: Whether to leave out bends to the left.
 
     Returns:
-        The bend; None if the line is straight. A radius of 0 means that the line folds.
+        The bend; None if the line is straight or, with ``only_right``, never bends to the right. A radius of
+        0 means that the line folds.
     """
     plan, width = member.road.plan, member.profile.right[0].width
     assert isinstance(plan, PieceCurve)
@@ -51,7 +52,7 @@ def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -
 
 
 def _exact(plan: PieceCurve, t: float) -> Iterator[tuple[float, float]]:
-    """Yields stations and curvatures of a parallel curve; they are extreme at the ends of its pieces."""
+    """Yields stations and curvatures at the ends of a parallel curve's pieces, where curvature is extreme."""
     s = 0.0
     for piece in plan.pieces:
         for at, k in ((s, piece.k0), (s + piece.length, piece.k1)):
@@ -72,8 +73,8 @@ def _sampled(member: NetworkRoad, share: float) -> tuple[Array, Array]:
 
 @lru_cache(maxsize=128)
 def _frames(member: NetworkRoad) -> tuple[Array, Array, Array, Array, Array, Array]:
-    """Returns stations of a connecting road, its curvature there and the change of it per metre, and the
-    width of its lane with its first and second derivative.
+    """Returns stations of a connecting road, the curvature there and its change per metre, and the width of
+    the lane with the first and second derivative of this width.
     """
     plan, width = member.road.plan, member.profile.right[0].width
     assert isinstance(plan, PieceCurve)

@@ -24,9 +24,10 @@ def lanes_out_of(network: Network, end: RoadEnd) -> tuple[int, ...]:
 
 
 def gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
-    """Returns the largest distance in metres between the edges of two lanes at ends of their roads.
+    """Returns the gap in metres between two lanes at the ends of their roads.
 
-    The edges nearer to the centre lines are compared with each other, and so are the outer ones.
+    The gap is the larger of two distances: that between the two inner edges (nearer to the centre lines), and
+    that between the two outer edges.
     """
     points = _points(network)
     (a, b), (c, d) = points[one], points[other]
@@ -34,7 +35,7 @@ def gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
 
 
 def reached(network: Network, connection: Connection) -> Iterator[LaneEnd]:
-    """Yields the lanes out of a junction to which the lanes of a connection lead."""
+    """Yields the ends of the lanes out of a junction to which the lanes of a connection lead."""
     for lanes in connection.lanes:
         yield connection.outgoing, lanes.outgoing
 

@@ -9,7 +9,7 @@ from roadgpt.check.junction_measures import direction_of, kinds_of
 from roadgpt.check.network_places import roads_outside_junctions
 from roadgpt.network import Junction, Network, RoadEnd
 
-STRAIGHT = math.radians(5.0)  # of a road that is straight from one junction to another
+STRAIGHT = math.radians(5.0)  # largest change of heading of a road that counts as straight
 
 
 @dataclass(frozen=True)
@@ -19,30 +19,30 @@ class MeasuredNode:
     place: tuple[float, float]
     """Its middle (x, y) in metres."""
     kinds: tuple[JunctionKind, ...]
-    """The kinds that it may be called; empty for none."""
+    """The kinds that the junction may be called; empty if its angles fit no kind."""
     gaps: tuple[float, ...]
-    """Angles in degrees between neighbouring arms, one after another."""
+    """Angles in degrees between neighbouring arms, in order around the junction."""
     controls: frozenset[Control]
     """The signs and lights of its arms."""
 
 
 @dataclass(frozen=True)
 class MeasuredMap:
-    """What is seen of a whole network."""
+    """The measures of a whole network."""
 
     nodes: tuple[MeasuredNode, ...]
-    """The junctions; each roundabout is one."""
+    """The junctions. A roundabout counts as one junction."""
     blocks: int
     """The number of areas that roads enclose."""
     ends: int
-    """The number of ends of roads that meet no junction."""
+    """The number of road ends that meet no junction."""
     parts: int
-    """The number of parts that no roads join; 1 for a connected map."""
+    """The number of separate parts, which no roads connect; 1 for a connected map."""
     distances: tuple[float, ...]
     """For each straight road between two junctions, the distance in metres between their middles."""
 
     def number(self, kind: JunctionKind) -> int:
-        """Returns how many junctions may be called so."""
+        """Returns the number of junctions that may be called by this kind."""
         return sum(kind in node.kinds for node in self.nodes)
 
 

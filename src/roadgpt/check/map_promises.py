@@ -1,6 +1,6 @@
-"""Requires a map of roads to be what was asked for: its blocks or its junctions, their signs and distances.
+"""Requires a map of roads to be what was asked for: blocks or junctions, dead ends, signs, distances, route.
 
-Everything is measured on the finished network, as ``check.map_measures`` does.
+Everything is measured on the finished network, by ``check.map_measures`` and ``check.junction_measures``.
 """
 
 import math
@@ -17,7 +17,7 @@ from roadgpt.network import Route
 from roadgpt.plural import plural
 
 RULE = "promises"
-SHARE = 0.1  # by which a distance between junctions may differ from the one that is asked for
+SHARE = 0.1  # ratio by which a distance between junctions may differ from the requested distance
 SAID: dict[Control, str] = {
     "priority": "roads with priority",
     "yield": "give-way signs",
@@ -25,7 +25,7 @@ SAID: dict[Control, str] = {
     "lights": "traffic lights",
     "none": "no signs",
 }
-CORNERS = 4  # of a grid, where roads may lead around a corner without a junction
+CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
 def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
@@ -42,7 +42,7 @@ def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
 
 
 def _route(route: Route, asked: MapClause) -> Iterator[str]:
-    """Yields what is wrong with where the route goes, as text."""
+    """Yields a text if the route does not turn as asked."""
     goes = [each.sides[each.exit - 1] for each in measured_junctions(route)]
     if asked.route and goes != [*asked.route]:
         yield f"asked for a route that goes {', '.join(asked.route)}, goes {', '.join(goes) or 'nowhere'}"
@@ -99,7 +99,10 @@ def _allowed(length: Amount) -> Range:
 
 
 def _is_controlled(node: MeasuredNode, control: Control) -> bool:
-    """Returns whether a junction has a sign at some arm; lights stand at all arms."""
+    """Returns whether a junction has the requested signs.
+
+    Traffic lights and "no signs" are required at all arms, other signs at one arm at least.
+    """
     if control in ("none", "priority", "yield") and "roundabout" in node.kinds:
         return node.controls == {"yield"}  # everybody gives way to those on the ring
     if control in ("lights", "none"):

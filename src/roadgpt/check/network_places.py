@@ -1,4 +1,4 @@
-"""Makes the findings of the rules of networks: names the road or junction, and its place on the route."""
+"""Makes the findings of the rules of networks, each with the road or junction and its place on the route."""
 
 import math
 
@@ -10,7 +10,11 @@ from roadgpt.network import Junction, Network, NetworkRoad, Route
 
 
 def junction_finding(rule: str, route: Route | None, junction: Junction, what: str) -> Finding:
-    """Returns the Finding that something is wrong at a junction; ``what`` says it without the place."""
+    """Returns the Finding that something is wrong at a junction.
+
+    ``what`` describes the fault without the place. The station of the Finding is where the route enters the
+    junction; None if no route passes it.
+    """
     x, y, _ = junction.node
     s = None
     if route is not None:
@@ -23,8 +27,8 @@ def road_finding(
 ) -> Finding:
     """Returns the Finding that something is wrong at station ``s`` (m) of a road.
 
-    ``what`` says it without the place. The station of the Finding is that of the route; None if the road is
-    not on the route.
+    ``what`` describes the fault without the place. The station of the Finding is a station of the route; None
+    if the road is not on the route. ``stops`` is passed to the Finding.
     """
     with np.errstate(invalid="ignore", over="ignore"):  # a number of the road may not be finite
         x, y, _ = member.road.at(s).tolist()
@@ -35,9 +39,9 @@ def road_finding(
 
 
 def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
-    """Returns the first station of a route, in metres, that is station ``s`` of a road.
+    """Returns the station in metres at which a route first passes station ``s`` of a road.
 
-    The result is None if the road is not on the route.
+    The result is None if there is no route, or if the road is not on the route.
     """
     if route is None:
         return None
@@ -48,9 +52,9 @@ def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | No
 
 
 def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
-    """Returns the station of a route, in metres, nearest to a point (x, y) of a road.
+    """Returns the station in metres at which a route first passes the place of a road nearest to (x, y).
 
-    The result is None if the road is not on the route.
+    The result is None if there is no route, or if the road is not on the route.
     """
     if station_on(route, member, 0.0) is None:
         return None
@@ -64,13 +68,13 @@ def name_of(junction: Junction) -> str:
 
 
 def more_room(junction: Junction) -> str:
-    """Returns what to do where the connecting roads of a junction are too tight."""
+    """Returns advice, as part of a sentence, for a junction whose connecting roads are too tight."""
     wanted = "give the island" if junction.kind == "roundabout" else "ask for a kerb with"
     return f"{wanted} a larger radius or turn the arms apart"
 
 
 def owner_of(network: Network, member: NetworkRoad) -> str:
-    """Returns the name of a road outside junctions, or that of the junction or roundabout around a road."""
+    """Returns the name of the junction or roundabout to which a road belongs, otherwise that of the road."""
     if member.junction is not None:
         return name_of(network.junction(member.junction))
     ring = network.roundabout_of.get(member.id)

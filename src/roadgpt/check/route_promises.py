@@ -1,7 +1,7 @@
 """Requires a route to meet its Brief: the junctions in order, and the roads between them.
 
-Junctions are compared with what ``check.junction_measures`` measures. Each road between junctions is measured
-and compared with its own requirements, as a single road is by the rule ``promises``.
+Junctions are measured by ``check.junction_measures``. Each road between junctions is measured and compared
+with its own requirements in the same way as a single road in the rule ``promises``.
 """
 
 from collections.abc import Iterator
@@ -38,12 +38,15 @@ from roadgpt.network.stretch import joined_roads, without_level_ends
 from roadgpt.road import Road
 
 RULE = "promises"
-SLACK = 0.15  # ratio, around the radius of an island that is given as one number
-ROUNDING = 0.5  # m, around the outer diameter of a size
+SLACK = 0.15  # ratio, allowed deviation from the radius of an island that is given as one number
+ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
 
 
 def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that a route does not meet."""
+    """Returns one Finding for each requirement that a route does not meet.
+
+    If the number of junctions and lane changes on the route is wrong, only this is reported.
+    """
     found = measured_places(route)
     if len(found) != len(brief.junctions):
         text = (
@@ -68,9 +71,9 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
 
 
 def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
-    """Returns how far behind the end of a road its required length ends, in metres.
+    """Returns the distance in metres from the end of a road to the place where its required length ends.
 
-    Where the lane is changed, it ends at the road behind if the length of that road is required, too.
+    At a lane change the distance is 0 if a length is required of the following road, too.
     """
     if isinstance(place, MeasuredJunction) or (place.kind == "lane_change" and behind.length is not None):
         return 0.0
@@ -78,7 +81,7 @@ def _moved(place: MeasuredJunction | MeasuredLanes, behind: Brief) -> float:
 
 
 def stretches_of(route: Route) -> list[tuple[float, Road]]:
-    """Returns the roads of a route outside junctions in driving order, each with the station of its start."""
+    """Returns the roads of a route outside junctions, each after the station of its start in metres."""
     found: list[tuple[float, list[NetworkRoad]]] = []
     for start, member in route.roads:
         last = found[-1][1][-1] if found else None
@@ -95,8 +98,9 @@ def _broken(
 ) -> Iterator[Finding]:
     """Yields a Finding for each requirement that a road does not meet.
 
-    Grades are required of the road as it would be if its ends were not level because they meet junctions. Its
-    length counts from where lanes end, begin or are changed, so it is ``more`` metres longer.
+    ``is_level`` says whether the road was made level at its start and at its end, where it meets junctions;
+    grades are measured as if it had not been. The length counts from where lanes end, begin or change, so
+    ``more`` metres are added to it.
     """
     yield from _broken_lanes(start, road, asked)
     wanted = outline(asked.as_stretch)
@@ -158,7 +162,7 @@ def _length(route: Route, brief: Brief) -> Iterator[Finding]:
 
 
 def length_range(length: Amount) -> Range:
-    """Returns the lengths in metres that are allowed for a route of which a length is required."""
+    """Returns the range of measured lengths in metres that meet a required length."""
     asked = span(length)
     if not length.exact:
         return asked

@@ -133,7 +133,7 @@ def headline(status: "Status") -> str:
 def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
     """Returns a table with a line for each campaign cell; columns beyond ``width`` characters are left out.
 
-    The last column may be cut off, and needs room for only ``LEAST`` characters.
+    The last column counts as only ``LEAST`` characters wide, so its texts may extend beyond ``width``.
     """
     rows = [HEAD, *map(_columns, cells)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

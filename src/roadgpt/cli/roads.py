@@ -233,7 +233,8 @@ def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) 
     """Calls ``look`` for every file, and prints the resulting rows and a table of them.
 
     Raises:
-        UsageError: Only one file is given, and it cannot be used.
+        UsageError: Only one file is given, it cannot be used, and the output is not JSON.
+        PartError: A plug-in is not installed.
     """
     with screen:
         for file in files:

@@ -10,11 +10,13 @@ designs of the campaign so far; the new one should differ from all of them. The 
 Design. If no road can meet all requirements on this map, the method raises DesignError with one sentence of
 advice.
 
-A designer may also have these attributes: ``report``, a DesignReport of its last draft; ``redrafts``, False
-if the designer must not be called again when its draft violates a rule; ``makes_junctions``, True if it can
-make routes with junctions and maps; ``geometry``, the kind of geometry
-that its designs require, such as "spline" for RoadGPT's original splines. This geometry overrides the user's
-choice.
+A designer may also have these attributes:
+
+report           a DesignReport of its last draft
+redrafts         False if the designer must not be called again when its draft violates a rule
+makes_junctions  True if the designer can make networks: routes with junctions, and maps of roads
+geometry         the kind of geometry that its designs require, such as "spline" for RoadGPT's original
+                 splines; it overrides the user's choice
 """
 
 from collections.abc import Sequence
@@ -38,8 +40,8 @@ class Designer(Protocol):
     ) -> AnyDesign:
         """Returns a Design that meets every requirement of the Brief and is valid on this map.
 
-        If the Brief asks for a network (``is_of_network``), the result is a NetworkDesign, and a MapDesign if
-        it asks for a map. A designer that cannot make one raises DesignError.
+        If the Brief asks for a map of roads, the result is a MapDesign; if it asks for another network
+        (``is_of_network``), the result is a NetworkDesign.
 
         Args:
             brief: the requirements for the road.
@@ -49,7 +51,7 @@ class Designer(Protocol):
             seed: seed of the random number generator.
 
         Raises:
-            DesignError: this designer found no such Design.
+            DesignError: this designer found no such Design, or cannot make networks.
         """
         ...
 
@@ -63,7 +65,7 @@ def draft(
     designer: str = "planner",
     chat: ChatSettings | None = None,
 ) -> AnyDesign:
-    """Returns a Design for a Brief; a NetworkDesign if it has junctions, a MapDesign if it asks for a map.
+    """Returns a Design for a Brief; for a network a NetworkDesign, and for a map of roads a MapDesign.
 
     Args:
         brief: the requirements for the road.
@@ -76,7 +78,8 @@ def draft(
 
     Raises:
         DesignError: no road meets all requirements on this map.
-        PartError: there is no designer of that name.
+        UsageError: there is no designer of that name, a junction cannot meet its requirements, or the World
+            has lanes or banked bends that a map of roads cannot have.
         ChatError: the language model could not be asked.
     """
     made = designer_of(designer, chat)
@@ -85,12 +88,12 @@ def draft(
 
 
 def draft_road(brief: Brief, world: World, earlier: Sequence[Design] = (), seed: int = 0) -> Design:
-    """Returns a Design for a Brief without junctions, made by the default designer.
+    """Returns a Design for a Brief of a single road, made by the default designer.
 
     The arguments are those of ``draft``.
 
     Raises:
-        DesignError: no road meets all requirements on this map, or the Brief has junctions or asks for a map.
+        DesignError: no road meets all requirements on this map, or the Brief asks for a network.
     """
     found = draft(brief, world, (), earlier, seed)
     if not isinstance(found, Design):
@@ -104,8 +107,8 @@ def check_designer(designer: Designer, brief: Brief) -> None:
     """Checks that a designer can make what a Brief asks for.
 
     Raises:
-        DesignError: the Brief asks for a network, and the designer makes single roads only, or the Brief asks
-            for something that cannot be built yet.
+        DesignError: the Brief asks for something that cannot be built yet, or it asks for a network and the
+            designer makes single roads only.
     """
     check_built(brief)
     if brief.is_of_network and not getattr(designer, "makes_junctions", False):

@@ -1,4 +1,4 @@
-"""Writes the message for requirements that no road can meet: which one fails, and what to ask for instead.
+"""Writes messages that say which requirement no road can meet, and what to ask for instead.
 
 A road length or a map size is suggested only after a road has been drafted with it.
 """
@@ -25,7 +25,7 @@ MANY = 60  # if this many drafts fitted on the map but failed, the map was large
 SIDES = 7.0  # ratio of road length to map side; no longer road was ever drafted, so the search starts here
 SHORTER = 0.8  # ratio of each length tried to the one before
 HALVINGS = 2  # of the range between the last length that failed and the first that did not
-SURE = 0.92  # share of the longest length drafted that is offered
+SURE = 0.92  # share of the longest drafted length that is offered
 LIKELY = 0.4  # ratio of the side of a map to the length of a winding road that may fit on it
 LARGER = 1.3  # ratio of each map size tried to the one before
 FEWEST_METRES = 30.0
@@ -65,7 +65,7 @@ def advice(
 
 
 def too_fast(world: World, slower: float | None) -> str:
-    """Returns one sentence that says that crests and dips would be too abrupt for the speed limit.
+    """Returns the message that crests and dips would be too abrupt for the speed limit.
 
     Args:
         world: the World, for its speed limit.
@@ -80,9 +80,10 @@ def too_fast(world: World, slower: float | None) -> str:
 
 
 def main_reason(failed: Counter[str]) -> str:
-    """Returns the reason why most drafts failed; if many drafts fitted on the map, only these count.
+    """Returns the reason why most drafts failed; "too large" if ``failed`` is empty.
 
-    ``failed`` holds the reasons, with the number of times that each occurred.
+    If at least 60 failures occurred after the plan of a draft had been accepted, only these count. ``failed``
+    holds the reasons, with the number of times that each occurred.
     """
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY
@@ -107,8 +108,12 @@ def _wishes_of(outline: Outline) -> str:
 def roomier(world: World, boxes: Sequence[float]) -> float:
     """Returns the side in metres of a map that may be large enough.
 
-    A quarter of the drafts that were too large for the present map would fit on it, and it is at least 1.2
-    times as wide.
+    This map is at least 1.2 times as wide as the present one. At least a quarter of the drafts in ``boxes``,
+    which were too large for the present map, would fit on it.
+
+    Args:
+        world: the World, for the size of the present map and the width of roads.
+        boxes: side in metres of the smallest square around each draft that was too large; may be empty.
     """
     needed = sorted(boxes)[len(boxes) // 4] + world.section.road_width if boxes else 0.0
     return max(needed, 1.2 * world.site.map_size)
@@ -126,8 +131,10 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
 
 
 def no_room(error: NoRoomError, world: World) -> str:
-    """Returns the message for a road that does not fit on the map, with a suggestion that was verified by
-    drafting a road.
+    """Returns the message for a road that does not fit on the map.
+
+    If the message suggests a length or a map size, a road was drafted with it. If neither the length of the
+    road nor that of a straight is required, or the road has no turns, the result is the message of ``error``.
     """
     from roadgpt.design.road_search import fits  # the planner asks for offers, too
 
@@ -143,7 +150,7 @@ def no_room(error: NoRoomError, world: World) -> str:
 
 
 def metres_of(brief: Brief, world: World) -> float:
-    """Returns the least length in metres of a road of this Brief."""
+    """Returns the least length in metres that a road needs to meet this Brief."""
     said = (brief.length.lo or 0.0) if brief.length else 0.0
     return max(least_length(brief, world.limits.min_radius), said)
 
@@ -175,7 +182,7 @@ def _less(brief: Brief, world: World, fits: Fits) -> str | None:
 def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float | None:
     """Returns the side in metres of a larger map on which roads can be drafted; None if none was found.
 
-    ``likely`` is the side of a map that may be large enough; sizes are tried from there on.
+    ``likely`` is the side in metres of a map that may be large enough, the first size to be tried.
     """
     if likely > 2 * LARGEST_MAP or world.site.map_size == LARGEST_MAP:
         return None
@@ -189,7 +196,7 @@ def larger_map(brief: Brief, world: World, fits: Fits, likely: float) -> float |
 
 
 def _round(metres: float) -> float:
-    """Returns metres rounded down to whole metres, and from 100 m on to two digits."""
+    """Returns metres rounded down to whole metres, or to two significant digits from 100 m on."""
     step = 10.0 ** max(floor(log10(metres)) - 1, 0)
     return floor(metres / step) * step
 

@@ -1,4 +1,4 @@
-"""Tells whether straights of a map that is drafted keep off each other and off junctions."""
+"""Checks whether the straights of a draft map keep clear of each other and of junctions."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -13,27 +13,30 @@ class Line(NamedTuple):
     start: complex
     end: complex
     nodes: frozenset[int]
-    """The nodes that it joins; lines that share a node may be near each other."""
+    """The numbers of the nodes at its ends; lines that share a node may be near each other."""
 
 
 class Disc(NamedTuple):
-    """The area around a junction that other roads keep off."""
+    """The circular area of a junction, of which all roads that do not lead to the junction keep clear."""
 
     z: complex
-    """Its middle as x + iy in metres."""
+    """Its centre as x + iy in metres."""
     radius: float
+    """Its radius in metres."""
     node: int
-    """The node of the junction; lines that lead to it may be near it."""
+    """The number of the junction's node; lines that lead to this node may enter the area."""
 
 
 def is_clear(new: Sequence[Line], lines: Sequence[Line], discs: Sequence[Disc], apart: float) -> bool:
-    """Returns whether new lines keep off all lines and discs with which they share no node.
+    """Returns whether new lines keep clear of all lines and discs with which they share no node.
+
+    Distances between the new lines are not checked.
 
     Args:
-        new: the new lines.
-        lines: the lines that are there.
-        discs: the junctions that are there.
-        apart: the least distance in metres between two lines; half of it is that from a disc.
+        new: the new lines; the result is True if there are none.
+        lines: the existing lines.
+        discs: the areas of existing junctions.
+        apart: the least distance in metres between two lines; a line and a disc must be half as far apart.
     """
     if not new:
         return True

@@ -1,4 +1,4 @@
-"""Goes through drafts of networks until the rules accept one."""
+"""Builds drafts of networks one after another until the rules accept one."""
 
 from collections import Counter
 from collections.abc import Callable, Iterable
@@ -14,7 +14,7 @@ LANES_DIFFER = (
     "at a junction, lanes of one road would lead nowhere or nothing would lead to them, because the roads "
     "have different numbers of lanes"
 )
-"""The reason for which drafts fail whose roads have more lanes than the other roads at a junction take."""
+"""The reason why a draft fails if a lane does not continue at a junction (rule ``unreachable``)."""
 Draft = TypeVar("Draft", NetworkDesign, MapDesign)
 
 
@@ -26,15 +26,15 @@ def first_accepted(
     failed: Counter[str],
     most: int,
 ) -> Draft | None:
-    """Returns the first draft from which a route can be built that breaks no rule; None if there is none.
+    """Returns the first draft whose route can be built and breaks no rule; None if there is no such draft.
 
     Args:
-        drafts: the drafts; None for one that found no place.
+        drafts: the drafts; None stands for a draft that did not fit on the map, and is skipped.
         build: builds the route of a draft.
         brief: the requirements.
         world: limits that the rules check.
-        failed: counts why drafts were not accepted; it is added to.
-        most: number of drafts that are built at most.
+        failed: number of drafts that failed for each reason; this function adds to it.
+        most: greatest number of drafts that are built.
     """
     built = 0
     for draft in drafts:

@@ -1,7 +1,7 @@
-"""Drafts grids: blocks between streets, with a few roads that lead out of them.
+"""Drafts grids of streets with rectangular blocks between them, and a few roads that lead out of the grid.
 
-Streets are not quite evenly spaced, and nodes are moved a little. At a corner of the grid one road leads
-around it in a bend, unless a road leads out there.
+The spacing of the streets varies, and nodes are moved a little. A corner of the grid is a bend that joins two
+streets, or a junction if a road leads out there.
 """
 
 import cmath
@@ -15,27 +15,27 @@ from roadgpt.brief.words import Range, overlap
 from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub, kind_of
 from roadgpt.network.turning import tangent_length
 
-LEAST_BLOCK = 48.0  # m, side of a block of which no length is asked; smaller ones leave no room for bends
-MOST_BLOCK = 100.0  # m
-UNEVEN = 0.12  # share of the side of a block by which streets are unevenly spaced
-MOVED = 0.06  # share of the side of a block by which nodes are moved, along x and y
-ASKED = 0.025  # both shares where a length is asked
-LEANING = 8.0  # degrees, by which a road out of the grid may be off its usual direction
-ENTRANCES = (2, 4)  # roads that lead out of a grid
-CONTACT = 13.0  # m, about, from a node to the start of its roads
-ALIKE = 2  # more blocks than asked for at least, where there is no upper limit
+LEAST_BLOCK = 48.0  # m, least side of a block if no length is required; a smaller one has no room for bends
+MOST_BLOCK = 100.0  # m, greatest usual side of a block if no length is required
+UNEVEN = 0.12  # greatest change of the distance between two streets, as a share of the usual distance
+MOVED = 0.06  # greatest displacement of nodes along x and y, as a share of the smallest side of a block
+ASKED = 0.025  # replaces both shares if a length is required
+LEANING = 8.0  # degrees, greatest angle between a road out of the grid and its usual direction
+ENTRANCES = (2, 4)  # number of roads that lead out of a grid, if none is required
+CONTACT = 13.0  # m, approximate distance from a node to the start of its roads
+ALIKE = 2  # how far a count may exceed its lower limit if it has no upper limit
 SIDES: tuple[tuple[int, int], ...] = ((-1, 0), (1, 0), (0, -1), (0, 1))
 
 Cell = tuple[int, int]
-"""The column and the row of a node."""
+"""The column and the row of a node, from 0."""
 
 
 def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, haste: float) -> MapDraft | None:
     """Returns the draft of a grid; None if this one has no room for its bends.
 
     Args:
-        asked: the number of columns and rows, and the side of the blocks.
-        room: the side in metres of the square into which it should fit.
+        asked: the number of columns and rows of blocks, their side, and the number of dead ends.
+        room: the side in metres of the square into which the grid should fit.
         least_radius: the smallest radius in metres of a bend.
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the grid.
@@ -62,8 +62,10 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
-    """Returns a whole number that an amount allows; where it has no upper limit, not much more than its
-    lower one.
+    """Returns a random whole number from ``least`` to ``most`` that an amount allows.
+
+    If the amount has no upper limit, the result exceeds the lowest possible number by 2 at most. The amount
+    must allow a number from ``least`` to ``most``; None allows all of them.
     """
     both = overlap(span(asked), Range(least, most))
     assert both is not None

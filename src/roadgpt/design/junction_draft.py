@@ -1,4 +1,4 @@
-"""Draws the junctions of a route at random, within what is required of each."""
+"""Draws junctions at random, within the requirements for each."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -28,30 +28,30 @@ from roadgpt.network.ring import BETWEEN, MOST_LANES, MOUTH, ring_width, smalles
 
 Rng = np.random.Generator
 ANY: tuple[PlainKind, ...] = ("t_junction", "t_junction", "crossroads", "y_junction", "star")
-"""The kinds of a junction whose kind is not said; T-junctions are twice as frequent."""
+"""The kinds from which a junction is drawn if none is required. T-junctions are twice as frequent."""
 
 KERBS = (8.0, 14.0)  # m, radius of kerbs between neighbouring arms
 TIGHT_KERB = 6.0  # m, where there is little room
-STUBS = (20.0, 35.0)  # m, of the arms on which the route does not go on
+STUBS = (20.0, 35.0)  # m, length of the arms on which the route does not go on
 SHORT_STUB = 17.0  # m, where there is little room
-STRAIGHT = 14.0  # degrees, that an arm straight ahead may be off
+STRAIGHT = 14.0  # degrees, greatest deviation of an arm that leads straight on
 CLEAR = 40.0  # degrees, least turn of an arm to the left or right
-SLIGHTEST = SIDE + 3  # degrees, the same where angles are required
-ACROSS = 9.0  # degrees, that the arms of a T-junction or crossroads may be off their usual directions
+SLIGHTEST = SIDE + 3  # degrees, least turn of such an arm where angles are required
+ACROSS = 9.0  # degrees, greatest deviation of other arms of T-junctions and crossroads from 90 degrees
 SLANTS = (48.0, 62.0)  # degrees, between two neighbouring arms of skew crossroads
 FORK = (95.0, 145.0)  # degrees, between neighbouring arms of a Y-junction
-MANY_ARMS = 5  # besides that of arrival; several then lead to the same side
+MANY_ARMS = 5  # besides the arm of arrival; with so many, several arms may lead to the same side
 STAR = 50.0  # degrees, least gap of a star junction
-NARROW_STAR = 38.0  # degrees, the same where angles are required
+NARROW_STAR = 38.0  # degrees, least gap of a star junction where angles are required
 EVEN = 3.0  # concentration of a Dirichlet distribution of the gaps; the larger, the more alike they are
-USUALLY_MOST = 5.0  # arms of a roundabout, where the description does not say how many
+USUALLY_MOST = 5.0  # arms of a roundabout at most, if no number is required
 RING_GAP = 55.0  # degrees, least gap of a roundabout
 ISLANDS = (12.0, 20.0)  # m, radius of the central island where no size is required
 ROUNDS = 200  # draws of the arms of one junction
 
 
 def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) -> JunctionDesign | None:
-    """Returns a junction that meets its requirements; None if none was found.
+    """Returns a random junction that meets its requirements; None if 200 draws found none.
 
     Args:
         asked: the requirements.

@@ -1,4 +1,4 @@
-"""Chooses the lanes of the roads of a route, within what is required of them."""
+"""Chooses the lanes of the roads of a route, within the requirements for them."""
 
 from collections.abc import Sequence
 from math import inf
@@ -20,20 +20,20 @@ from roadgpt.network.lane_design import (
     narrow_part,
 )
 
-ON_MOTORWAY = 2  # lanes of a carriageway whose number of lanes is not said
+ON_MOTORWAY = 2  # lanes of a carriageway of a motorway, if no number is required
 LEAST_TAPER = 10.0  # m
-MOST_IN_TAPER = 0.6  # of the required length of a road at whose ends lanes end or begin
-LEAST_BESIDE = 20.0  # m, of a lane for acceleration or deceleration whose length is not said
-SHORT_ROAD = 30.0  # m, of a road before or behind a ramp
-SHORTEST_PART = 12.0  # m, of a road before or behind a place where lanes change
+MOST_IN_TAPER = 0.6  # greatest share of the required length of a road that a taper takes
+LEAST_BESIDE = 20.0  # m, least length of an acceleration or deceleration lane, if none is required
+SHORT_ROAD = 30.0  # m, least length of a road before or behind a ramp
+SHORTEST_PART = 12.0  # m, least length of a road before or behind a place where lanes change
 USUAL_ROAD = 90.0  # m, of a road whose length is not said
 DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
 EDGES = 40.0  # m, kept free at the edges of the map
 STEP = 50.0  # m, to which the side of the map is rounded up
-SLACK = 1.0  # m more than the least length that is required
-CHANGE = (40.0, 80.0)  # m, of a road in whose middle the lane is changed, if its length is not said
-WITHIN = 0.97  # of the greatest length that is allowed, for lengths without a least one
-CLOSE = 0.5  # of the slack of a required length, within which roads are drafted
+SLACK = 1.0  # m by which a length exceeds the least one that is required
+CHANGE = (40.0, 80.0)  # m, length of a road in whose middle the car changes lanes, if none is required
+WITHIN = 0.97  # share of the greatest length allowed that is taken if no least length is required
+CLOSE = 0.5  # share of the tolerance of a required length that drafts may use
 
 
 def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
@@ -41,7 +41,8 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
     Args:
         asked: the requirements.
-        room: greatest length in metres of its additional lane with the taper, if no length is required.
+        room: length in metres that is available for the acceleration or deceleration lane with its taper. If
+            no length is required, the lane fits into this room or is 20 m long without its taper.
     """
     assert asked.kind in RAMPS
     taper = RAMP_TAPER if asked.taper is None else _length(asked.taper) / (1 - WIDE_IN_TAPER)
@@ -59,11 +60,12 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
 
 
 def drawn_change(asked: JunctionClause, around: Sequence[Brief]) -> LanesChangeDesign:
-    """Returns a place where lanes change that meets its requirements.
+    """Returns a place where a lane ends, begins or is changed, which meets its requirements.
 
     Args:
         asked: the requirements.
-        around: those for the roads before and behind it; a short road has no room for the usual taper.
+        around: the requirements for the roads before and behind the place. If a road has to be short, the
+            taper is shorter than usual.
     """
     side = asked.take or asked.side or "right"
     room = MOST_IN_TAPER * min(span(road.length).hi for road in around)
@@ -81,15 +83,17 @@ def _length(asked: Amount) -> float:
 
 
 def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float) -> list[Brief]:
-    """Returns the requirements for the roads of a route, with the lengths that the roads themselves need.
+    """Returns the requirements for the roads of a route, with lengths measured between the ends of the roads.
 
-    Required lengths count from where a lane ends or begins, which is where it is ``LEAST_WIDTH`` wide, while
-    roads meet where its taper ends or begins. The lane is changed in the middle of the road behind such a
-    place, so this road gets a length if only that of the road before it is required.
+    The Brief measures lengths from where a lane that ends or begins is ``LEAST_WIDTH`` wide. The roads,
+    however, meet where the lane's taper ends or begins.
+
+    At a lane change, the Brief measures lengths from the middle of the road behind the place. If only the
+    road before the place has a required length, the road behind gets a length of 40 to 80 m.
 
     Args:
         brief: the requirements.
-        places: what the route passes.
+        places: the junctions, ramps and lane changes that the route passes, in order.
         width: width in metres of each lane.
     """
     roads = list(brief.roads)
@@ -124,9 +128,12 @@ def _longer(road: Brief, more: float) -> Brief:
 def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """Returns the lanes of each road of a route, before, between and behind its junctions.
 
-    Where nothing is required, a road has one lane in each direction, and what a ramp joins or leaves is one
-    carriageway of a motorway. A road that leads on straight across a junction has as many as before it; so
-    has one behind a turn if the lanes of both directions are required before it.
+    Where nothing is required, a road has one lane in each direction. On a motorway, and up to the next
+    crossings before and behind a merge or an exit, a road is a one-way carriageway instead: with one lane on
+    a ramp, and usually two elsewhere.
+
+    A road behind a junction keeps the lanes of the road before if the route leads straight on. If the route
+    turns, the road keeps them only where the lanes of both directions are required before the junction.
 
     Args:
         brief: the requirements.
@@ -134,10 +141,9 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     """
     roads = _continued(brief)
     forward = _forward(roads, brief.junctions)
-    has_ramps = any(junction.kind in RAMPS for junction in brief.junctions)
     found = []
-    for count, road in zip(forward, roads, strict=True):
-        one_way = (has_ramps or road.motorway) and not road.divided
+    for count, road, leads_to_ramp in zip(forward, roads, _on_ramps(brief.junctions), strict=True):
+        one_way = (leads_to_ramp or road.motorway) and not road.divided
         backward = 0 if one_way else count if road.divided else 1
         if road.against is not None:
             backward = int(_nearest(road.against, backward, 0))
@@ -149,10 +155,27 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     return found
 
 
+def _on_ramps(places: Sequence[JunctionClause]) -> list[bool]:
+    """Returns for each road of a route whether the route passes a ramp between the crossings around it.
+
+    A crossing is any junction that is no merge and no exit: there, other roads begin.
+    """
+    found: list[bool] = []
+    roads, has_ramp = 1, False
+    for place in places:
+        if place.kind in RAMPS or place.kind in LANE_KINDS:
+            roads, has_ramp = roads + 1, has_ramp or place.kind in RAMPS
+            continue
+        found += [has_ramp] * roads
+        roads, has_ramp = 1, False
+    return found + [has_ramp] * roads
+
+
 def _continued(brief: Brief) -> list[Brief]:
-    """Returns the requirements for the roads. Where those for lanes are left open, they are those of the road
-    before if that keeps its lanes across the junction; and those of a road that continues it, if that has so
-    many lanes that fewer would lead nowhere.
+    """Returns the requirements for the roads, with requirements for lanes where the Brief leaves these open.
+
+    They are taken from the road before if its lanes continue across the junction. They are also taken from a
+    neighbouring road with so many lanes that some of them would otherwise lead nowhere.
     """
     roads, places = list(brief.roads), brief.junctions
     for n, place in enumerate(places):
@@ -197,9 +220,10 @@ def _leads_straight_on(place: JunctionClause) -> bool:
 
 
 def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
-    """Returns whether a road behind a junction of which nothing is required has the lanes of the road before.
+    """Returns whether a road behind a junction keeps the lanes of the road before if it requires none itself.
 
-    One that leads straight on has; one behind a turn only if the lanes of both directions are required.
+    It does if the route leads straight on, or if the route turns and ``road``, the road before, requires the
+    lanes of both directions.
     """
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
     turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
@@ -207,8 +231,8 @@ def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
 
 
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:
-    """Returns the requirements for a road, with the lanes and the median of another one if nothing is
-    required of its own, and if they leave room for the centre line that is required.
+    """Returns the requirements for a road. If it requires no lanes, it gets the lanes and the median of
+    ``known``, unless it requires a centre line and ``known`` has none.
     """
     has_lanes = road.lanes is not None or road.against is not None or road.divided or road.motorway
     has_no_centre = known.divided or (known.against is not None and span(known.against).hi == 0)
@@ -224,7 +248,9 @@ def _leads_on(place: JunctionClause) -> bool:
 
 
 def _with_lanes_of(known: Brief, road: Brief) -> Brief:
-    """Returns the requirements for a road, with those for lanes of another one where they are left open."""
+    """Returns the requirements for a road. Where these leave lanes open, the lanes of ``known`` are taken if
+    there are more than two.
+    """
     against = known.lanes if known.divided and known.against is None else known.against
     update = {
         name: amount
@@ -261,8 +287,9 @@ def _first(roads: Sequence[Brief], places: Sequence[JunctionClause]) -> int:
 
 
 def _where_ramps_are(places: Sequence[JunctionClause]) -> int:
-    """Returns the usual number of lanes of a carriageway: one if it is the ramp of the next merge, or of one
-    that comes after ramps which the route passes on the main road.
+    """Returns the usual number of lanes of a carriageway before ``places``: one if it is the ramp of a merge.
+
+    Ramps that the route passes on the main road are skipped.
     """
     for place in places:
         if place.kind not in RAMPS or place.take != "main":

@@ -25,13 +25,13 @@ NEIGHBOURS = 26.0  # m along the road: closer places cannot meet (half a circle 
 COARSENESS = 0.6  # m by which coarse points may overestimate a distance
 SPARE = 0.7  # m between two carriageways, where there is no room for the shoulders
 DIAGONALS = np.array([45.0, 135.0, 225.0, 315.0])  # degrees: headings at which a straight has most room
-HEADINGS = 72  # tried on a map on which the first heading does not fit
-MOST_POINTS = 700  # of a line whose smallest box is looked for
+HEADINGS = 72  # number of headings that are tried if the first one does not fit on the map
+MOST_POINTS = 700  # a line with twice as many or more is thinned before its smallest box is computed
 LEAST_EDGE = 0.1  # m between ribbon and border of a moved road, for rounding and the bulge between samples
 BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
-CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: how a start is written
+CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: starts are rounded to these units
 TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, the smallest first
-PORTIONS = 60  # of these turns, tried one after another
+PORTIONS = 60  # parts into which these turns are divided, tried one after another
 
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
@@ -114,17 +114,17 @@ def meeting(
 ) -> tuple[Indices, Indices]:
     """Returns the pairs of points, one on a road and one on its earlier part, that are closer than ``apart``.
 
-    Points at most 26 m apart along the road do not count.
+    Only pairs count in which the point of ``z`` is more than 26 m farther along the road.
 
     Args:
         z: points as x + iy in metres, ``(n,)``.
-        s: their stations in metres.
+        s: stations of these points in metres, ``(n,)``.
         earlier: points of the earlier part, ``(m,)``; ``z`` again to compare a road with itself.
-        earlier_s: their stations in metres.
+        earlier_s: stations of the earlier points in metres, ``(m,)``.
         apart: distance in metres.
 
     Returns:
-        Indices of the points of ``z``, and of the points of ``earlier``.
+        Indices of the points of ``z`` and of the points of ``earlier``, both of shape ``(number of pairs,)``.
     """
     x, y = earlier.real, earlier.imag
     near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
@@ -142,7 +142,7 @@ def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float =
         line: the centre line of the road.
         world: the map, and the width of its usual roads.
         rng: random number generator.
-        reach: greatest distance in metres from the line to an edge of a road, if a road is wider than usual.
+        reach: distance in metres from the line to the edge of the widest road, if wider than usual; else 0.
     """
     half = max(world.section.road_width / 2, reach)
     room = world.site.map_size - 2 * half - 2 * EDGE
@@ -189,7 +189,7 @@ def _first_that_fits(
 
 
 def smallest_box(line: PlanLine) -> float:
-    """Returns the side in metres of the smallest square that the line fits into, at any heading."""
+    """Returns the side in metres of the smallest square around the line, over headings 5 degrees apart."""
     _, _, width, height = boxes(line.z[:: max(1, len(line.z) // MOST_POINTS)], np.arange(0.0, 90.0, 5.0))
     return float(np.maximum(width, height).min())
 
@@ -197,8 +197,9 @@ def smallest_box(line: PlanLine) -> float:
 def moved_onto_map(design: Design, world: World) -> Design | None:
     """Returns the design moved onto the map; None if its road is too large.
 
-    The road is moved no further than necessary. If moving is not enough, it is also rotated about its middle,
-    by the smallest multiple of 0.01 degrees at which it fits.
+    The road is moved no further than necessary. If moving is not enough, the road is also rotated about its
+    middle by the smallest angle, up to 45 degrees, at which it fits; its ``theta`` is then a multiple of 0.01
+    degrees.
     """
     corners = _corners(world.lay(build(design)), world)
     room = world.site.map_size - 2 * LEAST_EDGE

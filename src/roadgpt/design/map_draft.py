@@ -1,4 +1,4 @@
-"""Defines the draft of a map: nodes and roads in plan view, before they are placed on the map."""
+"""Defines the draft of a map of roads: nodes and roads in plan view, before they are placed on the map."""
 
 import cmath
 from collections.abc import Sequence
@@ -14,10 +14,10 @@ from roadgpt.network.ring import ring_width
 
 Rng = np.random.Generator
 KERBS = (6.0, 10.0)  # m, radius of kerbs between neighbouring roads
-STUBS = (20.0, 34.0)  # m, of a road that ends nowhere
+STUBS = (20.0, 34.0)  # m, length of a dead end
 BENDS = (18.0, 40.0)  # m, radius of bends where there is room
-STRAIGHT = 15.0  # m before and behind a junction that are kept straight: they give its arms their directions
-AROUND = 16  # points around a roundabout
+STRAIGHT = 15.0  # m of each road that are straight at a junction: they set the direction of its arm
+AROUND = 16  # number of points around a roundabout
 
 
 @dataclass
@@ -28,30 +28,32 @@ class DraftNode:
     """Its place as x + iy in metres."""
     kind: NodeKind
     kerb: float = 8.0
+    """Radius in metres of the kerbs between neighbouring roads at a junction."""
     radius: float | None = None
+    """Radius in metres of a bend, or of the central island of a roundabout; None at any other node."""
 
     @property
     def is_junction(self) -> bool:
-        """Whether roads meet here."""
+        """Whether three or more roads meet here: the node is neither a bend nor an end."""
         return self.kind not in ("bend", "end")
 
 
 @dataclass
 class MapDraft:
-    """Nodes and the roads that join them; nodes are numbered from 0."""
+    """Nodes, numbered from 0, and roads, each given by the numbers of the two nodes that it joins."""
 
     nodes: list[DraftNode] = field(default_factory=list)
     roads: list[tuple[int, int]] = field(default_factory=list)
 
     def add(self, node: DraftNode, *joined_to: int) -> int:
-        """Adds a node and roads from others to it; returns its number."""
+        """Adds a node, and a road to it from each of the nodes ``joined_to``; returns the node's number."""
         self.nodes.append(node)
         number = len(self.nodes) - 1
         self.roads += [(other, number) for other in joined_to]
         return number
 
     def neighbours(self) -> list[list[int]]:
-        """Returns the nodes to which roads lead from each node."""
+        """Returns for each node the numbers of the nodes to which a road leads from it."""
         found: list[list[int]] = [[] for _ in self.nodes]
         for one, other in self.roads:
             found[one].append(other)
@@ -59,7 +61,10 @@ class MapDraft:
         return found
 
     def corners(self) -> NDArray[np.complex128]:
-        """Returns points in metres around everything that is drawn, but for the width of roads."""
+        """Returns the points that must lie on the map, x + iy in metres, ``(n,)``.
+
+        These are all nodes, and 16 points around each roundabout. The width of roads is not included.
+        """
         points = [node.z for node in self.nodes]
         for node in self.nodes:
             if node.kind == "roundabout" and node.radius is not None:
@@ -69,24 +74,27 @@ class MapDraft:
 
 
 def drawn_kerb(rng: Rng, haste: float) -> float:
-    """Returns the radius of a kerb in metres; the larger ``haste``, from 0 to 1, the smaller."""
+    """Returns a random kerb radius in metres. The larger ``haste``, from 0 to 1, the smaller the radius."""
     low, high = KERBS
     return round(low + (high - low) * (1 - haste) * float(rng.random()), 1)
 
 
 def drawn_stub(rng: Rng, haste: float) -> float:
-    """Returns the length in metres of a road that ends nowhere, from the junction's contact on."""
+    """Returns a random length in metres of a dead end, from its contact: the point where the junction ends.
+
+    The larger ``haste``, from 0 to 1, the shorter is the dead end.
+    """
     low, high = STUBS
     return low + (high - low) * (1 - haste) * float(rng.random())
 
 
 def drawn_bend(rng: Rng, least: float, room: float) -> float | None:
-    """Returns the radius of a bend in metres; None if no bend has room.
+    """Returns a random radius of a bend in metres; None if no radius is possible.
 
     Args:
         rng: random number generator.
-        least: the smallest radius allowed.
-        room: the largest radius that fits.
+        least: the smallest radius allowed, in metres.
+        room: the largest radius that fits, in metres.
     """
     low, high = max(least, min(BENDS[0], room)), min(BENDS[1], room)
     if room < least:
@@ -95,6 +103,6 @@ def drawn_bend(rng: Rng, least: float, room: float) -> float | None:
 
 
 def kind_of(arms: int) -> NodeKind:
-    """Returns the kind of a node of a grid by the number of its roads."""
+    """Returns the kind of a node of a grid at which ``arms`` roads meet, 1 to 5."""
     kinds: Sequence[PlainKind] = ("t_junction", "crossroads", "star")
     return "end" if arms == 1 else "bend" if arms == 2 else kinds[arms - 3]

@@ -1,5 +1,7 @@
-"""Draws a route through the draft of a map. It goes where the description says; otherwise, it passes several
-junctions and turns to both sides if it can.
+"""Draws a route through the draft of a map of roads.
+
+If the description says where the route turns, the route does so. Otherwise, it passes several junctions and
+turns to both sides where possible.
 """
 
 import cmath
@@ -9,15 +11,16 @@ from itertools import pairwise
 from roadgpt.brief.junctions import Way, side_of
 from roadgpt.design.map_draft import MapDraft, Rng
 
-WALKS = 60  # that are drawn, of which the best is taken
-PASSED = (3, 6)  # junctions that a route passes, where it can
+WALKS = 60  # number of random walks, of which the best is taken
+PASSED = (3, 6)  # number of junctions that a route passes, where possible
 LONG = 120.0  # m; a shorter route counts as worse
 
 
 def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
-    """Returns the nodes along a route, from one end to another; None if there is no route.
+    """Returns the numbers of the nodes along a random route from one end to another; None if none was found.
 
-    A map with less than two ends has a route from one junction to another. No node is passed twice.
+    If the map has fewer than two ends, the route leads from one junction to another, or to an end. No node is
+    passed twice.
     """
     ends = [n for n, node in enumerate(draft.nodes) if node.kind == "end"]
     to_end = len(ends) > 1
@@ -38,11 +41,10 @@ def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
 
 
 def named_route(draft: MapDraft, ways: Sequence[Way], rng: Rng) -> list[int] | None:
-    """Returns the nodes along a route that goes the given ways at the junctions that it passes; None if there
-    is no such route.
+    """Returns the numbers of the nodes along a route that takes the given ways at its junctions, in order.
 
-    It leads from one end of a road to another if it can, else from one end or junction to another. No node is
-    passed twice.
+    Returns None if there is no such route. The route starts and finishes at ends where possible, and
+    otherwise at junctions. No node is passed twice.
     """
     neighbours = draft.neighbours()
     starts = [n for n, node in enumerate(draft.nodes) if node.kind != "bend"]
@@ -79,8 +81,8 @@ def _named(
 def _walk(
     draft: MapDraft, neighbours: Sequence[Sequence[int]], start: int, wanted: int, to_end: bool, rng: Rng
 ) -> list[int] | None:
-    """Returns the nodes of a random walk; None if it does not reach an end or, if ``to_end`` is False,
-    another junction.
+    """Returns the nodes of a random walk that reaches an end or, if ``to_end`` is False, another junction;
+    None if the walk reaches neither.
     """
     walk, passed = [start], 0
     while True:

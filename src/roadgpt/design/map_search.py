@@ -1,7 +1,7 @@
 """Searches for a map of roads: tries random drafts until one fits on the map and breaks no rule.
 
-A draft is a grid or a number of junctions that are joined by roads. It is turned and moved onto the map,
-heights and a route are drawn, and the rules must accept the network that is built from it.
+A draft is a grid, or junctions joined by roads. The draft is rotated and moved onto the square map, and
+heights and a route are drawn at random. The rules must then accept the network that is built from the draft.
 """
 
 from collections import Counter
@@ -29,18 +29,18 @@ from roadgpt.road import World
 
 DRAFTS = 200  # for one map, at most
 BUILT = 30  # drafts that fit and break a rule, after which the search is given up
-PER_JUNCTION = 80.0  # m, times the root of the number of junctions: a map of which they fill all
-TRIED = 24  # drafts that show whether maps of some size are large enough
+PER_JUNCTION = 80.0  # m; n junctions fill a map whose side is this length times the square root of n
+TRIED = 24  # drafts in each search that tests whether a map is large enough
 TRIALS = (1, 2)  # seeds of these searches
 NO_HASTE = 8  # drafts without haste
-HURRIED = 0.12  # of haste from the start on, for each junction beyond the first ones
-FEW = 2.0  # junctions, which need no haste on the usual map
-PARTS = 250.0  # m, the usual map
-LEANING = 14.0  # degrees, by which a grid may be turned, so that its columns still run from south to north
-TURNS = 24  # turns that are tried
-TIGHTEST = 1.05  # times the smallest radius allowed, of bends
+HURRIED = 0.12  # least haste for each junction beyond the first ``FEW``
+FEW = 2.0  # number of junctions that need no haste on the usual map
+PARTS = 250.0  # m, side of the usual map
+LEANING = 14.0  # degrees, greatest rotation of a grid; its columns still run from south to north
+TURNS = 24  # number of rotations that are tried
+TIGHTEST = 1.05  # least radius of bends, as a multiple of the smallest radius allowed
 LEVEL = 0.4  # share of maps that are level
-TILT = 0.02  # ratio, steepest plane in which the nodes of a map lie
+TILT = 0.02  # ratio, greatest slope of the plane in which the nodes of a map lie
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest node
 TOO_LARGE = "too large"
 
@@ -52,7 +52,7 @@ class MapSearch:
         """Prepares the search.
 
         Args:
-            brief: the requirements, with a map.
+            brief: the requirements, among them those for a map of roads.
             world: size of the map, and limits that the rules check.
             rng: random number generator.
         """
@@ -64,7 +64,7 @@ class MapSearch:
         """Returns the first draft that is accepted.
 
         Args:
-            drafts: how many drafts are tried at most.
+            drafts: the greatest number of drafts that are tried.
 
         Raises:
             DesignError: no draft was accepted; the message says why most of them failed.
@@ -80,7 +80,7 @@ class MapSearch:
 
     @property
     def _least_haste(self) -> float:
-        """The haste from the start on: many junctions find no place on the map otherwise."""
+        """The haste of the first drafts, without which many junctions would not fit on the map."""
         share = PARTS / self.world.site.map_size
         return HURRIED * max(_least_count(self.asked) * share**2 - FEW, 0.0)
 
@@ -171,7 +171,7 @@ def _node(node: DraftNode, height: float, control: Control) -> MapNode:
 
 
 def map_fits(brief: Brief, world: World) -> bool:
-    """Returns whether each of two short searches with different seeds finds a map."""
+    """Returns whether each of two short searches with different seeds finds a map of roads."""
     return _failed(brief, world) is None
 
 
@@ -188,8 +188,9 @@ def _failed(brief: Brief, world: World) -> MapSearch | None:
 
 @lru_cache(maxsize=256)
 def room_for_map(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a map large enough for a map of roads; None if the World's is, or if no
-    larger one would help.
+    """Returns the side in metres of a square map that is large enough for the required map of roads.
+
+    Returns None if the World's map is large enough, or if no larger map would help.
     """
     assert brief.map is not None
     likely = _likely_room(brief.map)
@@ -203,7 +204,7 @@ def room_for_map(brief: Brief, world: World) -> float | None:
 
 
 def _likely_room(asked: MapClause) -> float:
-    """Returns the side in metres of a square on which a map of roads has little room."""
+    """Returns the side in metres of a square that a map of roads may just fit into."""
     if asked.junctions:
         return PER_JUNCTION * sqrt(_least_count(asked))
     blocks = max(span(asked.columns).lo, span(asked.rows).lo, 1.0)
@@ -212,5 +213,5 @@ def _likely_room(asked: MapClause) -> float:
 
 
 def _least_count(asked: MapClause) -> float:
-    """Returns the least number of junctions of a map of some kinds of junctions."""
+    """Returns the least number of junctions that the requirements for a map of roads allow."""
     return sum(max(span(each.count).lo, 1.0) for each in asked.junctions)

@@ -1,4 +1,4 @@
-"""Makes up for the level ends of a road between junctions of which a difference of heights is required."""
+"""Steepens a road whose climb is required, because its ends at junctions are level."""
 
 import math
 from collections.abc import Sequence
@@ -7,20 +7,23 @@ from roadgpt.network.stretch import level_ends
 from roadgpt.road import Segment
 from roadgpt.road.elevation import vertical_curves_of
 
-STEADY = 1.0  # percent; of a road that climbs or falls less on average, the heights are left as they are
-ROUNDS = 4  # of making it steeper; each makes the level ends a little longer, too
+STEADY = 1.0  # percent; a road whose mean grade is less remains unchanged
+ROUNDS = 4  # of steepening, since each round also makes the level ends a little longer
 TENTH = 10.0  # per percentage point: grades are written to the tenth
 
 
 def climbing(
     segments: Sequence[Segment], is_level: tuple[bool, bool], steepest: float
 ) -> tuple[Segment, ...]:
-    """Returns the segments with grades so much steeper that the mean grade is what it was without level ends.
+    """Returns the segments, steepened so that level ends do not change the mean grade of the road.
+
+    Up to four rounds of steepening bring the mean grade close to its original value. A road whose mean grade
+    is below 1 % is returned unchanged. Vertical radii that no longer fit are reduced.
 
     Args:
         segments: the segments of a road.
         is_level: whether the road is level at its start, and at its end.
-        steepest: the steepest grade allowed, in percent; where it is exceeded, nothing is changed.
+        steepest: the steepest grade allowed, in percent; steepening stops before a grade exceeds it.
     """
     length = sum(segment.distance for segment in segments)
     wanted = sum(segment.distance * segment.incline for segment in segments) / length
@@ -40,7 +43,7 @@ def climbing(
 
 
 def _steeper(segment: Segment, factor: float) -> Segment:
-    """Returns the segment with a grade so many times as steep; its vertical curve keeps its length."""
+    """Returns the segment with its grade multiplied by ``factor``; its vertical curve keeps its length."""
     radius = segment.vertical_radius
     changed = {
         "incline": round(TENTH * segment.incline * factor) / TENTH,
@@ -50,7 +53,7 @@ def _steeper(segment: Segment, factor: float) -> Segment:
 
 
 def _fitted(segments: tuple[Segment, ...]) -> tuple[Segment, ...]:
-    """Returns the segments with the vertical radii that have room between their neighbours."""
+    """Returns the segments with vertical radii reduced where there is too little room for them."""
     found = list(segments)
     for curve in vertical_curves_of(segments):
         asked = found[curve.number].vertical_radius

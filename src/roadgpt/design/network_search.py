@@ -47,23 +47,23 @@ NO_HASTE = 12  # drafts without haste
 STRETCHES = 12  # drafts of one road between junctions
 HEIGHTS = 3  # draws of the heights of one road
 BUILT = 60  # drafts that fit and break a rule, after which the search is given up
-LEAST_OF_MOST = 0.6  # share of the length that a route has at least, if it may have that length at most
-MOST_OF_LEAST = 1.2  # times the length that a route has at most, if it must have that length at least
-LONG = 150.0  # m, of a road that is easier to place if it has several turns
-HURRIED = 1 / 8  # of haste from the start, for each junction beyond the second
+LEAST_OF_MOST = 0.6  # least length of a route as a share of its greatest, if only the latter is required
+MOST_OF_LEAST = 1.2  # greatest length of a route as a multiple of its least length
+LONG = 150.0  # m; a road of this length or more is easier to place if it has several turns
+HURRIED = 1 / 8  # least haste for each junction beyond the second
 CURVED = 0.4  # share of roads without requirements that have a turn
-SHORTEST = 30.0  # m, of a road without requirements
+SHORTEST = 30.0  # m, least length of a road without requirements
 SHORTEST_WITH_LANES = 80.0  # m, where lanes end, begin or are changed
 SHORTEST_BETWEEN_RAMPS = 2 * BESIDE + 40.0  # m, where a ramp that leaves lies before one that joins
 ROOM = 360.0  # m of roads without requirements on the usual map, all together
-MOST = 130.0  # m, of one such road
+MOST = 130.0  # m, greatest length of one such road
 TURNING = 45.0  # m more for such a road with a turn
-PARTS = 250.0  # m, the usual map
-ROOM_TO_TURN = 20.0  # m, of a road whose length is required and that is partly beside the lane of a ramp
+PARTS = 250.0  # m, side of the usual map
+ROOM_TO_TURN = 20.0  # m of a road of required length that must remain beyond the lane of a ramp
 STARTS_AT = (0.0, 6.0)  # m, range of the height of the lowest place of the first road
 TOO_LARGE, OVERLAPS, UNDRAFTED = "too large", "its roads would overlap", "one of its roads cannot be drafted"
 FOR_ROOM = (TOO_LARGE, OVERLAPS, UNDRAFTED)
-"""Reasons for which drafts fail that a larger map may do away with."""
+"""Reasons for failure that may disappear on a larger map."""
 
 Draft = tuple[DraftSearch, PlacedPlan]
 """The search for a road between junctions, and the plan of the road that it found."""
@@ -94,11 +94,11 @@ class NetworkSearch:
         """Returns the first draft that is accepted.
 
         Args:
-            drafts: how many drafts are tried at most.
+            drafts: the greatest number of drafts that are tried.
 
         Raises:
-            DesignError: no draft was accepted, and the message says why most of them failed; or no road can
-                have the lanes that are required.
+            DesignError: no draft was accepted, or no road can have the lanes that are required. The message
+                says why; if drafts failed for several reasons, it names the most frequent one.
         """
         least = HURRIED * max(len(self.brief.junctions) - 2, 0)
         calm = min(NO_HASTE, drafts // 3)
@@ -154,7 +154,8 @@ class NetworkSearch:
                 room = self._room_beside(number)
                 found.append(drawn_ramp(clause, room).model_copy(update={"lanes": lanes}))
                 continue
-            junction = drawn_junction(self._with_ring_lanes(number), 1, self.rng, haste)
+            clause = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
+            junction = drawn_junction(clause, 1, self.rng, haste)
             if junction is None:
                 is_ring = clause.kind == "roundabout"
                 why = "such an island is too small for so many arms" if is_ring else "it has no such ways on"
@@ -170,6 +171,17 @@ class NetworkSearch:
             return clause
         most = max(max(each.forward, each.backward) for each in self.lanes[number : number + 2])
         return clause.model_copy(update={"lanes": exactly(most)}) if most > 1 else clause
+
+    def _at_end_of_ramp(self, number: int) -> JunctionClause | None:
+        """Returns what is required of a T-junction at the end of a motorway's exit, where the ramp is its
+        stem; None for any other junction.
+        """
+        clause = self.brief.junctions[number]
+        is_exit = number > 0 and self.brief.junctions[number - 1].kind == "diverge"
+        is_free = clause.take in ("left", "right") and not clause.ways and clause.angle is None
+        if clause.kind != "t_junction" or not is_exit or not is_free:
+            return None
+        return clause.model_copy(update={"ways": ("left", "right")})
 
     def _room_beside(self, number: int) -> float:
         """Returns the length in metres that a lane for acceleration or deceleration can have,

@@ -24,26 +24,28 @@ from roadgpt.road import Profile
 Complex = NDArray[np.complex128]
 STEP = 2.0  # m between points
 MARGIN = 1.5  # m between the shoulders of roads that do not meet
-POINTS = 24  # around a roundabout
+POINTS = 24  # number of points around a roundabout
 AWAY = 12.0  # m from a contact, outwards, within which the arms of one junction may be near each other
 
 
 class NetworkSketch(NamedTuple):
-    """The parts of a route: points as x + iy in metres, from a start at the origin that heads along +x."""
+    """The parts of a route as points; the route starts at the origin and heads along +x."""
 
     z: Complex
-    """All points, ``(n,)``."""
+    """The points of all parts, x + iy in metres, ``(n,)``."""
     part: NDArray[np.intp]
     """The number of the road or junction to which each point belongs, ``(n,)``."""
     near: NDArray[np.bool_]
-    """Shape (parts, parts): whether two parts meet, so that they may be near each other."""
+    """Shape (parts, parts): whether two parts meet, so that they may be near each other where they meet."""
     joined: NDArray[np.bool_]
     """Shape (parts, parts): whether two parts are roads that continue each other or meet at a small angle, so
     that they may be near each other anywhere."""
     reach: NDArray[np.float64]
     """The distance in metres from each point to the outer edge of the shoulder of its road, ``(n,)``."""
     nodes: tuple[tuple[complex, float], ...]
-    """The node of each junction, and the distance from it within which its arms may be near each other."""
+    """For each junction, its node as x + iy in metres, and the distance in metres from the node within which
+    the arms may be near each other.
+    """
 
 
 def sketched(
@@ -53,7 +55,7 @@ def sketched(
 
     Args:
         lines: the roads before, between and after the places that the route passes.
-        places: these places.
+        places: these places: junctions, ramps, and places where lanes change; one fewer than the roads.
         profiles: the cross-section of each road.
     """
     pen = _Pen(lines[0], profiles[0].reach)
@@ -93,7 +95,7 @@ class _Pen:
         self.joined.append((before, self._arrival))
 
     def pass_ramp(self, ramp: RampDesign, line: PlanLine, profiles: tuple[Profile, Profile]) -> None:
-        """Draws a merge or an exit, the road that the route does not take, and that on which it goes on."""
+        """Draws a merge or an exit, the road that the route does not take there, and its next road."""
         first = self._arrival
         on_route, beside = lines_at_ramp(ramp)
         at, way = self._end, self._way
@@ -153,7 +155,7 @@ def _way(z: Complex) -> complex:
 
 
 def is_clear(sketch: NetworkSketch) -> bool:
-    """Returns whether roads and junctions that do not meet keep their distance."""
+    """Returns whether all parts of a sketch keep clear of each other, except where they meet."""
     z, part, reach = sketch.z, sketch.part, sketch.reach
     of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < reach[:, None] + reach + MARGIN, 1))
     apart_from = ~sketch.joined[part[of], part[others]]

@@ -1,10 +1,9 @@
 """Searches for a road: tries random drafts until one meets the Brief, is valid and unlike earlier roads.
 
-Each draft is checked, the cheapest check first: it must fit on the map, keep clear of itself, differ from
-earlier roads and meet the requirements as measured on its line; then the rules must accept the road that is
-built from it. After the first drafts, straights and turns become a little shorter with every draft.
-Requirements that leave little room are therefore met by a later draft, and only those that cannot be met are
-refused.
+Each draft is checked, the cheapest check first. The draft must fit on the map, keep clear of itself, differ
+from earlier roads, and meet the requirements as measured on its line. The rules must then accept the road
+that is built from the draft. After the first drafts, straights and turns become a little shorter with every
+draft, so that a later draft can meet requirements that leave little room.
 """
 
 from collections import Counter
@@ -45,13 +44,13 @@ DRAFTS = 320  # for one road, at most
 ALIKE = 120  # drafts like earlier roads, after which the least similar one is taken
 ALIKE_STRAIGHTS = 12  # the same for a road without turns, where only the length can differ
 CHOOSY = 1 / 8  # share of these drafts during which roads that only continue an earlier one count as alike
-CROWDED = 400  # earlier roads, above which that share is divided by three
-FINISHED = 100  # drafts that fit and fail a requirement or rule, after which the search is given up
+CROWDED = 400  # number of earlier roads above which this share is divided by three
+FINISHED = 100  # drafts that fit but fail a requirement or rule, after which the search is given up
 LAST_RESORTS = 20  # drafts like earlier roads that are finished if there are no others
 TRIALS = (1, 2, 3, 4)  # seeds with which ``fits`` tests whether there is room
 TRIED = 110  # drafts for each of these seeds
 GROWN = 20  # grown drafts of a road of required length, if no composed draft was accepted
-GROWN_ON_TRIAL = 5  # the same in ``fits``
+GROWN_ON_TRIAL = 5  # grown drafts in a search of fewer than ``DRAFTS`` drafts, as in ``fits``
 NO_HASTE = 16  # drafts without haste
 SHOULDERS = 0.6  # share of the drafts in which the road must also keep off its own shoulders
 FAILED_ON_HEIGHTS = 40  # drafts that failed on their slopes, after which lower speed limits are tried
@@ -121,7 +120,9 @@ class DraftSearch:
         self.boxes: list[float] = []
 
     def run(self) -> tuple[Design, Road]:
-        """Returns the first draft that is accepted; if all are like earlier roads, one of the least similar.
+        """Returns the first draft that is accepted, as a Design and its Road.
+
+        If all drafts are like earlier roads, one of the least similar drafts is returned.
 
         Raises:
             DesignError: no draft was accepted.
@@ -135,7 +136,12 @@ class DraftSearch:
         return found
 
     def found(self, drafts: int = DRAFTS) -> tuple[Design, Road] | None:
-        """Returns the first draft that is accepted, or None."""
+        """Returns the first draft that is accepted, as in ``run``; None if no draft is accepted.
+
+        Args:
+            drafts: number of random drafts. A road of required length gets some drafts more, which are grown
+                turn by turn; a long one (see ``is_long``) gets only these.
+        """
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
         most_alike = ALIKE if self.outline.turns.hi > 0 else ALIKE_STRAIGHTS
@@ -232,7 +238,7 @@ class DraftSearch:
 
         Args:
             haste: from 0 to 1; the larger it is, the shorter the road.
-            plain: whether it has as few turns as the requirements allow.
+            plain: whether the road has as few turns as the requirements allow.
         """
         order = drawn_sequence(self.outline, self.rng, plain)
         elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)

@@ -1,5 +1,5 @@
-"""Finds the World for the roads of a description: the friction of a surface that the words name, and a map
-that is large enough for such roads.
+"""Finds the World for the roads of a description: friction and lanes that the words name, and a map that is
+large enough for such roads.
 """
 
 from collections.abc import Iterator
@@ -15,9 +15,9 @@ from roadgpt.road import World
 def world_for(brief: Brief | None, world: World) -> World:
     """Returns the World for the roads of a Brief.
 
-    A surface that the Brief names, such as a wet road, sets the friction, unless the World was given one; so
-    do lanes and the centre line. If the World was given no map size and roads of this Brief do not fit on the
-    usual map, the map is enlarged.
+    The surface that the Brief names, such as a wet road, sets the friction. For a single road, the Brief also
+    sets the lanes and the centre line. If roads of this Brief do not fit on the usual map, a larger map is
+    set. A value that was given to the World is kept. Without a Brief, the World is returned unchanged.
     """
     found = world.on_surface_of(brief).with_lanes_of(brief)
     if brief is None or "map_size" in world.site.model_fields_set:
@@ -30,14 +30,22 @@ def world_for(brief: Brief | None, world: World) -> World:
 
 
 def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
-    """Returns sentences that say what a Brief has changed about a World: its friction, and its map."""
+    """Returns sentences that say how a Brief affects a World: its friction, its lanes and its map.
+
+    Args:
+        brief: the requirements.
+        usual: the World that was given.
+        found: the World for the roads, as ``world_for`` returns it.
+    """
     surface = surface_remark(brief.beside, found.site.friction)
     said = (surface, *lane_remarks(brief, found), map_remark(usual, found))
     return tuple(remark for remark in said if remark)
 
 
 def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
-    """Yields sentences that say what the words ask of lanes and is set by options; none on routes.
+    """Yields a sentence on the lanes that the words ask for, and one on a centre line that is not used.
+
+    For networks, there are no sentences.
 
     Args:
         brief: the requirements.

@@ -1,4 +1,4 @@
-"""Finds out how large a map has to be for the route of a description."""
+"""Computes how large a map has to be for the route of a description."""
 
 from collections import Counter
 from functools import lru_cache
@@ -17,18 +17,19 @@ from roadgpt.network.lane_design import ACCELERATION
 from roadgpt.network.ramps import length_at_ramp
 from roadgpt.road import World
 
-TRIED = 40  # drafts that show whether maps of some size are large enough
+TRIED = 40  # drafts in each search that tests whether a map is large enough
 TRIALS = (1, 2)  # seeds of these searches
-USUAL_ROAD = 90.0  # m, of a road whose length is not said
-DIAGONAL = 1.25  # times the side of the map, that a straight route can be long
-WINDING = 3.5  # times the side of the map, that a route with turns can be long
+USUAL_ROAD = 90.0  # m, assumed length of a road whose length is not required
+DIAGONAL = 1.25  # greatest length of a straight route, as a multiple of the side of the map
+WINDING = 3.5  # greatest length of a route with turns, as a multiple of the side of the map
 EDGES = 40.0  # m, kept free at the edges of the map
 
 
 @lru_cache(maxsize=256)
 def room_for_route(brief: Brief, world: World) -> float | None:
-    """Returns the side in metres of a map large enough for a route; None if the World's is, or if no larger
-    one would help.
+    """Returns the side in metres of a map that is large enough for the required route.
+
+    Returns None if the World's map is large enough, or if no larger map would help.
     """
     likely = _likely_room(brief)
     try:
@@ -57,7 +58,7 @@ def _failed(brief: Brief, world: World) -> Counter[str] | None:
 
 
 def _likely_room(brief: Brief) -> float:
-    """Returns the side in metres of a square on which a route has little room."""
+    """Returns the side in metres of a square that a route may just fit into."""
     total = _least(brief)
     for road in brief.roads:
         total += _least(road)
@@ -67,8 +68,7 @@ def _likely_room(brief: Brief) -> float:
 def _straightest(brief: Brief) -> float:
     """Returns the length in metres of the longest part of a route that must be nearly straight.
 
-    These are straights of which a length is required, and what lies beside the lanes of ramps and where lanes
-    change.
+    Such parts are straights of required length, and roads joined by ramps or by places where lanes change.
     """
     longest, run = 0.0, 0.0
     for n, road in enumerate(brief.roads):

@@ -1,4 +1,4 @@
-"""Names what a plan can ask for and no designer can build yet."""
+"""Names features that a Brief can ask for but no designer can build yet."""
 
 from collections.abc import Iterator
 
@@ -10,10 +10,10 @@ from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
 
 
 def check_built(brief: Brief) -> None:
-    """Checks whether everything that a Brief asks for can be built.
+    """Checks that everything that a Brief asks for can be built.
 
     Raises:
-        DesignError: It cannot be built yet; the message names each such thing.
+        DesignError: Something cannot be built yet; the message names it.
     """
     if any(_crosses_oncoming(brief, n) for n in range(len(brief.junctions))):
         side = "right" if brief.left_hand else "left"
@@ -34,7 +34,7 @@ def _unbuilt(brief: Brief) -> Iterator[str]:
 
 
 def _crosses_oncoming(brief: Brief, number: int) -> bool:
-    """Returns whether a junction is a ramp between the directions of a road with oncoming lanes."""
+    """Returns whether a junction is a ramp on the side of the oncoming lanes of its road."""
     ramp, roads = brief.junctions[number], brief.stretches[number : number + 2]
     if ramp.kind not in RAMPS or ramp.side != ("right" if brief.left_hand else "left"):
         return False
@@ -43,7 +43,7 @@ def _crosses_oncoming(brief: Brief, number: int) -> bool:
 
 
 def _of_junction(junction: JunctionClause, before: Brief, after: Brief) -> Iterator[str]:
-    """Yields what cannot be built of a junction with the roads before and behind it."""
+    """Yields the features of a junction, and of the roads before and behind it, that cannot be built."""
     if junction.kind in RAMPS and junction.take != "main":
         ramp = before if junction.kind == "merge" else after
         if span(ramp.lanes).lo > 1 or span(ramp.against).lo > 0 or ramp.divided:

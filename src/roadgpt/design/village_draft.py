@@ -1,6 +1,7 @@
-"""Drafts maps of junctions of some kinds: each new junction is joined to an arm that leads nowhere yet.
+"""Drafts maps of roads with junctions of required kinds.
 
-Then pairs of arms that lead nowhere are joined where their directions meet. The others become roads that end.
+Each new junction is joined by a road to a free arm: an arm of an earlier junction that leads nowhere yet.
+Then pairs of free arms are joined by roads with one or two bends. The other free arms become dead ends.
 """
 
 import cmath
@@ -23,35 +24,38 @@ from roadgpt.network.map_growing import profile_of_map
 from roadgpt.network.turning import tangent_length
 from roadgpt.road import World
 
-TRIES = 30  # places that are tried for one junction
-CHOICES = 4  # places that fit, of which the one nearest to the middle of the village is taken
-BETWEEN = (16.0, 70.0)  # m, of a straight road between two junctions
+TRIES = 30  # number of places that are tried for one junction
+CHOICES = 4  # number of places that fit, of which the one nearest to the middle is taken in great haste
+BETWEEN = (16.0, 70.0)  # m, length of a straight road between two junctions
 BENT = 0.35  # share of roads between junctions that have a bend
-TURN = (20.0, 60.0)  # degrees, of such a bend
-WIDEST = 35.0  # m, radius of such a bend
+TURN = (20.0, 60.0)  # degrees, angle of such a bend
+WIDEST = 35.0  # m, greatest radius of such a bend
 MARGIN = 2.0  # m between the shoulders of roads that do not meet
-FARTHEST = 130.0  # m, from a junction to the bend of a road that joins two arms
-SHARPEST = 115.0  # degrees, of such a bend
-GENTLEST = 8.0  # degrees, of such a bend
+FARTHEST = 130.0  # m, greatest distance from a junction to the bend of a road that joins two arms
+SHARPEST = 115.0  # degrees, greatest angle of such a bend
+GENTLEST = 8.0  # degrees, least angle of such a bend
 JOINED = 0.8  # share of the arms that are joined where they can be
-ENDS = 2  # arms at least that are left as ends, where no number is required
-DRAWN = 20  # sets of junctions, until one has arms for the required number of dead ends
-ORDERS = 6  # in which arms are joined, to leave as many dead ends as required
-LINKS = 12  # roads with two bends that are tried between two arms
-BEFORE_BEND = (16.0, 70.0)  # m, of a straight before such a bend, in which half of the bend lies
-DONE = 0.3  # chance, before each further pair, to leave the number of dead ends where it meets a range
-ASKED = 0.04  # share by which distances differ from the one that is asked for
-LONGER = 1.2  # share by which the ends of a map with one junction are longer, so that its route is not short
-STUB = 24.0  # m, kept free for each arm that leads nowhere yet
+ENDS = 2  # least number of arms that become dead ends, if none is required
+DRAWN = 20  # sets of junctions that are drawn, until the arms of one allow the required dead ends
+ORDERS = 6  # number of orders of joining arms that are tried, to leave the required dead ends
+LINKS = 12  # number of roads with two bends that are tried between two arms
+BEFORE_BEND = (16.0, 70.0)  # m before such a bend's node that its tangent may take
+DONE = 0.3  # chance of not joining a pair of arms when the number of dead ends is already allowed
+ASKED = 0.04  # greatest deviation of a distance from the required one, as a share of it
+LONGER = 1.2  # greatest extension of the dead ends of a map with one junction, as a share of their length
+STUB = 24.0  # m, kept free for each free arm
 
 
 def draft_village(
     asked: MapClause, world: World, least_radius: float, rng: Rng, haste: float
 ) -> MapDraft | None:
-    """Returns the draft of a map of junctions; None if one of them found no place.
+    """Returns the draft of a map of roads with junctions.
+
+    Returns None if a junction found no place, or if the number of dead ends is not the required one.
 
     Args:
-        asked: the kinds of junctions and how many of each.
+        asked: the kinds of junctions, how many of each, the distance between them, and the number of dead
+            ends.
         world: the width of lanes and shoulders.
         least_radius: the smallest radius in metres of a bend.
         rng: random number generator.
@@ -76,8 +80,10 @@ def draft_village(
 def _junctions(
     kinds: Sequence[MapJunctionKind], asked: MapClause, rng: Rng, haste: float
 ) -> list[JunctionDesign] | None:
-    """Returns junctions of some kinds in random order; None if one of them was not found, or if they have too
-    few arms for the required number of dead ends, or leave one more or less.
+    """Returns junctions of the given kinds in random order.
+
+    Returns None if one of them was not found. Also returns None if the required number of dead ends is
+    impossible: there are too few arms, or joining arms in pairs always leaves another number.
     """
     found = []
     for n in rng.permutation(len(kinds)):
@@ -122,7 +128,7 @@ class _Village:
     discs: list[Disc] = field(default_factory=list)
 
     def copied(self) -> "_Village":
-        """Returns the same draft as another one that can be changed."""
+        """Returns a copy to which nodes and roads can be added without changing this draft."""
         draft = MapDraft(list(self.draft.nodes), list(self.draft.roads))
         return replace(self, draft=draft, free=list(self.free))
 
@@ -236,8 +242,9 @@ class _Village:
         return roads + [arm.line for arm in self.free if arm not in without]
 
     def join_arms(self) -> bool:
-        """Joins pairs of arms that lead nowhere, where a bend can lead from one to the other, or two bends if
-        a number of dead ends is required; returns whether there are as many as required.
+        """Joins pairs of free arms by roads with a bend, or with two if a number of dead ends is required.
+
+        Returns whether as many arms remain free as dead ends are required.
         """
         asked = self.asked.dead_ends
         fewest, share = (ENDS, JOINED) if asked is None else (span(asked).lo, 1.0)
@@ -263,7 +270,7 @@ class _Village:
 
     @property
     def _is_met(self) -> bool:
-        """Whether as many arms lead nowhere as dead ends are required."""
+        """Whether the number of free arms is an allowed number of dead ends."""
         return len(self.free) in span(self.asked.dead_ends)
 
     def _meeting(self, one: _FreeArm, other: _FreeArm) -> list[DraftNode]:
@@ -308,7 +315,7 @@ class _Village:
         return []
 
     def end_arms(self) -> None:
-        """Gives each arm that leads nowhere its end."""
+        """Turns each free arm into a dead end."""
         longer = 1 + (1 - self.haste) * LONGER / len(self.discs)
         for arm in self.free:
             z = arm.z + arm.way * (arm.reach + longer * drawn_stub(self.rng, self.haste))

@@ -26,7 +26,7 @@ from roadgpt.errors import UsageError
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-# The name that CameraSpec had before; users' drivers may import it.
+# The former name of CameraSpec; users' drivers may import it.
 Camera = CameraSpec
 
 __all__ = [
@@ -56,7 +56,7 @@ class Driver(Protocol):
     """
 
     def steer(self, view: View) -> Command:
-        """Returns the command for the next 20 ms."""
+        """Returns the command for the next control step, which lasts ``view.dt`` seconds."""
         ...
 
 
@@ -97,7 +97,9 @@ def simulate(
     simulator: str | Simulator = "mujoco",
     keep_driving: bool = False,
 ) -> Drive:
-    """Drives a road with one driver; the same arguments give the same Drive, bit for bit, on one machine.
+    """Drives a road with one driver, and returns the Drive.
+
+    In the simulator ``mujoco``, the same arguments give the same Drive, bit for bit, on one machine.
 
     Args:
         road: the road to drive on.
@@ -105,7 +107,8 @@ def simulate(
             not define its own.
         driver: a driver, a driver class, the name of a driver plug-in, or PATH.py:CLASS for a user's own
             file.
-        seed: passed to the driver and recorded; the car's physics uses no random numbers.
+        seed: passed to the driver and recorded. The physics of ``mujoco`` uses no random numbers; ``beamng``
+            uses the seed for small shifts of the road's mesh.
         simulator: a simulator, or the name of a simulator plug-in.
         keep_driving: whether to continue after the car has left the lane.
 
@@ -114,6 +117,7 @@ def simulate(
         UsageError: the user's file does not define a driver, or the simulator cannot apply a setting of the
             world, the superelevation of the road, or the junctions of a route.
         DriverError: the driver raised an exception, returned something that is not a command, or hung.
+        SimulatorError: the simulator itself failed.
         SimulationError: the physics became unstable, or the recorded motion is impossible for a car.
     """
     made: Any = driver_of(driver) if isinstance(driver, str) else driver
@@ -138,8 +142,8 @@ def refuse_ignored(simulator: Any, world: "World", road: "Road | None" = None) -
             ``world.section.bank``.
 
     Raises:
-        UsageError: the simulator cannot apply a field that the world sets, or the superelevation of the road;
-            the message says which. Or the road is a route, and the simulator has no junctions.
+        UsageError: the simulator cannot apply a field that the world sets, the superelevation of the road, or
+            the junctions of a route; the message says which.
     """
     from roadgpt.road import World
 

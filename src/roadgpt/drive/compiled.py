@@ -37,7 +37,7 @@ def _numba() -> tuple[Any, Any, str]:
 
 numba, call_at, WHY_NOT = _numba()
 COMPILES = numba is not None
-"""Whether this process compiles its inner loops; if not, the constant WHY_NOT gives the reason."""
+"""Whether this process compiles its inner loops. If it does not, the constant WHY_NOT gives the reason."""
 
 COMPILING = "compiling the simulator for this machine, once after an installation: 10 to 30 s"
 
@@ -74,8 +74,10 @@ SOURCES = _digest() if COMPILES else ""
 
 
 def compiled(function: Function) -> Function:
-    """Returns the function as machine code. If the cache folder is writable, the code is kept there for
-    later processes."""
+    """Returns the function as machine code, or unchanged if nothing can be compiled.
+
+    If the cache folder is writable, the machine code is kept there for later processes.
+    """
     if not COMPILES:
         return function
     # Numba notices changes in the function's own file only, not in the files of functions that it calls; but
@@ -89,10 +91,11 @@ def compiled(function: Function) -> Function:
 
 
 def bound(function: Function, arguments: tuple[Any, ...]) -> Function:
-    """Returns a compiled function as machine code for arguments of exactly these types.
+    """Returns a function from ``compiled`` as machine code for arguments of the same types as ``arguments``.
 
-    A call does not look at the types again, which takes longer than many a function. Call it with arguments
-    of the same types only: others are misread.
+    The result does not check the types of its arguments, because this check would often take longer than the
+    function itself. Call the result only with arguments of exactly these types: others are misread. If
+    nothing can be compiled, the function is returned unchanged.
     """
     if not COMPILES:
         return function
@@ -103,8 +106,10 @@ def bound(function: Function, arguments: tuple[Any, ...]) -> Function:
 
 
 def inlined(function: Function) -> Function:
-    """Returns a small function that is inlined into the compiled functions that call it. Its machine code is
-    cached as part of theirs."""
+    """Returns a small function that is inlined into the compiled functions that call it.
+
+    Its machine code is cached as part of theirs. If nothing can be compiled, it is returned unchanged.
+    """
     if not COMPILES:
         return function
     made: Function = numba.njit(nogil=True, forceinline=True)(function)

@@ -15,10 +15,10 @@ from roadgpt.road.ends import GOAL, START
 if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
-STUCK_TIME = 10.0  # s within which a car must move ... (SBFT)
-STUCK_WAY = 1.0  # m ... this far
-SLOWEST = 2.0  # m/s, mean speed below which the time runs out
-SPARE = 30.0  # s, added to that time
+STUCK_TIME = 10.0  # s within which a car must move STUCK_WAY (SBFT)
+STUCK_WAY = 1.0  # m
+SLOWEST = 2.0  # m/s, mean speed from which the time limit follows
+SPARE = 30.0  # s, added to the time limit
 ROUNDING = 1e-9  # s, rounding error of times that are multiples of a step
 
 _NAMES = tuple(COLUMNS)
@@ -54,8 +54,9 @@ class DriveMonitor:
         self._since, self._from = 0.0, (math.nan, math.nan)
 
     def ended(self, row: FloatArray, time: float, has_fallen: bool) -> Ended | None:
-        """Returns how the drive ended at this step, or None if it continues; call it once for every step,
-        from the first on.
+        """Returns how the drive ended at this step, or None if the drive continues.
+
+        Call this method exactly once for every control step, from the first on.
 
         Args:
             row: the state of the car, in the order of COLUMNS; the column ``time`` is not used.
@@ -83,20 +84,29 @@ class DriveMonitor:
         return "timeout" if time >= self.limit - ROUNDING else None
 
     def is_at_goal(self, x: float, y: float, s: float) -> bool:
-        """Returns whether the car has reached the goal at the end of the road. In the first half of the
-        road the result is always False: if a road ends near its start, a car that has just started is
-        close to the goal."""
+        """Returns whether the car has reached the goal at the end of the road.
+
+        The car must be within 8 m of the end of the inner edge of its lane. With one lane in each direction,
+        this edge is the centre line.
+
+        In the first half of the road the result is always False, because a road may end near its start. All
+        arguments are in metres.
+        """
         return s > self._length / 2 and math.hypot(x - self._end[0], y - self._end[1]) < GOAL
 
     def is_stuck(self, x: float, y: float, time: float) -> bool:
-        """Returns whether the car has not moved for too long; call it once for every step."""
+        """Returns whether the car has moved less than 1 m in the last 10 s.
+
+        Call this method once for every control step. ``x`` and ``y`` are in metres, ``time`` in seconds.
+        """
         if not math.hypot(x - self._from[0], y - self._from[1]) < STUCK_WAY:
             self._since, self._from = time, (x, y)
         return time - self._since >= STUCK_TIME - ROUNDING
 
     def is_out(self, outside: float, pose: ArrayLike | None) -> bool:
-        """Returns whether the car is out of its lane. If lane departures count, it is also out when a front
-        tyre is beyond a marking.
+        """Returns whether the car is out of its lane.
+
+        If lane departures count, a car with a front tyre beyond a marking is out of its lane, too.
 
         Args:
             outside: share of the car's box outside the lane, 0 to 1.

@@ -38,15 +38,19 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class DrivingLine:
-    """A driving line, as lists over equally spaced stations of the road; entry ``i`` belongs to station ``i *
-    step``."""
+    """A driving line, as lists over equally spaced stations of the road.
+
+    Entry ``i`` belongs to station ``i * step``. The lists go on for 60 m beyond the end of the road.
+    """
 
     step: float
     """Distance in metres between stations along the road."""
     offset: list[float]
     """Offset in metres to the left of the centre line."""
     x: list[float]
+    """Positions along x in metres."""
     y: list[float]
+    """Positions along y in metres."""
     heading: list[float]
     """Heading of the line in radians, continuous (not wrapped)."""
     curvature: list[float]
@@ -61,8 +65,11 @@ class DrivingLine:
     """Superelevation of the road in radians, positive where the surface falls to the right."""
 
     def place(self, s: float) -> tuple[int, float]:
-        """Returns the index of the last entry at or before ``s``, and the position of ``s`` between that
-        entry (0) and the next (1)."""
+        """Returns the index of the last entry at or before station ``s`` in metres, and the position of ``s``
+        between that entry (0) and the next (1).
+
+        A station before the line counts as its start, a station beyond the line as its end.
+        """
         at = s / self.step
         last = len(self.x) - 2
         if at <= 0.0:
@@ -78,8 +85,9 @@ def stations(road: "Road") -> FloatArray:
 
 
 def line_along(road: "Road", offset: ArrayLike) -> DrivingLine:
-    """Returns the line at an offset to the left of the centre line; it continues straight beyond the road's
-    end.
+    """Returns the driving line at an offset to the left of the centre line.
+
+    The line continues straight for 60 m beyond the end of the road.
 
     Args:
         road: the road.
@@ -120,8 +128,9 @@ def _longer(values: FloatArray, more: int, last: float) -> list[float]:
 
 
 def pursuit_curvature(line: DrivingLine, view: View, ahead: float) -> float:
-    """Returns the curvature of the circle from the car to a later point of the line, in 1/m, positive to the
-    left.
+    """Returns the curvature in 1/m of the circle on which the car reaches a point of the line.
+
+    The circle begins in the direction of the car's heading. The curvature is positive to the left.
 
     Source: R. C. Coulter, "Implementation of the pure pursuit path tracking algorithm", CMU-RI-TR-92-01
     (1992).

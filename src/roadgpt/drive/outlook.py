@@ -17,13 +17,13 @@ def route_of(road: "Road") -> Route | None:
 
 
 def passages(road: "Road") -> tuple[Passage, ...]:
-    """Returns the ways of a route through its junctions in driving order; nothing for a single road."""
+    """Returns the passages of a route through its junctions in driving order; empty for a single road."""
     route = route_of(road)
     return () if route is None else route.passages
 
 
 class Outlook:
-    """What a driver sees of its route at each station: the junctions ahead, and the lanes beside its own."""
+    """The junctions ahead and the lanes beside the driver's own lane, at each station of a road or route."""
 
     def __init__(self, road: "Road", world: "World") -> None:
         """Prepares the junctions and the lanes of a road or a route."""
@@ -37,7 +37,7 @@ class Outlook:
         self._plain = (self._route, (), *self._beside[0])
 
     def at(self, s: float) -> tuple[Route | None, tuple[JunctionAhead, ...], int, int]:
-        """Returns the last four fields of a View at station ``s``: route, junctions, lanes left and right."""
+        """Returns ``route``, ``junctions``, ``lanes_left`` and ``lanes_right`` of a View at station ``s``."""
         if self._route is None:
             return self._plain
         first = bisect_right(self._ends, s)

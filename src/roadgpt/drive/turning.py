@@ -1,5 +1,6 @@
-"""How people drive through junctions: how fast they turn, where in their lane, and that they stop at stop
-signs. All drivers of RoadGPT do the same inside junctions; on roads without junctions they use none of this.
+"""Computes how people drive through junctions: how fast they turn, where in their lane, and where they stop.
+
+All drivers of RoadGPT follow these rules in junctions. On roads without junctions the rules have no effect.
 """
 
 import math
@@ -15,31 +16,32 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 SPEED, EXPONENT = 8.6164, 0.3673
-"""Speed in km/h at a radius of 1 m, and the exponent with which it grows with the radius.
+"""Speed in km/h at a radius of 1 m, and the exponent with which the speed grows with the radius.
 
 Source: NCHRP Report 672, Roundabouts: An Informational Guide, 2nd ed. (2010), equation 6-2 (superelevation
 -2 %), in the metric units of the first edition (FHWA-RD-00-067). The equation rests on the side friction that
 drivers accept at low speeds: 0.31 at 20 mph and less (Texas, Procedures for Establishing Speed Zones).
 """
-GENTLE = 200.0  # m, a radius from which nobody slows down inside a junction
+GENTLE = 200.0  # m, radius from which on nobody slows down inside a junction
 EDGE = 1.5  # m, from the middle of a car to the edge of its lane on the fastest path: NCHRP 672, 6.7.2
 BLEND = 10.0  # m before and behind a junction, over which the line of the road becomes that of the junction
 
 FRONT = 2.25  # m, from the centre of gravity to the front of RoadGPT's saloon
-BEFORE_LINE = 1.0  # m, from its front to the stop line, where it stops
-CREEP = 1.0  # m/s, planned speed there: the slowest that is planned
-BEHIND = 3  # stations from there on: drivers look up their plan a little ahead, and speed up only behind it
+BEFORE_LINE = 1.0  # m, from the front of the stopped car to the stop line
+CREEP = 1.0  # m/s, planned speed at the stopping place: the lowest that is planned
+BEHIND = 3  # stations from the stopping place on that keep this speed: drivers look up their plan ahead
 BRAKING = 3.4  # m/s^2, with which most drivers brake without effort: AASHTO Green Book, stopping distance
-HALTED = 0.05  # m/s, below which it stands; a verdict asks for less than 0.1
-REACH = 4.0  # m before the line, within which it has to stand: as in CARLA's test of stop signs
-LEAST_BRAKE = 0.25  # of the pedal
-NEAR, ROLL_UP = 10.0, 1.0  # m, m/s^2: a car that stands so near before its stopping place rolls up to it
+HALTED = 0.05  # m/s, below which the car counts as standing; a verdict asks for less than 0.1
+REACH = 4.0  # m before the line, within which the car has to stand, as in CARLA's test of stop signs
+LEAST_BRAKE = 0.25  # brake pedal, 0 to 1
+NEAR, ROLL_UP = 10.0, 1.0  # m before the line, m/s^2: a car that stops too early there rolls on
 
 
 def turning_speed(curvature: float) -> float:
     """Returns the speed in m/s at which people drive through a bend of a junction or roundabout.
 
-    On a radius of 10 m it is 20 km/h (3.1 m/s^2 to the side), on 15 m 23 km/h (2.8), on 30 m 30 km/h (2.3).
+    On a radius of 10 m the speed is 20 km/h (lateral acceleration 3.1 m/s^2), on 15 m 23 km/h (2.8 m/s^2), on
+    30 m 30 km/h (2.3 m/s^2). Above a radius of 200 m it is infinite.
 
     Args:
         curvature: Curvature of the driven line in 1/m.
@@ -52,7 +54,7 @@ def turning_speed(curvature: float) -> float:
 def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
     """Returns the speeds in m/s that bends in junctions and stop signs allow, one for each station of a line.
 
-    The result is None on a road without junctions.
+    Where neither sets a limit, the speed is infinite. The result is None on a road without junctions.
     """
     ways = passages(road)
     if not ways:
@@ -70,7 +72,10 @@ def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
 
 
 def share_of_junction(road: "Road", s: FloatArray) -> FloatArray:
-    """Returns 1 for each station inside a junction, and less within ``BLEND`` metres before and behind."""
+    """Returns a weight for each station in metres, shape ``(n,)``: 1 inside a junction, 0 far from junctions.
+
+    Within ``BLEND`` metres before and behind a junction, the weight falls smoothly from 1 to 0.
+    """
     share = np.zeros(s.shape)
     for way in passages(road):
         away = np.clip(np.maximum(way.start - s, s - way.end) / BLEND, 0.0, 1.0)
@@ -83,15 +88,16 @@ def kept_in_lane(
 ) -> FloatArray:
     """Returns the offsets of a planned line, changed in junctions so that the car keeps to its lane.
 
-    In a junction the middle of the car stays ``EDGE`` metres from both edges of its lane, or in the middle of
-    a lane that is narrower than that.
+    In a junction the middle of the car stays at least ``EDGE`` metres from both edges of its lane; in a lane
+    narrower than ``2 * EDGE``, it stays in the middle of the lane.
 
     Args:
         road: The road or route; without junctions, the offsets are returned unchanged.
         world: The World.
         s: Stations of the line in metres, ``(n,)``.
         offset: Offsets of the line in metres to the left of the centre line, ``(n,)``.
-        inwards: How far in metres to the left of its line the car drives, because it cuts bends, ``(n,)``.
+        inwards: Distance in metres, positive to the left, by which the car leaves its line because it cuts
+            bends, ``(n,)``.
     """
     if not passages(road):
         return offset
@@ -103,7 +109,7 @@ def kept_in_lane(
 
 
 class StopSigns:
-    """Makes a driver stop at the stop signs of a route: it stands once before each line, then drives on."""
+    """Makes a driver stop at the stop signs of a route: the car stands once before each line."""
 
     def __init__(self, road: "Road") -> None:
         """Prepares the stop lines of a route; on a road without stop signs, no command is changed."""
@@ -115,7 +121,7 @@ class StopSigns:
             return command
         left = self._lines[0] - view.s - FRONT
         if left > BEFORE_LINE + view.speed * view.dt:
-            if left < NEAR and view.speed < CREEP / 2:  # it stood too early, where its plan still brakes
+            if left < NEAR and view.speed < CREEP / 2:  # it stopped too early, where its plan still brakes
                 grade = float(view.road.grade(view.s))
                 return Command(command.steer, *pedals_for(ROLL_UP, grade, view.speed))
             return command

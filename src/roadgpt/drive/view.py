@@ -13,7 +13,7 @@ class JunctionAhead(NamedTuple):
     distance: float
     """Distance in metres along the route from the car's centre of gravity to the junction; 0 inside it."""
     kind: str
-    """"t_junction", "y_junction", "crossroads", "star" or "roundabout"."""
+    """"t_junction", "y_junction", "crossroads", "star", "roundabout", "merge" or "diverge"."""
     turn: float
     """Change of direction in radians from the road of arrival to the road of departure, left positive, in
     (-pi, pi]."""
@@ -27,8 +27,9 @@ class JunctionAhead(NamedTuple):
 
 
 class View(NamedTuple):
-    """The current state of the car, with its road and world; a new View is made for every control step (20
-    ms), so a driver may keep it.
+    """The current state of the car, with its road and world.
+
+    A new View is made for every control step, so a driver may keep it.
 
     The position is that of the car's centre of gravity.
     """
@@ -51,8 +52,8 @@ class View(NamedTuple):
     """Station of the car, in metres along the road's centre line."""
     t: float
     """Offset of the car in metres to the left of the centre line. The middle of its lane is at
-    ``world.profile_of(road).middle(s)``. On a road with superelevation it is measured along the surface, to
-    the foot of the perpendicular from the centre of gravity.
+    ``world.profile_of(road).middle(s)``. On a road with superelevation, the offset is measured along the
+    surface, to the foot of the perpendicular from the centre of gravity.
     """
     road: "Road"
     world: "World"
@@ -84,6 +85,7 @@ class CameraSpec(NamedTuple):
     width: int = 320
     """Width of the image in pixels."""
     height: int = 160
+    """Height of the image in pixels."""
     field_of_view: float = 1.22
     """Vertical field of view in radians, from the top of the image to the bottom."""
     ahead: float = 0.3
@@ -93,8 +95,8 @@ class CameraSpec(NamedTuple):
     down: float = 0.05
     """Angle in radians by which the camera is tilted downwards."""
     every: int = 2
-    """Control steps from one image to the next; 2 gives 25 images a second. BeamNG renders an image at every
-    step."""
+    """Number of control steps from one image to the next; 2 gives 25 images a second. BeamNG renders an image
+    at every step."""
 
 
 class Command(NamedTuple):

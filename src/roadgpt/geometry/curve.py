@@ -10,7 +10,7 @@ Angle = TypeVar("Angle", float, Array)
 
 
 class PlanCurve(Protocol):
-    """A curve in the plane, parametrised by the arc length ``s`` in metres, from 0 to ``length``."""
+    """A curve in the plane, parametrised by its arc length ``s`` in metres, from 0 to ``length``."""
 
     @property
     def length(self) -> float:
@@ -22,11 +22,14 @@ class PlanCurve(Protocol):
         ...
 
     def heading(self, s: ArrayLike) -> Array:
-        """Returns headings in radians, counter-clockwise from +x and continuous along the curve."""
+        """Returns headings in radians at stations ``s``, counter-clockwise from +x.
+
+        Headings are continuous along the curve, so they may exceed pi.
+        """
         ...
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Returns curvatures in 1/m, positive to the left."""
+        """Returns curvatures in 1/m at stations ``s``, positive to the left."""
         ...
 
 
@@ -38,19 +41,19 @@ class ElevationProfile(Protocol):
         ...
 
     def grade(self, s: ArrayLike) -> Array:
-        """Returns grades dz/ds as ratios: 0.05 climbs 5 m in 100 m."""
+        """Returns grades dz/ds at stations ``s`` as ratios: a grade of 0.05 climbs 5 m in 100 m."""
         ...
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
-        """Returns the change of grade d2z/ds2 in 1/m, which is negative on a crest."""
+        """Returns the change of grade d2z/ds2 in 1/m at stations ``s``; it is negative on a crest."""
         ...
 
 
 def wrap_angle(angle: ArrayLike) -> Array:
-    """Returns an angle in radians, wrapped to (-pi, pi]."""
+    """Returns angles in radians, wrapped to (-pi, pi], as an array of the same shape."""
     return np.asarray(wrapped(np.asarray(angle, float)))
 
 
 def wrapped(angle: Angle) -> Angle:
-    """Returns what ``wrap_angle`` does; for one number, without the overhead of arrays."""
+    """Returns an angle in radians, wrapped to (-pi, pi]; a number stays a number, which is faster."""
     return np.pi - (np.pi - angle) % (2 * np.pi)

@@ -22,6 +22,8 @@ Number = TypeVar("Number", float, Array)
 class GradeProfile:
     """A profile that starts at height ``z0`` and whose grade changes linearly between given stations.
 
+    Before the first and after the last station, the parabola of the nearest interval goes on.
+
     Args:
         z0: Height at the first station in metres.
         stations: At least two increasing stations in metres.
@@ -76,11 +78,13 @@ class GradeProfile:
 
 @dataclass(frozen=True)
 class CubicProfile:
-    """Heights given by cubic polynomials of the distance from each station, as in OpenDRIVE's ``elevation``.
+    """Heights in metres, given by one cubic polynomial from each station on, as in OpenDRIVE's ``elevation``.
+
+    Widths, offsets and angles along a road are also given in this form.
 
     Args:
-        stations: Increasing stations in metres. Each cubic applies up to the next station, and the last
-            cubic has no end.
+        stations: Increasing stations in metres. Each cubic applies up to the next station. The last cubic
+            has no end, and the first one also applies before the first station.
         coefficients: The coefficients (a, b, c, d) of each cubic a + b u + c u^2 + d u^3, where ``u`` is the
             distance from the station at which the cubic begins.
 
@@ -104,7 +108,14 @@ class CubicProfile:
     def smooth(cls, knots: Sequence[tuple[float, float]]) -> "CubicProfile":
         """Returns a profile that passes through knots (station, height) and has a grade of 0 at each knot.
 
-        The height is constant after the last knot. Raises ValueError if the stations do not increase.
+        The height is constant after the last knot.
+
+        Args:
+            knots: One or more knots in metres.
+
+        Raises:
+            ValueError: A station is less than the station before.
+            ZeroDivisionError: Two stations that follow each other are equal.
         """
         rows = []
         for (s0, start), (s1, end) in pairwise(knots):
@@ -129,21 +140,21 @@ class CubicProfile:
 
     @cached_property
     def negative(self) -> "CubicProfile":
-        """The profile with the sign of all heights changed."""
+        """The profile with the sign of every height changed."""
         rows = tuple((0.0 - a, 0.0 - b, 0.0 - c, 0.0 - d) for a, b, c, d in self.coefficients)
         return CubicProfile(self.stations, rows)
 
     def cubics(self, s: ArrayLike) -> Array:
-        """Returns the coefficients ``(n, 4)`` of the cubics at stations ``s`` ``(n,)``.
+        """Returns the coefficients ``(n, 4)`` of the cubics that apply at stations ``s`` of shape ``(n,)``.
 
-        The cubic that applies at each station is rewritten as a function of the distance from that station.
+        Each cubic is rewritten as a function of the distance from its ``s``.
         """
         u, table = self._place(s)
         a, b, c, d = table
         return np.stack(_moved(a, b, c, d, u), axis=-1)
 
     def cubic(self, s: float) -> Cubic:
-        """Returns what ``cubics`` does, at one station and without the overhead of arrays."""
+        """Returns the coefficients of ``cubics`` at one station, without the overhead of arrays."""
         n = max(bisect_right(self.stations, s) - 1, 0)
         return _moved(*self.coefficients[n], s - self.stations[n])
 
@@ -174,7 +185,7 @@ class CubicProfile:
 
 
 def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
-    """Returns the real roots of a u^2 + b u + c; none if it is constant."""
+    """Returns the real roots of a u^2 + b u + c; an empty tuple if a and b are 0."""
     if a == 0:
         return () if b == 0 else (-c / b,)
     square = b * b - 4 * a * c
@@ -185,9 +196,9 @@ def _roots(a: float, b: float, c: float) -> tuple[float, ...]:
 
 
 def shifted(cubics: Array, u: ArrayLike) -> Array:
-    """Returns the coefficients ``(..., 4)`` of the same cubics with their origin moved forward by ``u``.
+    """Returns the coefficients ``(..., 4)`` of cubics after their origin is moved forward by ``u``.
 
-    The constant coefficient comes first.
+    The constant coefficient comes first, in ``cubics`` and in the result.
     """
     a, b, c, d = (cubics[..., n] for n in range(4))
     return np.stack(_moved(a, b, c, d, np.asarray(u, float)), axis=-1)

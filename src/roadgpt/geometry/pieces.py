@@ -1,4 +1,4 @@
-"""Defines plane curves made of lines, arcs and clothoids, as in OpenDRIVE's reference line.
+"""Defines plane curves made of lines, arcs and clothoids, like the reference line in OpenDRIVE.
 
 The curvature of a clothoid changes linearly with arc length, so its points are computed with Fresnel
 integrals (scipy.special.fresnel).
@@ -21,7 +21,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """A line, arc or clothoid: the curvature changes linearly from ``k0`` to ``k1``, in 1/m."""
+    """A line, arc or clothoid of ``length`` metres, whose curvature changes linearly from ``k0`` to ``k1``.
+
+    Curvatures are in 1/m, positive to the left.
+    """
 
     length: float
     k0: float = 0.0
@@ -32,7 +35,8 @@ class Piece:
 class PieceCurve:
     """A plane curve of lines, arcs and clothoids joined end to end.
 
-    It starts at ``(x, y)`` with heading ``heading0`` in radians.
+    It starts at ``(x, y)`` in metres with heading ``heading0`` in radians. Beyond its ends, the first piece
+    is extended backwards and the last piece forwards.
 
     Raises:
         ValueError: There is no piece, or a piece does not have a positive length.
@@ -84,21 +88,22 @@ class PieceCurve:
         return s - start[index], index
 
     def at(self, s: ArrayLike) -> Array:
-        """Returns points of shape ``(..., 2)`` in metres."""
+        """Returns points of shape ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
         u, i = self._place(s)
         _, x, y, heading, k0, dk = self._table
         dx, dy = advance(u, heading[i], k0[i], dk[i], self._lengths[i])
         return np.stack([x[i] + dx, y[i] + dy], axis=-1)
 
     def heading(self, s: ArrayLike) -> Array:
-        """Returns headings in radians."""
+        """Returns headings in radians at stations ``s``, continuous along the curve."""
         u, i = self._place(s)
         _, _, _, heading, k0, dk = self._table
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
     def curvature(self, s: ArrayLike) -> Array:
-        """Returns curvatures in 1/m, positive to the left; where the curvature jumps, the value after the
-        jump.
+        """Returns curvatures in 1/m at stations ``s``, positive to the left.
+
+        At a station where the curvature jumps, the result is the value after the jump.
         """
         u, i = self._place(s)
         _, _, _, _, k0, dk = self._table
@@ -106,9 +111,14 @@ class PieceCurve:
 
 
 def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[Array, Array]:
-    """Returns points ``(n, 2)`` and headings ``(n,)`` of several curves, one after another.
+    """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on several curves.
 
-    They are those of ``at`` and ``heading`` at the stations ``(m,)`` of each curve, in less time.
+    The rows of each curve follow those of the curve before. The values are those of ``at`` and ``heading``,
+    but computed faster.
+
+    Args:
+        curves: One or more curves.
+        stations: For each curve, its stations in metres, one-dimensional; ``n`` counts all of them.
     """
     counts = [len(curve.pieces) for curve in curves]
     is_piece = np.arange(max(counts)) < np.array(counts)[:, None]
@@ -133,7 +143,7 @@ def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[
 
 
 def _before(steps: Array) -> Array:
-    """Returns the sum of all steps before each one, along the last axis."""
+    """Returns, for each step, the sum of the steps before it along the last axis."""
     sums = np.zeros(steps.shape)
     np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
     return sums
@@ -147,7 +157,7 @@ def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tup
         heading: Heading at the start in radians.
         k: Curvature at the start in 1/m.
         dk: Change of curvature per metre in 1/m^2.
-        length: Length of the whole piece in metres. It is only used to choose an accurate formula.
+        length: Length of the whole piece in metres, used only to choose an accurate formula.
     """
     u, heading, k, dk, length = np.broadcast_arrays(u, heading, k, dk, length)
     turn = k * u
@@ -183,7 +193,10 @@ def _quadrature(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, A
 
 
 def joined(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
-    """Drops pieces of zero length, and merges adjacent lines and adjacent arcs of equal curvature."""
+    """Returns pieces without those of zero length, and with neighbouring pieces of equal curvature merged.
+
+    Only lines and arcs are merged, never clothoids.
+    """
     out: list[Piece] = []
     for piece in pieces:
         if piece.length <= 1e-9:

@@ -26,7 +26,7 @@ JOINTS = {
     "es": (". ", "; ", ", y ", ", luego ", "\n"),
     "it": (". ", "; ", ", e ", ", poi ", "\n"),
 }
-"""What stands between two change requests that are joined."""
+"""Texts that join two change requests, by language."""
 LONGEST = 420  # letters of a joined text
 
 
@@ -85,8 +85,8 @@ def _made(pair: Pair, new: tuple[str, str] | None) -> Pair:
 
 
 def recounted(pair: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan with a random count of turns; None unless the original count occurs exactly
-    once in the text and once in the plan.
+    """Returns the text and plan with a new, random count of turns, 2 to 9. Returns None unless the original
+    count, 2 to 10, occurs exactly once in the text and once in the plan.
     """
     counts = re.findall(r"(?:\bx|turns=)(\d+)(?![\d.])", pair.plan)
     if (

@@ -16,11 +16,11 @@ from roadgpt.learn.data import NETWORK
 from roadgpt.learn.generator import Pair
 
 Floats = npt.NDArray[np.float64]
-MOST_WRONGLY = 0.012  # share of these valid descriptions that may be refused; for new ones it will be higher
+MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
 STEPS = 30
 CAUTION = 2.5
-"""How many right readings of routes one wrong reading counts as: a sure reading that is wrong is worse than a
-doubt too many.
+"""Weight of a wrong reading of a route, relative to a right one: a confident wrong reading does more harm
+than an unnecessary doubt.
 """
 PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
@@ -64,15 +64,15 @@ def calibrated(reader: ModelReader, pairs: Sequence[Pair]) -> Calibration:
 
 
 def calibrated_routes(reader: ModelReader, routes: Ensemble, pairs: Sequence[Pair]) -> EnsembleCalibration:
-    """Returns what is fitted to those valid descriptions that are of routes."""
+    """Returns the calibration of the ensemble for routes, fitted to the pairs that describe routes."""
     return calibrated_ensemble(reader, routes, list(filter(_is_route, pairs)), CAUTION)
 
 
 def calibrated_ensemble(
     reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
 ) -> EnsembleCalibration:
-    """Returns what is fitted to valid descriptions that are meant for the ensemble; a wrong reading counts as
-    ``caution`` right ones.
+    """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
+    reads. A wrong reading counts as ``caution`` right readings.
     """
     read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in pairs]
     return EnsembleCalibration(

@@ -34,7 +34,7 @@ SHARES: Mapping[str, float] = {
     "generated changes": 0.12,
     "generated specs": 0.11,
 }
-"""The share of each series of pairs with which networks learn single roads and changes."""
+"""The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
     "networks": 0.42,
     "generated routes": 0.20,
@@ -46,21 +46,22 @@ SHARES_OF_ROUTES: Mapping[str, float] = {
     "generated contrasts": 0.02,
     "generated specs": 0.02,
 }
-"""The same for the network that learns routes and maps. ``networks`` are hand-written routes with junctions,
-``routes`` are put together of those and of hand-written roads, ``generated routes`` come from grammars.
+"""The share of each series of pairs in the training of the network for routes and maps. ``networks`` are
+hand-written routes with junctions, ``routes`` join these to hand-written roads, and ``generated routes`` come
+from grammars.
 """
 NETWORK = "networks/"
-"""How the families of the pairs of data/networks begin, once they are read."""
+"""Prefix of the family names of all pairs with routes or maps."""
 KINDS_OF_FAMILIES = {"x_": "contrasts", "y_": "free"}
-"""Beginnings of the names of families whose pairs have a share of their own in SHARES. The texts of ``free``
-were written without thought of their plans, which were added later.
+"""Prefixes of family names, and the series in SHARES to which pairs of these families belong. The texts of
+``free`` were written first, and their plans were added later.
 """
 MENTIONS = 0.15
 """Share of descriptions to which a mention or denial of something beside the road is added."""
 TALK = 0.07
 """Share of all pairs that get additional small talk, such as a greeting."""
 CAUSED = ("!contradiction", "!impossible")
-"""Refusals that have a cause; a plan that consists of only this word does not label the cause."""
+"""Refusals that can name a cause; a plan that consists of one of these words alone names none."""
 MOTORWAY = re.compile(r" ?\bmotorway\b")
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
@@ -77,7 +78,8 @@ class Example:
 
 
 def example(pair: Pair, pieces: WordPieces, rng: np.random.Generator | None = None) -> Example | None:
-    """Returns a pair as numbers; None if its plan is too long or has a number that is not in the text.
+    """Returns a pair as numbers; None if its plan is too long, has a number that is not in the text, or has
+    a token that is not in the vocabulary.
 
     A slot token stands for a number in the text. With ``rng``, the slot tokens are chosen at random, so that
     the network learns all of them equally well. A refusal whose cause is not labelled gets no end token, so
@@ -117,7 +119,7 @@ def examples(
     seed: int, hand: Sequence[Pair], pieces: WordPieces, of_series: Mapping[str, float] = SHARES
 ) -> Iterator[Example]:
     """Yields an endless series of examples: a fixed mixture of generated pairs and of variations of the
-    hand-written pairs.
+    hand-written pairs. Held-out texts and pairs that ``example`` rejects are left out.
 
     Args:
         seed: seed of the series.
@@ -145,9 +147,11 @@ def examples(
 
 
 def is_for_roads_only(pair: Pair) -> bool:
-    """Returns whether the plan names something beside a single road, or refuses it, that routes consist of.
+    """Returns whether the plan of a single road lists in ``beside(...)``, or refuses, something that routes
+    consist of, such as a junction.
 
-    The networks for single roads learn such names, which hand a description on to the network for routes.
+    Only the networks for single roads learn such names, because a name of this kind in a reading passes the
+    description on to the network for routes.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False

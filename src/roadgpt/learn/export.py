@@ -23,7 +23,7 @@ from roadgpt.learn.pretrained import NOTICE
 OPSET = 17
 SHARED = "reader.pieces.weight_quantized"
 EMBEDDING = "embedding.bin"
-"""The file of the tensor ``SHARED``, to which all encoders refer."""
+"""Name of the file that holds the tensor ``SHARED``; all encoders read this file."""
 
 
 class EncoderGraph(nn.Module):
@@ -41,7 +41,7 @@ class EncoderGraph(nn.Module):
 
 
 class DecoderGraph(nn.Module):
-    """One step of the decoder, which takes the last token of a plan and scores the next one.
+    """One step of the decoder, which takes the last token of a plan and scores the next token.
 
     Inputs, for a plan of t tokens so far: ``token`` (batch, 1); ``place`` (1,), the position of the token;
     ``own`` (layers, 2, batch, heads, t, head size), the keys and values of the plan so far; ``across``, the
@@ -75,7 +75,7 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "", bits: Literal[
     Args:
         reader: the network.
         folder: where the files are written.
-        ending: what follows "encoder" and "decoder" in the names of the files.
+        ending: suffix of "encoder" and "decoder" in the names of the files.
         bits: number of bits that the weights use; with 7, files are an eighth smaller when compressed.
     """
     from onnxruntime.quantization import QuantType, quantize_dynamic
@@ -128,15 +128,15 @@ def export_checkpoints(
     """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
     Args:
-        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``, by what follows "encoder" and
-            "decoder" in the names of the network's files: nothing, ``SECOND`` or ``ROUTES``.
-        folder: where the graphs, the pieces, the function words and the settings are written.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``. The key of each folder is the suffix
+            of "encoder" and "decoder" in the names of the network's files: "", ``SECOND`` or ``ROUTES``.
+        folder: where the graphs, the pieces, the filler words, the meanings and the settings are written.
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
-        fillers: function words, which no plan depends on.
-        meanings: the tokens that words usually ask for.
+        fillers: words that mean nothing in a plan; see ``word_meanings.filler_words``.
+        meanings: for each word, the tokens that it usually asks for; see ``word_meanings.word_meanings``.
 
     Raises:
-        LearnError: there is no checkpoint.
+        LearnError: there is no checkpoint, or the embeddings of the networks differ.
     """
     for name, checkpoint in checkpoints.items():
         if not (checkpoint / "checkpoint.pt").exists():
@@ -161,7 +161,7 @@ def export_checkpoints(
 
 def share_embedding(encoders: Sequence[Path]) -> None:
     """Moves the embedding of the word pieces out of several encoders into one file, ``EMBEDDING``, that all
-    of them read; it is not trained, so all have the same.
+    encoders read. The embedding is not trained, so it is the same in all encoders.
 
     Raises:
         LearnError: the embeddings differ.
@@ -186,7 +186,7 @@ def share_embedding(encoders: Sequence[Path]) -> None:
 
 
 def write_sums(folder: Path) -> None:
-    """Writes the check sums of a reader's files to ``sums.json``."""
+    """Writes the SHA-256 checksums of a reader's files to ``sums.json``."""
     kinds = (".onnx", ".txt", ".bin")
     files = sorted(path for path in folder.iterdir() if path.suffix in kinds or path.name == "settings.json")
     sums = {path.name: sha256(path.read_bytes()).hexdigest() for path in files if path.name != "training.txt"}

@@ -1,8 +1,8 @@
 """Generates descriptions of routes with junctions and of maps, with their plans, from grammars.
 
-The grammars ``networks_*.txt`` use the symbols of the grammars for roads. In the plan of a rule, ``//`` parts
-roads and junctions; ``|flat`` is a requirement for the road of this part, ``@flat`` one for every road of the
-route, and ``||left_hand`` one for the route as a whole, wherever they stand.
+The grammars ``networks_*.txt`` use the symbols of the grammars for roads. In the plan of a rule, ``//``
+separates roads and junctions. Three kinds of requirements may occur anywhere: ``|flat`` applies to the road
+between two ``//``, ``@flat`` to every road of the route, and ``||left_hand`` to the route as a whole.
 """
 
 import re
@@ -59,8 +59,8 @@ def assembled_route(raw: str) -> str:
     """Returns the standard form of the plan that the grammar rules wrote.
 
     Raises:
-        Discarded: it has too many junctions, or a part of it has two kinds.
-        RoadGPTError: the plan cannot be read, or asks for what cannot be.
+        Discarded: the plan has more than six junctions, or a part of the plan does not have exactly one kind.
+        RoadGPTError: the plan cannot be read, or demands something impossible.
     """
     if refusal := REFUSAL.search(raw):
         return refusal[0]

@@ -40,12 +40,17 @@ class Pair:
     text: str
     plan: str
     family: str
+    """Name of the source of the pair, such as "generated-en"."""
     lang: str
+    """Code of the language, such as "en"."""
     is_change: bool = False
+    """True for a change request."""
 
 
 def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
-    """Yields an endless series of pairs; the same seed gives the same pairs."""
+    """Yields an endless series of pairs; the same seed gives the same pairs. ``languages`` gives the share of
+    each language by its code; None: ``SHARES``.
+    """
     rng = np.random.default_rng(seed)
     while True:
         code = drawn_language(languages or SHARES, rng)
@@ -91,7 +96,7 @@ def drawn_language(shares: dict[str, float], rng: np.random.Generator) -> str:
 
 def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
     """Returns the pair; in a few percent of the cases, a requirement is added that makes the description
-    impossible to satisfy.
+    impossible to satisfy, and the plan becomes a refusal.
     """
     way = rng.random()
     spoil = contradicted if way < SPOILED / 2 else overdone if way < SPOILED else None
@@ -144,7 +149,12 @@ def _composed(rng: np.random.Generator) -> Pair | None:
 
 
 def assembled(raw: str) -> str | None:
-    """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense."""
+    """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense.
+
+    Raises:
+        Discarded: a clause of the plan does not have exactly one kind.
+        BriefError: the plan cannot be read.
+    """
     refusal = REFUSAL.search(raw)
     if refusal:
         return refusal[0]
@@ -153,7 +163,11 @@ def assembled(raw: str) -> str | None:
 
 
 def road_of(raw: str) -> str:
-    """Returns the plan of a road, of which grammar rules wrote the parts in any order."""
+    """Returns the plan of a road with its parts in the usual order; grammar rules write them in any order.
+
+    Raises:
+        Discarded: a clause of the plan does not have exactly one kind.
+    """
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
     clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
     line = "; ".join(part for part in clauses if part)

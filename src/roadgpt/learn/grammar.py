@@ -17,7 +17,8 @@ The parts of a rule are:
     ``<=n-1>``     only in a plan: a number computed from labelled numbers of the text, here ``n`` minus 1
 
 Without ``=>``, the plan of a rule consists of the plans of its parts in order. In a plan, ``|word`` is a
-requirement for the whole road, wherever it occurs.
+requirement for the whole road, wherever it occurs. A rule with ``-`` before ``=>`` has an empty text. Lines
+that begin with ``--`` are comments.
 """
 
 import re
@@ -54,6 +55,7 @@ class Production:
 
     text: str
     plan: str | None
+    """The plan of the rule; None: the plans of the parts of the text, in order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,8 +117,8 @@ def _name(part: str) -> tuple[str, str, int]:
 
 
 class Speaker:
-    """Makes random descriptions from a grammar; each speaker writes all numbers as digits, or all as
-    words.
+    """Makes random descriptions from a grammar. Each speaker has a habit in writing numbers: mostly digits,
+    mostly words, or both.
     """
 
     def __init__(self, grammar: Grammar, rng: np.random.Generator) -> None:
@@ -128,7 +130,7 @@ class Speaker:
         """Returns a random text for a symbol, and the plan of the text.
 
         Raises:
-            Discarded: the randomly chosen parts do not fit together.
+            Discarded: the randomly chosen parts do not fit together, or are nested too deeply.
         """
         if depth > DEEPEST:
             raise Discarded

@@ -80,7 +80,7 @@ def names_in(plan: str) -> list[str]:
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
-    """Returns the plan with these names in ``beside(...)`` instead of its own."""
+    """Returns the plan with these names in ``beside(...)``, which replace the names that were there."""
     bare = NAMED.sub("", plan).rstrip(" |")
     whole = "||" if is_of_junctions(plan) else "|"
     joint = " " if whole in bare else f" {whole} "

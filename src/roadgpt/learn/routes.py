@@ -1,4 +1,4 @@
-"""Routes that are made of hand-written pairs: descriptions of roads and of junctions, one after the other."""
+"""Makes routes from hand-written pairs: joins descriptions of roads and of junctions into one description."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -35,7 +35,7 @@ JOINTS: Mapping[str, Sequence[str]] = {
         ". ", "; dopo di che ",
     ),
 }  # fmt: skip
-"""What stands between the descriptions of two parts of a route."""
+"""Texts that join the descriptions of two parts of a route, by language."""
 LONGEST = 330  # letters of a joined text
 LONGEST_ROAD = 110  # letters of the description of one road
 MOST_JUNCTIONS = 6
@@ -55,14 +55,15 @@ OF_ROADS = re.compile(
     r"lacet|épingle|chicane|ligne droite|curva|tornant|rettili|horquilla|tramo recto|eses\b|esse\b",
     re.I,
 )
-"""Nouns that only a road has; without one, "turn left" may be meant at a junction."""
+"""Words that only describe roads; a text without such a word, as "turn left", may describe a junction."""
 OWN_LENGTH = re.compile(
     r"\b(?:len|hills|climb|steepest|turns|lefts|rights|turning)=|starts\(|ends\(|\bhard\b"
 )
 
 
 def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Generator) -> Iterator[Pair]:
-    """Yields an endless series of routes of two or three parts, each described by a hand-written text.
+    """Yields an endless series of routes of two or three parts, each described by a hand-written text. Yields
+    nothing if no language has suitable pairs of both kinds.
 
     Args:
         roads: pairs of roads.
@@ -80,8 +81,8 @@ def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Gene
 
 
 def route_of(parts: Sequence[Pair], language: str, rng: np.random.Generator) -> Pair | None:
-    """Returns the texts, joined by words such as "then", with their plans as one route; None if that is too
-    long, or does not make sense.
+    """Returns the texts, joined by words such as "then", with their plans as one route; None if the text is
+    longer than 330 letters, or the route is impossible or has more than six junctions.
     """
     text = parts[0].text.strip()
     for part in parts[1:]:

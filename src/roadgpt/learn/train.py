@@ -32,11 +32,15 @@ class TrainingSettings:
     """Settings of a training run."""
 
     steps: int = 14_000
+    """Number of batches that each process trains on."""
     size: int = 48
     """Number of pairs in a batch."""
     encoder_rate: float = 1.5e-4
+    """Highest learning rate of the encoder."""
     decoder_rate: float = 7e-4
+    """Highest learning rate of the decoder."""
     warm_up: int = 150
+    """Number of steps, at the start of training, during which the learning rate rises linearly."""
     cool_down: float = 0.3
     """Fraction of all steps (0 to 1), at the end of training, during which the learning rate falls to
     zero.
@@ -49,9 +53,11 @@ class TrainingSettings:
     """The suffix of 'encoder' and 'decoder' in the file names of the network that training starts from."""
     seed: int = 1
     save_every: int = 100
+    """Number of steps from one checkpoint to the next."""
     workers: int = 1
     """Number of processes that train in parallel and average their weights at each checkpoint (local SGD)."""
     rank: int = 0
+    """Number of this process, from 0; the process 0 writes the checkpoints."""
     is_of_routes: bool = False
     """True for the network that reads routes and maps, which learns from other pairs."""
     is_pretrained: bool = True
@@ -67,8 +73,8 @@ def train(
     report: Callable[[str], None] = print,
     check: Callable[[], None] = lambda: None,
 ) -> ReaderNetwork:
-    """Trains from the checkpoint in the folder, or from the start if there is none, and writes checkpoints
-    there.
+    """Trains from the checkpoint in the folder, or from ``weights`` if there is none, writes checkpoints into
+    the folder, and returns the trained network.
 
     Args:
         folder: where ``checkpoint.pt`` and ``losses.jsonl`` are written.
@@ -208,8 +214,8 @@ def average(
     step: int,
     check: Callable[[], None] = lambda: None,
 ) -> None:
-    """Waits until all workers have saved their weights at this step, and continues with the mean of the
-    weights.
+    """Saves the weights of ``reader``, waits until all workers have saved theirs at this step, and loads the
+    mean of all weights into ``reader``.
     """
     own = folder / f"weights-{step}-{plan.rank}.pt"
     torch.save(reader.state_dict(), own.with_suffix(".new"))

@@ -1,6 +1,7 @@
-"""Finds what the words of descriptions mean, by the tokens that plans have where the words occur: the words
-that a reader does not report as unused because they mean nothing in a plan, such as "the", "please" or
-"question", and what the other words usually ask for.
+"""Finds what the words of descriptions mean, by counting which tokens the plans of these descriptions have.
+
+There are two results. Filler words, such as "the", "please" or "question", mean nothing in a plan, so
+readers do not report them as unused. For each other word, the result is the tokens that it usually asks for.
 """
 
 from collections import Counter
@@ -18,15 +19,16 @@ from roadgpt.learn.generator import Pair
 OFTEN = 10  # a word that occurs in at least this many pairs may be a filler
 LEAST = 4  # a word and a token are unrelated if fewer pairs than this have both
 RELATED = ((0.3, 2.5), (0.75, 1.5))
-"""A word asks for a token if the share of the word's pairs that have the token, and how many times more often
-than by chance they occur together, are at least those of one of these.
+"""Lower limits of a share and a lift. A word asks for a token if both values reach the two limits of one
+entry. The share is the share of the word's pairs that have the token. The lift is how many times more often
+than by chance the word and the token occur together.
 """
 COMMON = frozenset({";", "|", ")", ":", ",", "turn", "x"})
 """Tokens that say nothing about what the words mean."""
 STRUCTURE = frozenset({"//", "||", "(", "..", "=", "+"})
 """Tokens that no word asks for."""
-OF_GROUP = 40  # pairs that have both, for a word to ask for a group of tokens
-OF_MOST = 0.5  # of the largest lift of a word, that its other meanings have at least
+OF_GROUP = 40  # pairs that must have both, before a word asks for a group of tokens
+OF_MOST = 0.5  # smallest lift of a word's other tokens, as a share of its largest lift
 
 
 @dataclass
@@ -70,7 +72,8 @@ def _counted(pairs: Iterable[Pair], has_groups: bool) -> _Counts:
 
 
 def filler_words(pairs: Iterable[Pair]) -> list[str]:
-    """Returns the filler words in alphabetical order.
+    """Returns the filler words in alphabetical order: all function words, and frequent words that ask for no
+    token; words of negation are left out.
 
     Args:
         pairs: hand-written pairs, in which words are counted.
@@ -82,11 +85,11 @@ def filler_words(pairs: Iterable[Pair]) -> list[str]:
 
 
 def word_meanings(pairs: Iterable[Pair]) -> dict[str, list[str]]:
-    """Returns the tokens that words usually ask for, by word, the one that is most its own first.
+    """Returns for each word the tokens that it usually asks for, the token with the largest lift first; see
+    ``RELATED``.
 
-    Tokens with which a word occurs much less often than chance makes it with its first one are left out:
-    "priority" is said of crossroads, but asks for none. A word asks for a group of tokens only if it asks for
-    nothing else.
+    Tokens with less than half of the largest lift are left out: "priority" often occurs with crossroads, but
+    does not ask for crossroads. A word asks for a group of tokens only if it asks for nothing else.
 
     Args:
         pairs: hand-written pairs, in which words are counted; changes and refusals are left out.

@@ -1,9 +1,9 @@
 """Joins roads to networks, with junctions, roundabouts and routes. Main function: ``build_route``.
 
-A NetworkDesign describes a route with the junctions that it passes. ``build_route`` makes a Route from it. A
-MapDesign describes a whole map and a route through it, of which ``build_map`` makes a Route. A Route is a
-Road: the reference lines of its roads, one after another. ``route.network`` is the Network, with all roads,
-connecting roads, junctions and roundabouts.
+A NetworkDesign describes a route with the junctions that it passes; ``build_route`` makes a Route from it. A
+MapDesign describes a whole map and one route through the map; ``build_map`` makes a Route from it. A Route is
+a Road whose centre line follows the reference lines of its roads, one after another. ``route.network`` is the
+Network, with all roads, connecting roads, junctions and roundabouts.
 """
 
 from roadgpt.network.design import JunctionDesign, NetworkDesign, is_network_design, read_network_design

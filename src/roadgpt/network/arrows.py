@@ -1,8 +1,8 @@
-"""Says which arrows are painted before junctions, on roads on which traffic has to choose its lane.
+"""Computes the lane arrows that are painted on roads before junctions.
 
-An arrow shows the ways on that the connections of its lane allow. Shape: StVO sign 297 (Germany); the Vienna
-Convention on Road Signs and Signals, Annex 2, asks for arrows before junctions where there are lanes enough,
-at least 2 m long.
+An arrow shows the directions into which the connections of its lane lead. The shape is that of StVO sign 297
+(Germany). The Vienna Convention on Road Signs and Signals, Annex 2, asks for arrows at least 2 m long before
+junctions where the road has enough lanes.
 """
 
 from collections.abc import Iterator
@@ -20,21 +20,21 @@ from roadgpt.network.passages import CROSSED, STOP_LINE, line_before
 from roadgpt.network.surface import triangulated
 
 LENGTH = 5.0  # m (Germany, RMS-1, for limits up to 50 km/h)
-AHEAD = 10.0  # m, from the tip of an arrow to the stop line: two waiting cars do not cover all of it
-FREE = CROSSED + STOP_LINE  # m, behind an arrow, for what is painted at the other end
+AHEAD = 10.0  # m, from the tip of an arrow to the stop line: two waiting cars do not cover the whole arrow
+FREE = CROSSED + STOP_LINE  # m, behind an arrow: room for a crosswalk and stop line at the road's other end
 BESIDE = 0.25  # m, least distance from an arrow to the edges of its lane
-CHORD = 0.5  # m, longest side of the outline, so that it follows a bend
+CHORD = 0.5  # m, longest side of the outline, so that the outline follows a bend
 
-# The outline is drawn as on a sign that stands upright, and then drawn out along the road: drivers look at it
-# at a small angle. Metres before it is drawn out.
+# The outline is drawn as on an upright sign and then stretched along the road by the factor STRETCH, because
+# drivers see the road surface at a small angle. The lengths below are in metres before stretching.
 STRETCH = 2.5
 SHAFT = 0.15  # width
 HEAD = 0.8, 0.72  # length and width of the head of the shaft
 SIDE_HEAD = 0.52, 0.72  # length and width of a head to the side
 BEND = 0.33  # radius of the bend before a head to the side, and distance from the shaft to that head
 SIDE_TOP = 1.64  # from the foot of an arrow to the middle of a head to the side
-SIDE_LOW = 0.8  # the same, beside a shaft that leads straight on
-ROUGH = 0.005  # by which a bend may be simplified
+SIDE_LOW = 0.8  # like SIDE_TOP, for an arrow that also has a head straight on
+ROUGH = 0.005  # largest deviation where a bend is simplified
 ORDER: tuple[Way, ...] = ("left", "straight", "right")
 
 
@@ -43,29 +43,29 @@ class PaintedArrow:
     """One arrow on a lane that leads towards a junction."""
 
     end: RoadEnd
-    """The end of its road towards which its lane leads."""
+    """The end of the road towards which the lane leads."""
     lane: int
-    """The id of its lane."""
+    """The id of the lane."""
     ways: tuple[Way, ...]
-    """What it shows, from left to right."""
+    """The directions that the arrow shows, from left to right."""
     s: float
-    """The station in metres of its middle."""
+    """The station in metres of the arrow's middle."""
     t: float
-    """The offset in metres of its middle."""
+    """The offset in metres of the arrow's middle, positive to the left of the reference line."""
     width: float
-    """Its width in metres."""
+    """The width of the arrow in metres."""
     points: Array
-    """Its outline ``(n, 3)`` in metres, counter-clockwise, at the height of the road."""
+    """The outline ``(n, 3)`` in metres, counter-clockwise, at the height of the road."""
     corners: NDArray[np.int64]
-    """The indices ``(m, 3)`` of the points of triangles that fill it, counter-clockwise."""
+    """Triangles that fill the outline: indices ``(m, 3)`` into ``points``, counter-clockwise."""
 
 
 def arrows(network: Network) -> tuple[PaintedArrow, ...]:
-    """Returns the arrows on all roads, in the order of junctions, their arms, and lanes from mid-road
-    outwards.
+    """Returns the arrows on all roads, ordered by junction, then by arm, then by lane from mid-road outwards.
 
-    There are none before roundabouts, where every lane leads round the ring, and none beside ramps, where
-    nothing is to be chosen.
+    There are none before roundabouts, where every lane leads round the ring; on a two-way road with a single
+    lane towards the junction; where an arm of a merge or exit leads to one road only; and where the road is
+    too short or the lane too narrow.
     """
     return tuple(
         arrow
@@ -96,8 +96,9 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedA
 
 
 def _way(junction: Junction, arm: Arm, connection: Connection) -> Way:
-    """Returns the side to which a connection leads from an arm; a ramp leads to its side, however little it
-    turns.
+    """Returns the side to which a connection leads from an arm.
+
+    At a merge or exit, a turn of more than 1 degree counts as left or right.
     """
     out = next(each for each in junction.arms if each.end == connection.outgoing)
     turn = float(np.degrees(wrap_angle(out.direction - arm.direction - np.pi)))

@@ -22,32 +22,38 @@ class Builder:
     _last: int = 0
 
     def number(self) -> int:
-        """Returns the next free id; roads and junctions never share one."""
+        """Returns the next free id. No road has the id of a junction."""
         self._last += 1
         return self._last
 
     def add(self, road: Road, junction: int | None = None, number: int | None = None) -> int:
-        """Adds a road and returns its id."""
+        """Adds a road and returns its id.
+
+        Args:
+            road: The road, with a profile.
+            junction: The id of the junction, if this is a connecting road.
+            number: The id that the road gets; None for the next free one.
+        """
         number = self.number() if number is None else number
         self.roads[number] = NetworkRoad(number, road, junction)
         return number
 
     def network(self) -> Network:
-        """Returns the finished network; roads stand in the order of their ids."""
+        """Returns the finished network, with the roads in the order of their ids."""
         ordered = tuple(self.roads[number] for number in sorted(self.roads))
         return Network(ordered, tuple(self.junctions), tuple(self.roundabouts), tuple(self.continuations))
 
 
 @dataclass(frozen=True)
 class Stub:
-    """The end of a road that leads into a junction, before the junction is built."""
+    """The end of a road at a junction that is not built yet. Traffic drives on the right."""
 
     end: RoadEnd
     direction: float
     """The heading in radians out of the junction."""
     profile: Profile
     station: float
-    """The station in metres of the road's end."""
+    """The station in metres of this end of the road."""
 
     @cached_property
     def into(self) -> tuple[Lane, ...]:
@@ -72,15 +78,15 @@ class Stub:
         return width_at(lane.width, self.station)
 
     def inside_into(self, index: int) -> float:
-        """Returns the distance in metres from the reference line to the left edge of a lane into the
-        junction, positive to the right as one drives.
+        """Returns the distance in metres from the reference line to the left edge of a lane that leads into
+        the junction. Left and right are those of the driver; the distance is positive to the right.
         """
         edge = -self._offset if self.end.contact == "end" else self._offset + self.profile.median
         return edge + sum(map(self.width_of, self.into[:index]))
 
     def inside_out_of(self, index: int) -> float:
-        """Returns the distance in metres from the reference line to the left edge of a lane out of the
-        junction, positive to the right as one drives.
+        """Returns the distance in metres from the reference line to the left edge of a lane that leads out of
+        the junction. Left and right are those of the driver; the distance is positive to the right.
         """
         edge = -self._offset if self.end.contact == "start" else self._offset + self.profile.median
         return edge + sum(map(self.width_of, self.out_of[:index]))
@@ -91,7 +97,7 @@ class Stub:
 
     @property
     def mouth(self) -> tuple[float, float]:
-        """Widths in metres at the junction of all lanes that lead into it, and of all that lead out."""
+        """The total widths in metres, at the junction, of the lanes into it and of the lanes out of it."""
         return sum(map(self.width_of, self.into)), sum(map(self.width_of, self.out_of))
 
 
@@ -105,7 +111,7 @@ def width_at(width: Width, s: float) -> float:
 
 
 def level(length: float, z: float) -> GradeProfile:
-    """Returns the profile of a level road."""
+    """Returns the elevation profile of a level road, from its length and its height ``z`` in metres."""
     return GradeProfile(z, (0.0, length), (0.0, 0.0))
 
 
@@ -119,9 +125,11 @@ def one_way(
     """Returns the cross-section of a road with lanes on the right only.
 
     Args:
-        widths: The width of each lane, from left to right; it changes smoothly.
+        widths: The width of each lane, from left to right, at the start and at the end of the road; between
+            them, the width changes smoothly.
         length: Length of the road in metres.
-        offset: The offset of the left edge of the leftmost lane.
+        offset: The offset of the left edge of the leftmost lane from the reference line, positive to the
+            left, at the start and at the end of the road.
         between: The line between two lanes. The outer edges have none.
     """
     marks: list[Marking] = [*[between] * (len(widths) - 1), "none"]
@@ -148,12 +156,12 @@ def connecting_road(
     """Returns a level connecting road.
 
     Args:
-        start: The point in metres at which its reference line begins.
+        start: The point in metres at which the reference line begins.
         heading: The heading there in radians.
-        pieces: The lines, arcs and clothoids of its reference line.
-        widths: The width of each of its lanes, from left to right.
-        offset: The offset of the left edge of its leftmost lane from the reference line.
-        between: The line between two lanes.
+        pieces: The lines, arcs and clothoids of the reference line.
+        widths: As for ``one_way``.
+        offset: As for ``one_way``.
+        between: As for ``one_way``.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, tuple(pieces))

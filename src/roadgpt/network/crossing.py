@@ -1,8 +1,9 @@
 """Builds junctions whose arms meet at one point: T- and Y-junctions, crossroads and stars.
 
-The reference lines of all arms lead through the node. Each arm ends at its contact, as far from the node as
-the kerbs to both neighbouring arms need. Between two contacts, a connecting road follows lines, an arc and
-clothoids; its own reference line begins and ends on those of the arms.
+The node is the point at which the reference lines of all arms meet. Each arm ends at a contact before the
+node, so far away that the kerbs to both neighbouring arms have room. A connecting road leads from one contact
+to another: its reference line consists of lines, an arc and clothoids, and begins and ends on the reference
+lines of the two arms.
 """
 
 import math
@@ -18,23 +19,23 @@ from roadgpt.network.turning import STRAIGHT, curve_between, tangent_length
 from roadgpt.road.profile import Marking
 
 NEAREST = 2.0  # m, from the node to a contact
-OPPOSITE = math.radians(2.0)  # of a straight line: between arms that are so nearly opposite, there is no kerb
+OPPOSITE = math.radians(2.0)  # two arms within this angle of a straight line have no kerb between them
 
 
 @dataclass(frozen=True)
 class Mouth:
-    """What the layout of a junction needs to know of an arm."""
+    """The direction and the widths of an arm, from which a junction is laid out."""
 
     direction: float
     """The heading in radians out of the junction."""
     width_in: float
-    """Width in metres of all lanes that lead into the junction."""
+    """Total width in metres of all lanes that lead into the junction."""
     width_out: float
-    """Width in metres of all lanes that lead out of it."""
+    """Total width in metres of all lanes that lead out of the junction."""
 
 
 def setbacks(mouths: Sequence[Mouth], kerb: float) -> list[float]:
-    """Returns the distance in metres from the node to the contact of each arm.
+    """Returns the distance in metres from the node to the contact of each arm, at least ``NEAREST``.
 
     Args:
         mouths: The arms in counter-clockwise order.
@@ -72,11 +73,12 @@ def build_crossing(
     Args:
         builder: The network; the roads of all stubs are in it.
         kind: The kind of the junction.
-        node: The point in metres at which the arms would meet.
+        node: The point in metres at which the reference lines of the arms would meet.
         stubs: The arms in counter-clockwise order.
         distances: The distance in metres from the node to the contact of each arm.
         controls: The sign or light of each arm.
-        kerb: The radius in metres of the kerbs that was asked for.
+        kerb: The requested radius in metres of the kerbs. It is only stored in the junction; ``distances``
+            decide how much room there is.
         crosswalk: Whether each arm has a crosswalk.
     """
     number = builder.number()
@@ -109,9 +111,9 @@ def connected(
         builder: The network.
         junction: The id of the junction.
         node: The point in metres.
-        ends: The arm on which one arrives, and the one on which one goes on.
-        distances: The distance in metres from the node to the contacts of these arms.
-        way: The lanes that continue each other.
+        ends: The arm on which traffic arrives, and the arm on which it leaves.
+        distances: The distances in metres from the node to the contacts of these two arms.
+        way: The lanes that continue each other; at least one pair.
         between: The line between two of these lanes.
     """
     start, end = ends

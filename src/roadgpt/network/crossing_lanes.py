@@ -1,9 +1,14 @@
-"""Says which lanes lead where at a junction.
+"""Computes which lanes lead to which arms at a junction, for traffic on the right.
 
-Traffic that turns to the rightmost arm keeps to the rightmost lane, traffic that turns to the leftmost arm to
-the leftmost lane; other ways on have all lanes, as many as both roads have. Where a lane would lead nowhere,
-every way has lanes of its own. Traffic that turns has several lanes where nothing else leads to all lanes of
-a road. Ways from one arm never cross.
+Traffic that turns right to the rightmost arm uses the rightmost lane. Traffic that turns left to the leftmost
+arm uses the leftmost lane. All lanes lead to an arm between these, as far as this arm has lanes for them; two
+or more such arms divide the lanes among them. Without such an arm, the left and the right turn divide the
+lanes. There are two exceptions:
+
+- Where a lane would lead to no arm, the lanes are divided so that none leads to two arms.
+- Several lanes turn together to an arm with more than two lanes to which no way leads straight on.
+
+The ways from one arm never cross each other.
 """
 
 import math
@@ -13,18 +18,20 @@ from roadgpt.brief.junctions import side_of
 from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Stub
 
-USUALLY_FED = 2  # lanes of a road to which one turns: lanes of one turn to the left and one to the right
+USUALLY_FED = 2  # lanes of a road that can be reached by turning only: one lane turns left, one turns right
 LaneWay = tuple[tuple[int, int], ...]
-"""Pairs of lanes that continue each other, from left to right: indices of a lane that leads into the junction
-and of a lane that leads out of it, counted from 0 at the centre line."""
+"""Pairs of lanes that continue each other, from left to right. The first index is that of the lane into the
+junction, the second that of the lane out of the junction; both count from 0 at the centre line."""
 
 
 def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]]:
-    """Yields the arms to which one can go from an arm, each with the lanes that lead there.
+    """Yields the index of each arm that traffic can reach from one arm, with the lanes that lead there.
+
+    The arms are yielded counter-clockwise from the arm of arrival, that is from right to left.
 
     Args:
         stubs: The arms in counter-clockwise order.
-        start: Index of the arm on which one arrives.
+        start: Index of the arm on which traffic arrives.
     """
     count = len(stubs)
     others = [(start + n) % count for n in range(1, count)]
@@ -50,8 +57,10 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
 
 
 def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
-    """Returns how many lanes turn left and how many turn right to an arm: one each, unless no way leads
-    straight to it and it has more lanes than two.
+    """Returns how many lanes turn left and how many turn right to an arm.
+
+    There is one of each. Only where the arm has more than two lanes and no way leads straight to it, its
+    lanes are divided between both turns.
     """
     room = len(stubs[end].out_of)
     others = [stub for n, stub in enumerate(stubs) if n != end and stub.into]

@@ -1,18 +1,18 @@
 """Defines the NetworkDesign: the design of a route with the junctions that it passes.
 
-It is written in RoadGPT's JSON format, with two additions:
+It is written in RoadGPT's JSON format, with additional fields:
 
     "lanes": {"forward": 1, "backward": 1, "width": 3.5}
     "junction1": {"after": 2, "kind": "crossroads", "take": "left", "control": "yield", "kerb": 10,
                   "arms": [{"angle": -90}, {"angle": 0, "length": 40}, {"angle": 90}]}
 
-``after`` is the number of segments before the junction. ``arms`` are the other roads that meet there;
-``angle`` is the direction in which one leaves on them, in degrees from the direction in which the route
-arrives, positive to the left. ``take`` names the arm on which the route goes on: "left", "right" or
-"straight", or the number of the exit, counted counter-clockwise from the road on which one arrives. ``lanes``
-of a junction are those of the road on which the route goes on. Merges, exits and places where lanes change
-are described in ``network.lane_design``. With ``"left_hand": true``, traffic drives on the left: exits are
-counted clockwise, and ramps lie on the left.
+``after`` is the number of segments before the junction. ``arms`` are the roads at the junction other than the
+road of arrival; ``angle`` is the direction out of the junction on this arm, in degrees from the direction in
+which the route arrives, positive to the left. ``take`` names the arm on which the route goes on: "left",
+"right", "straight", or the number of the exit, counted counter-clockwise from the road of arrival. ``lanes``
+of a junction are those of the road on which the route goes on. ``network.lane_design`` describes merges,
+exits and places where lanes change. With ``"left_hand": true``, traffic drives on the left: exits are counted
+clockwise, and ramps lie on the left.
 """
 
 import re
@@ -40,11 +40,11 @@ from roadgpt.road.road import FARTHEST
 
 KEY = re.compile(r"junction(\d{1,4})")
 OWN = ("lanes", "left_hand")
-"""The fields of a NetworkDesign that other designs do not have, besides the junctions."""
+"""The fields, besides the junctions, that a NetworkDesign has and the Design of a single road has not."""
 KERB = 10.0  # m, CD 123 Geometric design of at-grade priority junctions: corner radius of rural junctions
-ISLAND = 16.0  # m, radius of the central island
-STUB = 25.0  # m, of an arm whose length is not given
-ASTERN = 25.0  # degrees; an arm nearer to the road on which one arrives cannot be told from it
+ISLAND = 16.0  # m, usual radius of the central island
+STUB = 25.0  # m, length of an arm whose length is not given
+ASTERN = 25.0  # degrees, least angle between two neighbouring arms, the road of arrival among them
 MOST_JUNCTIONS = 100
 MOST_ARMS = 7
 
@@ -55,7 +55,7 @@ USUAL_ARMS: dict[PlainKind, tuple[float, ...]] = {
     "star": (-108.0, -36.0, 36.0, 108.0),
     "roundabout": (-90.0, 0.0, 90.0),
 }
-"""The arms of a junction for which none are given, as angles in degrees."""
+"""The angles in degrees of the arms of a junction whose design gives no arms."""
 COUNTS: dict[PlainKind, tuple[int, int]] = {
     "t_junction": (2, 2),
     "y_junction": (2, 2),
@@ -63,22 +63,22 @@ COUNTS: dict[PlainKind, tuple[int, int]] = {
     "star": (4, MOST_ARMS),
     "roundabout": (2, 5),
 }
-"""The smallest and the largest number of arms, besides the road on which one arrives."""
+"""The smallest and the largest number of arms, without the road of arrival."""
 
 Take = Literal["left", "right", "straight"] | Annotated[int, Field(ge=1, le=MOST_ARMS + 1)]
 
 
 class ArmDesign(FrozenFields):
-    """A road that meets a junction, other than the one on which the route arrives."""
+    """A road at a junction, other than the road on which the route arrives."""
 
     angle: Annotated[float, Field(gt=-180, lt=180)]
-    """Direction in degrees in which one leaves on it, from the direction of arrival, positive to the left."""
+    """Direction out of the junction in degrees, from the direction of arrival, positive to the left."""
     length: Length | None = None
-    """Length in metres of a straight arm; not for the arm that the route takes."""
+    """Length in metres of the straight arm, None for ``STUB``; not for the arm that the route takes."""
     control: Control | None = None
     """The sign or the light on this arm; None for what the junction's ``control`` implies."""
     one_way: Literal["in", "out"] | None = None
-    """Whether all traffic drives to the junction, or away from it; not for the arm that the route takes."""
+    """All traffic drives "in" to the junction or "out" of it; None for both; not for the arm taken."""
 
     def mirrored(self) -> "ArmDesign":
         """Returns the arm with left and right exchanged."""
@@ -89,7 +89,7 @@ class JunctionDesign(FrozenFields):
     """A junction on the route."""
 
     after: Annotated[int, Field(ge=1, le=500)]
-    """Number of segments of the route before it."""
+    """Number of segments of the route before the junction."""
     kind: PlainKind
     take: Take
     control: Control = "none"
@@ -103,19 +103,19 @@ class JunctionDesign(FrozenFields):
     crosswalk: StrictBool = False
     """Whether each arm has a crosswalk."""
     lanes: LanesDesign | None = None
-    """The lanes of the road on which the route goes on; None for those of the road before."""
+    """The lanes of the road on which the route goes on; None for the lanes of the road of arrival."""
     arms: Annotated[tuple[ArmDesign, ...], Field(max_length=MOST_ARMS)] = ()
-    """The arms other than the one of arrival, in any order; empty for the usual arms of the kind."""
+    """The arms without the road of arrival, in any order; empty for ``USUAL_ARMS`` of the kind."""
 
     @property
     def all_arms(self) -> tuple[ArmDesign, ...]:
-        """The arms in counter-clockwise order from the road on which the route arrives."""
+        """The arms, given or usual, in counter-clockwise order from the road on which the route arrives."""
         arms = self.arms or tuple(ArmDesign(angle=angle) for angle in USUAL_ARMS[self.kind])
         return tuple(sorted(arms, key=lambda arm: arm.angle))
 
     def mirrored(self) -> "JunctionDesign":
-        """Returns the junction with left and right exchanged; the number of an exit stays, because it is
-        counted in the direction in which traffic drives around a roundabout.
+        """Returns the junction with left and right exchanged. The number of an exit stays: the mirrored
+        exits are counted the other way round.
         """
         take = self.take if isinstance(self.take, int) else OTHER_DIRECTION[self.take]
         return self.model_copy(
@@ -123,7 +123,7 @@ class JunctionDesign(FrozenFields):
         )
 
     def arm_taken(self, left_hand: bool) -> ArmDesign | None:
-        """Returns the arm that the route takes; None for the road on which it arrived.
+        """Returns the arm that the route takes; None if the route turns back at a roundabout.
 
         Raises:
             UsageError: No arm, or more than one, fits ``take``.
@@ -135,8 +135,8 @@ class JunctionDesign(FrozenFields):
 
     @property
     def taken(self) -> int | None:
-        """Index in ``all_arms`` of the arm that the route takes if traffic drives on the right; None for the
-        road on which it arrived.
+        """Index in ``all_arms`` of the arm that the route takes if traffic drives on the right; None if the
+        route turns back at a roundabout.
 
         Raises:
             UsageError: No arm, or more than one, fits ``take``.
@@ -151,7 +151,7 @@ class JunctionDesign(FrozenFields):
 
 
 def _towards(kind: PlainKind, take: str, angles: Sequence[float]) -> int:
-    """Returns the index of the arm on a side; in a fork the leftmost or the rightmost arm."""
+    """Returns the index of the only arm on a side; at a Y-junction the leftmost or the rightmost arm."""
     if kind == "y_junction" and take != "straight":
         return len(angles) - 1 if take == "left" else 0
     sides = [side_of(angle) for angle in angles]
@@ -167,21 +167,21 @@ PlaceDesign = JunctionDesign | RampDesign | LanesChangeDesign
 
 
 def ends_route(place: PlaceDesign) -> bool:
-    """Returns whether the route ends on the road on which it arrived, because it turned back."""
+    """Returns whether the route ends at a place because it turns back there onto the road of arrival."""
     return isinstance(place, JunctionDesign) and place.taken is None
 
 
 class NetworkDesign(FrozenFields):
-    """Where a route starts, its heading there, its segments and its junctions in driving order."""
+    """The start of a route, the heading there, and the segments and junctions in driving order."""
 
     starting_point: tuple[Finite, Finite, Finite]
     theta: Finite
     """Heading at the start in degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1)]
     junctions: Annotated[tuple[PlaceDesign, ...], Field(max_length=MOST_JUNCTIONS)]
-    """The junctions, and what stands in one order with them; none for a single road."""
+    """The junctions, ramps and places where lanes change; empty for a single road."""
     lanes: LanesDesign | None = None
-    """The lanes of the first road; None for those of the World."""
+    """The lanes of the first road; None for one lane in each direction, as wide as those of the World."""
     left_hand: StrictBool = False
     """Whether traffic drives on the left."""
 
@@ -192,7 +192,7 @@ class NetworkDesign(FrozenFields):
 
     @property
     def stretches(self) -> tuple[tuple[Segment, ...], ...]:
-        """The segments before, between and after the junctions; one more than there are junctions."""
+        """The segments of each road before, between and after the junctions: one road more than junctions."""
         ends = [0, *(junction.after for junction in self.junctions), len(self.segments)]
         return tuple(self.segments[a:b] for a, b in pairwise(ends))
 
@@ -200,7 +200,7 @@ class NetworkDesign(FrozenFields):
         """Returns the design with left and right exchanged, and traffic on the other side.
 
         Args:
-            middle: The y in metres of the line about which it is mirrored.
+            middle: The y in metres of the mirror line, which is parallel to the x axis.
         """
         return self.model_copy(
             update={
@@ -246,7 +246,7 @@ def _plain(value: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
 
 
 def is_network_design(data: Any) -> bool:
-    """Returns whether parsed JSON is a design with junctions, or with lanes or a driving side of its own."""
+    """Returns whether parsed JSON is a NetworkDesign: it has junctions, lanes, or traffic on the left."""
     if not isinstance(data, Mapping):
         return False
     return any((key in OWN and data[key] not in (None, False)) or KEY.fullmatch(str(key)) for key in data)
@@ -258,7 +258,7 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
     Each remark is a sentence about a contradiction in the data or an unusual value.
 
     Raises:
-        UsageError: A field is missing, misnamed, of the wrong type or out of range.
+        UsageError: A field is missing, misnamed, of the wrong type, out of range or contradicts another.
     """
     rest = {key: each for key, each in data.items() if key not in OWN and not KEY.fullmatch(str(key))}
     design, remarks = read_design(rest)
@@ -283,7 +283,7 @@ def read_network_design(data: Mapping[str, Any]) -> tuple[NetworkDesign, tuple[s
 
 
 def is_left_hand(data: Mapping[str, Any]) -> bool:
-    """Returns whether traffic drives on the left, as the field ``left_hand`` of a design says.
+    """Returns the field ``left_hand`` of a design: whether traffic drives on the left; False without it.
 
     Raises:
         UsageError: The field is neither true nor false.

@@ -1,7 +1,7 @@
 """Computes where the ground beside a route ends: the paved area of the network with its shoulders.
 
-At each station the ground reaches along the normal of the route, on both sides of its reference line, up to
-the first edge. The height of the ground is that of the route at the same station.
+At each station the ground reaches from the reference line of the route along its normal, on both sides, to
+the first edge of this area. The height of the ground is that of the route at the same station.
 """
 
 from collections.abc import Sequence
@@ -19,20 +19,23 @@ if TYPE_CHECKING:
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
-JUST = 1e-6  # m, before and behind a station
+JUST = 1e-6  # m, before or behind a station, so that a jump of widths at the station does not matter
 AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 
 
 def ground_of(route: "Route") -> Area:
-    """Returns the paved area of the route's network, widened by its widest shoulder."""
+    """Returns the paved area of the route's network, widened by the widest shoulder of its roads."""
     shoulder = max(each.shoulder for each in route.network.roads)
     area = route.network.paved
     return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
 
 
 def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
-    """Returns the offsets of the left and the right edge of the ground at stations ``s``, in metres."""
+    """Returns the offsets in metres of the left and the right edge of the ground at stations ``s`` ``(n,)``.
+
+    Where there is no edge within ``FARTHEST``, the offset is ``FARTHEST``, negative on the right.
+    """
     import shapely
 
     boundary, starts = ground.boundary, route.plan.at(s)
@@ -47,7 +50,10 @@ def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
 
 
 def windows(route: "Route") -> list[tuple[float, float]]:
-    """Returns the stretches of a route, in metres, at and around its junctions."""
+    """Returns the first and the last station in metres of each stretch of a route around its junctions.
+
+    A stretch reaches ``AROUND`` metres beyond a junction; stretches that overlap are returned as one.
+    """
     found: list[tuple[float, float]] = []
     for each in route.passages:
         low, high = max(0.0, each.start - AROUND), min(route.length, each.end + AROUND)
@@ -59,9 +65,10 @@ def windows(route: "Route") -> list[tuple[float, float]]:
 
 
 def shoulders_on_ground(route: "Route") -> tuple[CubicProfile, CubicProfile]:
-    """Returns the widths of the left and the right shoulder, in metres, that reach to the edge of the ground.
+    """Returns the widths in metres of the left and the right shoulder of a route, along its stations.
 
-    Beside roads without a junction near, they are those of the road.
+    Outside the stretches of ``windows`` they are those of the roads; within, they reach to the edge of the
+    ground.
     """
     assert route.profile is not None
     ground, profile = ground_of(route), route.profile

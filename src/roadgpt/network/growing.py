@@ -25,7 +25,7 @@ from roadgpt.road import Profile, Segment, World
 from roadgpt.road.road import check_length
 
 FAR = 1e6  # m, a station behind all changes of a cross-section
-LEAST = math.radians(40.0)  # of an arm that lies opposite another one
+LEAST = math.radians(40.0)  # largest deviation from a straight line of two arms that count as opposite
 
 
 def build_route(design: NetworkDesign, world: World) -> Route:
@@ -33,12 +33,12 @@ def build_route(design: NetworkDesign, world: World) -> Route:
 
     Args:
         design: The segments and junctions of the route.
-        world: The World, which gives the width of lanes and shoulders where the design gives none.
+        world: The World. It gives the width of the shoulders, and the lane width where the design has none.
 
     Raises:
-        UsageError: The World asks for lanes or banked bends that networks do not have, the island of a
-            roundabout is too small for its arms, a lane that the route needs cannot be reached, or a road is
-            longer than 50 km.
+        UsageError: The World asks for lanes or banked bends that networks do not have, the lanes of a road
+            do not fit, no arm of a junction fits ``take``, the island of a roundabout is too small for its
+            arms, a lane that the route needs cannot be reached, or a road is longer than 50 km.
     """
     # traffic on the left is the mirror image of traffic on the right
     seen = design.mirrored() if design.left_hand else design
@@ -177,19 +177,25 @@ class _RouteGrowth:
 
 
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
-    """Returns the cross-section of each arm but that of arrival.
+    """Returns the cross-sections of the arms in the order of ``all_arms``.
 
-    A road that the route does not take has one lane in each direction; but straight ahead, it has as many as
-    the road of arrival, at a roundabout as many as the ring, and opposite a road with more than two lanes on
-    which the route turns, as many as that road: its lanes would lead nowhere, and nothing would lead to them.
+    The arm that the route takes has the cross-section ``after``. Any other arm has in each direction
+
+    - as many lanes as the ring at a roundabout,
+    - else as many as the road that the route takes, if the arm lies opposite this road and the road has more
+      than two lanes in a direction: otherwise some of its lanes would lead nowhere,
+    - else as many as the road of arrival, if the arm lies straight ahead,
+    - else one.
+
+    A one-way arm has only the lanes of its direction.
 
     Args:
         junction: The junction.
         before: The cross-section of the road on which the route arrives.
-        after: The cross-section of the road on which it goes on.
+        after: The cross-section of the road on which the route goes on.
 
     Raises:
-        UsageError: The arm that the route takes has ``one_way``.
+        UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``.
     """
     width, shoulder = float(after.width(0.0)), after.shoulder_width
     ring = (junction.ring_lanes, junction.ring_lanes)
@@ -216,8 +222,9 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
 
 
 def _continuing(junction: JunctionDesign) -> int | None:
-    """Returns the index of the arm that continues the road onto which the route turns; None if there is none,
-    if it is that of arrival, or at a roundabout.
+    """Returns the index of the arm opposite the arm that the route takes.
+
+    None at a roundabout, or if only the road of arrival or no road at all lies opposite.
     """
     if junction.taken is None or junction.kind == "roundabout":
         return None
@@ -233,7 +240,7 @@ def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int
     """Returns the id of the connecting road from one road to another.
 
     Raises:
-        UsageError: There is none.
+        UsageError: There is no such connecting road.
     """
     for each in connections:
         if (each.incoming, each.outgoing) == (start, end):
@@ -242,7 +249,7 @@ def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int
 
 
 def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -> tuple[tuple[int, int], ...]:
-    """Returns pairs of lane ids that continue each other where lanes change."""
+    """Returns pairs of lane ids that continue each other where lanes change: before it and behind it."""
     is_left = place.side == "left"
     drop, gain = place.kind == "lane_drop" and is_left, place.kind == "lane_gain" and is_left
     count = min(before.count[0], after.count[0])
@@ -259,8 +266,8 @@ def contact_distances(
         junction: The junction.
         directions: The headings of its arms out of the junction in radians, counter-clockwise, first that of
             the road on which the route arrives.
-        profiles: The cross-section of each arm: that of the road on which the route arrives ends here, and so
-            do those of one-way roads towards the junction; the others begin.
+        profiles: The cross-section of each arm in the same order. The road of arrival and one-way roads into
+            the junction end here, so their last widths count; of all other roads, the first widths count.
 
     Raises:
         UsageError: The island of a roundabout is too small for its arms.
@@ -279,12 +286,12 @@ def contact_distances(
 
 
 def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
-    """Returns what the layout of a junction needs to know of an arm.
+    """Returns the direction and the widths of an arm, from which a junction is laid out.
 
     Args:
-        profile: Its cross-section.
+        profile: The cross-section of the arm.
         direction: The heading in radians out of the junction.
-        ends_here: Whether its end meets the junction, not its start.
+        ends_here: True if the end of the road lies at the junction, False if its start does.
     """
     edges = profile.edges(FAR if ends_here else 0.0)
     left, right = float(edges.left), -float(edges.right)
@@ -292,9 +299,9 @@ def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
 
 
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
-    """Returns the length in metres of a route at a place, without the roads before and behind it.
+    """Returns the length in metres of a route at a place, without the roads before and behind the place.
 
-    The arguments are those of ``passing_length``.
+    It is 0 where lanes change. The arguments and errors are those of ``passing_length``.
     """
     if isinstance(place, JunctionDesign):
         return passing_length(place, before, after)
@@ -307,10 +314,11 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
     Args:
         junction: The junction.
         before: The cross-section of the road on which the route arrives.
-        after: The cross-section of the road on which it goes on.
+        after: The cross-section of the road on which the route goes on.
 
     Raises:
-        UsageError: The island of a roundabout is too small for its arms.
+        UsageError: The island of a roundabout is too small for its arms, the arm that the route takes has
+            ``one_way``, or no arm fits ``take``.
     """
     arms, taken = junction.all_arms, junction.taken
     directions = [math.pi, *(math.radians(arm.angle) for arm in arms)]
@@ -326,7 +334,14 @@ def passing_length(junction: JunctionDesign, before: Profile, after: Profile) ->
 
 
 def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
-    """Returns the ids of the roads around a roundabout, from its first arm to the arm with index ``to``."""
+    """Returns the ids of the roads from the first arm of a roundabout to the arm with index ``to``.
+
+    Connecting roads and pieces of the ring follow each other in driving order. If ``to`` is 0, they
+    lead all the way round and back to the first arm.
+
+    Raises:
+        UsageError: No lane leads into or out of one of these arms.
+    """
     mouths = {each.id: each for each in builder.junctions if each.id in ring.junctions}
     count, last = len(ring.ring), (to - 1) % len(ring.ring)
     entered = mouths[ring.junctions[0]]
@@ -339,12 +354,17 @@ def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
 
 
 def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
-    """Returns the sign or light of each arm, first of the road of arrival, then of the others from the right.
+    """Returns the sign or light of the road of arrival, then those of the arms in the order of ``all_arms``.
 
-    With "lights", every arm has lights. With "yield" or "stop", the road of arrival has the sign, and so does
-    an arm opposite it. With "priority", all arms give way except the road of arrival and the road that goes
-    on: the one opposite, or else the one that is taken. At a roundabout, every arm gives way unless there are
-    lights. An arm's own ``control`` replaces all this.
+    - With "lights", every arm has lights.
+    - Otherwise every arm of a roundabout gives way; with "stop", the road of arrival has a stop sign instead.
+    - Elsewhere, with "yield" or "stop", the road of arrival and the arm straight ahead have this sign, and
+      the others have priority.
+    - Elsewhere, with "priority", the road of arrival has priority, and so has the arm straight ahead, or
+      without such an arm, the arm that the route takes. The others give way.
+    - Elsewhere, with "none", no arm has a sign.
+
+    The ``control`` of an arm replaces the sign or light of this arm.
     """
     arms = junction.all_arms
     opposite = _opposite(arms)

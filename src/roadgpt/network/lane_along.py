@@ -18,20 +18,24 @@ from roadgpt.geometry.elevation import Cubic
 from roadgpt.road import Road
 from roadgpt.road.profile import Lane, Width, as_cubics
 
-LONGEST = 65.0  # m, of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
-SHARE = 0.8  # of the room for a lane change, at most
-PARTS = 8  # cubics of a lane change
+LONGEST = 65.0  # m, length of a lane change: 4.6 s (Toledo and Zohar 2007) at 50 km/h
+SHARE = 0.8  # largest share of the room for a lane change that the change takes
+PARTS = 8  # number of cubics that describe a lane change
 ROUNDING = 1e-9
 
 
 class LaneAlong(NamedTuple):
-    """The lane of a route on one road, with what is beside it: functions of the station, in metres."""
+    """The lane of a route on one road, and what lies beside the lane. Each field is in metres, constant or a
+    function of the station.
+    """
 
     left_shoulder: Width
     left: Width
-    """The width of all lanes to the left of the lane, oncoming ones among them."""
+    """The width of everything to the left of the lane as far as the shoulder: lanes, oncoming ones among
+    them, and the median.
+    """
     offset: Width
-    """The offset of the left edge of the lane from the reference line."""
+    """The offset of the left edge of the lane from the reference line, positive to the left."""
     width: Width
     right: Width
     """The width of all lanes to the right of the lane."""
@@ -39,16 +43,16 @@ class LaneAlong(NamedTuple):
 
 
 Term = tuple[float, Width]
-"""A factor and a width."""
+"""A factor and the width that is multiplied by it."""
 
 
 def lane_along(road: Road, lanes: Sequence[int]) -> LaneAlong:
     """Returns the lane that a route follows on a road.
 
     Args:
-        road: The road, in the direction of the route.
+        road: The road in the direction of the route; traffic drives on the right.
         lanes: The indices of the lanes that the route follows one after another, counted from 0 at the
-            centre line; each differs from the one before by 1.
+            centre line. Each index differs by 1 from the index before.
     """
     profile = road.profile
     assert profile is not None
@@ -79,14 +83,22 @@ def _shoulder(lanes: Sequence[Lane], length: float) -> Width:
 
 
 def change_windows(length: float, count: int) -> list[tuple[float, float]]:
-    """Returns where the lane changes on a road of this length begin and end, as stations in metres."""
+    """Returns the stations in metres at which each lane change on a road begins and ends.
+
+    Args:
+        length: The length of the road in metres.
+        count: The number of lane changes; the road is divided into as many equal parts.
+    """
     part = length / count if count else 0.0
     half = min(LONGEST, SHARE * part) / 2
     return [(part * (n + 0.5) - half, part * (n + 0.5) + half) for n in range(count)]
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the sum of widths along a road of this length, each with a factor."""
+    """Returns the weighted sum of widths along a road of this length in metres.
+
+    The sum is a number if no term has a CubicProfile, else a CubicProfile.
+    """
     if not any(isinstance(width, CubicProfile) for _, width in terms):
         return sum(factor * width for factor, width in terms if not isinstance(width, CubicProfile))
     inside = {0.0}
@@ -103,7 +115,10 @@ def added(terms: Sequence[Term], length: float) -> Width:
 
 
 def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
-    """Returns a width as cubics that begin at some stations; there are few of them."""
+    """Returns a width as one cubic for each station, a function of the distance from this station.
+
+    The stations are read one by one, which is fast for a few of them only.
+    """
     if not isinstance(width, CubicProfile):
         return [(float(width), 0.0, 0.0, 0.0)] * len(stations)
     cubics = as_cubics(width)
@@ -111,7 +126,7 @@ def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
 
 
 def profile_of(stations: Sequence[float], table: Array) -> CubicProfile:
-    """Returns cubics with these stations and coefficients ``(n, 4)``."""
+    """Returns a profile of ``n`` cubics with these stations and the coefficients ``(n, 4)``."""
     rows = [(a, b, c, d) for a, b, c, d in table.tolist()]
     return CubicProfile(tuple(stations), tuple(rows))
 
@@ -119,7 +134,7 @@ def profile_of(stations: Sequence[float], table: Array) -> CubicProfile:
 def _through(values: Sequence[Width], length: float, stations: Iterable[float]) -> Width:
     """Returns one width after another, with smooth changes between them.
 
-    ``stations`` are those at which any width of the road begins to change or ends to.
+    ``stations`` are those at which the cubics of the offset and of the lane widths begin.
     """
     found = values[0]
     for (start, end), after in zip(change_windows(length, len(values) - 1), values[1:], strict=True):
@@ -130,9 +145,10 @@ def _through(values: Sequence[Width], length: float, stations: Iterable[float]) 
 
 
 def _blended(one: Width, other: Width, knots: Array) -> Width:
-    """Returns a width that changes to another one: between the knots, cubics with its values and slopes.
+    """Returns a width that changes to another one from the first to the last knot.
 
-    What lies beside the lane is then as wide as it is, and nowhere less than nothing.
+    Between two knots, a cubic has the values and slopes of the blended widths at both knots. What remains
+    beside the lane then has its true width and is nowhere negative.
     """
     if one == other:
         return one

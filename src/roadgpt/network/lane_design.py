@@ -5,7 +5,7 @@
                   "lanes": {"forward": 2, "backward": 0}}
     "junction2": {"after": 2, "kind": "lane_drop", "length": 60}
 
-They stand among the junctions, in driving order.
+Merges, exits and places where lanes change are numbered together with the junctions, in driving order.
 """
 
 import math
@@ -18,11 +18,11 @@ from roadgpt.brief.words import MOST_LANES
 from roadgpt.road.design import OTHER_DIRECTION, FrozenFields
 from roadgpt.road.profile import Marking
 
-ACCELERATION = 130.0  # m, of a lane for acceleration or deceleration; its taper is not counted
-RAMP_TAPER = 60.0  # m, of such a lane: RAA 2008, entries and exits
+ACCELERATION = 130.0  # m, length of an acceleration or deceleration lane without its taper
+RAMP_TAPER = 60.0  # m, length of the taper of such a lane: RAA 2008, entries and exits
 MEDIAN = 2.0  # m, width of a median
-TAPER = 60.0  # m, of a lane that ends or begins
-LEAST_WIDTH = 1.5  # m; a lane that ends, ends where it is narrower, because no car can go on in it
+TAPER = 60.0  # m, length of the taper of a lane that ends or begins
+LEAST_WIDTH = 1.5  # m; where a lane is narrower than this, no car can drive in it
 
 After = Annotated[int, Field(ge=1, le=500)]
 LaneLength = Annotated[float, Field(ge=10, le=2000, allow_inf_nan=False)]
@@ -32,33 +32,35 @@ class LanesDesign(FrozenFields):
     """The lanes of a road."""
 
     forward: Annotated[int, Field(ge=1, le=MOST_LANES)] = 1
-    """Number of lanes in the direction of the route."""
+    """Number of lanes in the direction of the route, one or more."""
     backward: Annotated[int, Field(ge=0, le=MOST_LANES)] = 1
     """Number of oncoming lanes; 0 for a one-way road."""
     width: Annotated[float, Field(ge=2, le=10, allow_inf_nan=False)] = 4.0
     """Width of every lane in metres."""
     centre: Marking | None = None
-    """The line between the directions; None for the usual one."""
+    """The line between the directions; None for a broken line with one lane each way, else a solid one."""
     divided: StrictBool = False
     """Whether a median separates the directions."""
 
 
 class RampDesign(FrozenFields):
-    """A place where a ramp joins a road, or leaves it."""
+    """A merge, where a ramp joins a road, or a diverge, where a ramp leaves a road."""
 
     after: After
-    """Number of segments of the route before it."""
+    """Number of segments of the route before this place."""
     kind: Literal["merge", "diverge"]
     take: Literal["ramp", "main"]
-    """Where the route comes from (merge) or goes to (diverge)."""
+    """The road from which the route comes (merge) or to which it goes (diverge)."""
     length: LaneLength = ACCELERATION
-    """Length in metres of the lane for acceleration or deceleration, without its taper."""
+    """Length in metres of the acceleration or deceleration lane, without its taper."""
     taper: LaneLength = RAMP_TAPER
-    """Length in metres in which this lane ends or begins."""
+    """Length in metres of the taper in which this lane ends or begins."""
     side: Side | None = None
     """The side of the ramp; None for the side on which traffic drives."""
     lanes: LanesDesign | None = None
-    """The lanes of the road behind it; None for the usual ones."""
+    """The lanes of the road behind this place, if the route takes the ramp; None for two one-way lanes behind
+    a merge, and for one behind a diverge. On the main road, the lanes stay the same.
+    """
 
     def mirrored(self) -> "RampDesign":
         """Returns the ramp with left and right exchanged."""
@@ -70,14 +72,16 @@ class LanesChangeDesign(FrozenFields):
     """A place where a lane ends or begins, or where the route changes to the next lane."""
 
     after: After
-    """Number of segments of the route before it."""
+    """Number of segments of the route before this place."""
     kind: LaneKind
     side: Side = "right"
-    """The lane that ends or begins: the leftmost or the rightmost; or the side to which the route changes."""
+    """Whether the leftmost or the rightmost lane ends or begins, or the side to which the route changes."""
     length: LaneLength = TAPER
-    """Length in metres in which the width of the lane changes."""
+    """Length in metres of the taper in which the lane ends or begins; not used for a lane change."""
     lanes: LanesDesign | None = None
-    """The lanes of the road behind it; None for those before it, with the lane that ends or begins."""
+    """The lanes of the road behind this place; None for the lanes before it, less the lane that ends or plus
+    the lane that begins.
+    """
 
     def mirrored(self) -> "LanesChangeDesign":
         """Returns the place with left and right exchanged."""
@@ -88,8 +92,8 @@ def narrow_part(taper: float, width: float) -> float:
     """Returns the length in metres in which a lane that ends or begins is narrower than ``LEAST_WIDTH``.
 
     Args:
-        taper: The length in metres in which the width changes between 0 and that of the lane, as a cubic
+        taper: The length in metres in which the width changes between 0 and the full width, as a cubic
             whose slope is 0 at both ends.
-        width: The width of the lane in metres, at least ``LEAST_WIDTH``.
+        width: The full width of the lane in metres, at least ``LEAST_WIDTH``.
     """
     return taper * (0.5 - math.sin(math.asin(1 - 2 * LEAST_WIDTH / width) / 3))

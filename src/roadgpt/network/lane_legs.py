@@ -1,4 +1,4 @@
-"""Finds the lanes in which a route follows roads of a network, with the lane changes that this needs."""
+"""Finds the lanes that a route follows on roads of a network, with the necessary lane changes."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -7,19 +7,21 @@ from roadgpt.errors import UsageError
 from roadgpt.network.network import Leg, Network
 
 Ways = dict[int, int]
-"""For the id of a lane, the id of the lane of the next road that continues it."""
+"""Maps the id of a lane to the id of the lane that continues it on the next road."""
 
 
 def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
-    """Returns the legs of a route that follows roads in this order.
+    """Returns the legs of a route that follows roads in this order: one for each lane on each road.
 
-    A route keeps to the outermost lane from which it can go on (the rightmost one, with traffic on the
-    right), and changes lanes as late as possible: on the last road before the lane is needed.
+    A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
+    right). It changes lanes only where its lane does not lead to the next road or would prevent a required
+    lane change, and as late as possible: on the last road before the other lane is needed.
 
     Args:
         network: The network.
-        roads: Ids of roads, each joined to the next one, connecting roads among them.
-        shifts: For the id of a road on which the route changes lanes anyhow, the number of lanes to the left.
+        roads: Ids of one or more roads, each joined to the next one, connecting roads among them.
+        shifts: The lane changes that are required: for the id of a road, the number of lanes to the left,
+            negative to the right.
 
     Raises:
         UsageError: Two roads are not joined, or a lane that the route needs cannot be reached.
@@ -58,8 +60,8 @@ def _first(network: Network, road: int, ways: Ways | None, shift: int) -> int:
 def _fit(
     network: Network, roads: Sequence[int], ways: Sequence[Ways], shifts: Mapping[int, int]
 ) -> list[set[int]]:
-    """Returns for each road the lanes in which one can enter it, so that there is a lane for its lane change,
-    and for the one on the next road.
+    """Returns for each road the lanes from which the lane changes in ``shifts`` are possible on this road
+    and, where both roads have one, on the next road too.
     """
     found: list[set[int]] = [set()] * len(roads)
     for n, road in reversed(list(enumerate(roads))):
@@ -71,7 +73,7 @@ def _fit(
 
 
 def _kept(ways: Ways, lanes: set[int]) -> Ways:
-    """Returns the ways that lead to some lanes; all, if there is none."""
+    """Returns the ways that lead to some lanes; all ways, if none leads there."""
     return {lane: after for lane, after in ways.items() if after in lanes} or ways
 
 
@@ -87,7 +89,11 @@ def _beside(network: Network, road: int, lane: int, left: int) -> int:
 
 
 def _ways(network: Network, one: int, two: int) -> Ways:
-    """Returns which lanes of one road continue in the next one."""
+    """Returns which lanes of one road continue on the next one.
+
+    Raises:
+        UsageError: The roads are not joined.
+    """
     if (found := network.connection_of.get(two)) is not None and found[1].incoming.road == one:
         return {way.incoming: way.own for way in found[1].lanes}
     if (found := network.connection_of.get(one)) is not None and found[1].outgoing.road == two:

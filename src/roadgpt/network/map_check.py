@@ -1,4 +1,4 @@
-"""Checks the graph of a map and the route through it: what is wrong is said in one sentence."""
+"""Checks the graph of a map and the route through it, and raises the first fault as a UsageError."""
 
 import math
 from collections.abc import Sequence
@@ -8,15 +8,19 @@ from roadgpt.errors import UsageError
 from roadgpt.network.design import ASTERN, COUNTS
 from roadgpt.plural import plural
 
-NEAREST = 1.0  # m, between two nodes that a road joins
-STEEPEST_BEND = 150.0  # degrees, by which a road may turn at a bend
+NEAREST = 1.0  # m, least distance between two nodes that a road joins
+STEEPEST_BEND = 150.0  # degrees, largest angle by which a road may turn at a bend
 
 Place = tuple[float, float, float]
-"""x, y and the height in metres."""
+"""x, y and height of a node, in metres."""
 
 
 def check_graph(kinds: Sequence[str], places: Sequence[Place], roads: Sequence[tuple[int, int]]) -> None:
-    """Checks that roads join existing nodes, and that each node has as many roads as its kind needs.
+    """Checks the roads and nodes of a map.
+
+    Every road joins two existing nodes at least ``NEAREST`` apart, which no other road joins. Every node has
+    as many roads as its kind needs, far enough apart in direction. Roads connect all nodes, and not all nodes
+    are bends.
 
     Args:
         kinds: The kind of each node.
@@ -24,7 +28,7 @@ def check_graph(kinds: Sequence[str], places: Sequence[Place], roads: Sequence[t
         roads: Pairs of nodes, which are numbered from 1.
 
     Raises:
-        UsageError: Something is wrong; the message names the first fault.
+        UsageError: One of these conditions does not hold; the message names the first fault.
     """
     ends: dict[int, list[int]] = {number: [] for number in range(1, len(kinds) + 1)}
     for number, (one, other) in enumerate(roads, 1):
@@ -51,7 +55,7 @@ def check_graph(kinds: Sequence[str], places: Sequence[Place], roads: Sequence[t
 
 
 def _check_node(number: int, kind: str, others: Sequence[int]) -> None:
-    """Raises UsageError unless as many roads as the kind needs lead to a node."""
+    """Raises UsageError unless a node has as many roads as its kind needs."""
     least, most = {"end": (1, 1), "bend": (2, 2)}.get(kind, (0, 0))
     if not most:
         least, most = (each + 1 for each in next(v for k, v in COUNTS.items() if k == kind))
@@ -94,15 +98,15 @@ def _check_connected(kinds: Sequence[str], ends: dict[int, list[int]]) -> None:
 
 
 def check_route(kinds: Sequence[str], roads: Sequence[tuple[int, int]], route: Sequence[int]) -> None:
-    """Checks that a route follows roads and turns back at roundabouts only.
+    """Checks that a route follows roads, turns back at roundabouts only, and has no bend at its ends.
 
     Args:
         kinds: The kind of each node.
         roads: Pairs of nodes, which are numbered from 1.
-        route: The nodes along the route.
+        route: Two or more nodes in driving order.
 
     Raises:
-        UsageError: Something is wrong; the message names the first fault.
+        UsageError: One of these conditions does not hold; the message names the first fault.
     """
     joined = {frozenset(pair) for pair in roads}
     for one, other in pairwise(route):

@@ -1,6 +1,6 @@
-"""Defines the MapDesign: the design of a map of roads, and of one route through it.
+"""Defines the MapDesign: the design of a map of roads and of one route through the map.
 
-It is written in JSON as a graph. Nodes are junctions, bends and ends of roads; roads join them:
+In JSON, the map is a graph: the nodes are junctions, bends and ends of roads, and roads join the nodes.
 
     "lanes": {"width": 3.5},
     "node1": {"at": [20, 80, 0], "kind": "end"},
@@ -9,10 +9,10 @@ It is written in JSON as a graph. Nodes are junctions, bends and ends of roads; 
     "roads": [[1, 2], [2, 3], ...],
     "route": [1, 2, 4]
 
-``at`` is x, y and the height in metres. A road is straight from one node to the other; at a bend it leads
-around the node in a curve, so that two junctions may be joined by several straights and bends. ``route``
-names the nodes that the tested car passes, one after another. With ``"left_hand": true``, traffic drives on
-the left.
+``at`` is x, y and the height in metres. Each pair in ``roads`` is a straight between two nodes; at a bend, a
+curve leads from one straight to the next, so that several straights and bends may join two junctions.
+``route`` lists the nodes that the tested car passes, in driving order. With ``"left_hand": true``, traffic
+drives on the left.
 """
 
 import math
@@ -36,7 +36,7 @@ MOST_NODES = 400
 MOST_ROADS = 800
 MOST_PASSED = 1000
 """The largest number of nodes that a route may pass."""
-BEND = 20.0  # m, radius of a bend that has none
+BEND = 20.0  # m, radius of a bend whose design gives none
 
 NodeKind = Literal[PlainKind, "bend", "end"]
 Model = TypeVar("Model", bound=BaseModel)
@@ -53,22 +53,22 @@ class MapNode(FrozenFields):
     """A junction, a bend or an end of a road."""
 
     at: tuple[Finite, Finite, Finite]
-    """x, y and the height in metres: of a junction, where its roads meet; of a bend, where the straights
-    before and behind it would meet.
+    """x, y and the height in metres of the point where the roads of a junction meet, where a road ends, or
+    where the two straights at a bend would meet.
     """
     kind: NodeKind
     control: Control = "none"
-    """The sign at the minor roads of a junction, or "lights" at all its roads; see
+    """The signs of a junction: "lights" for all its roads, "stop" or "yield" for its minor roads; see
     ``map_growing.signs_at``.
     """
     kerb: Annotated[float, Field(ge=1, le=100, allow_inf_nan=False)] = KERB
     """Radius in metres of the kerb between two neighbouring roads of a junction; not for roundabouts."""
     radius: Annotated[float, Field(ge=1, le=2000, allow_inf_nan=False)] | None = None
-    """Radius in metres of the island of a roundabout, or of a bend; None for the usual one."""
+    """Radius in metres of the island of a roundabout, or of a bend; None for 16 m or 20 m, respectively."""
 
     @property
     def is_junction(self) -> bool:
-        """Whether roads meet here."""
+        """Whether the node is a junction or a roundabout."""
         return self.kind not in ("bend", "end")
 
 
@@ -77,10 +77,10 @@ class MapDesign(FrozenFields):
 
     nodes: Annotated[tuple[MapNode, ...], Field(min_length=2, max_length=MOST_NODES)]
     roads: Annotated[tuple[tuple[int, int], ...], Field(min_length=1, max_length=MOST_ROADS)]
-    """Pairs of nodes that a road joins."""
+    """The two nodes that each road joins."""
     route: Annotated[tuple[int, ...], Field(min_length=2, max_length=MOST_PASSED)]
     lanes: MapLanes | None = None
-    """None for the lanes of the World."""
+    """The lanes of all roads; None for the lane width of the World."""
     left_hand: StrictBool = False
     """Whether traffic drives on the left."""
 
@@ -94,7 +94,7 @@ class MapDesign(FrozenFields):
         """Returns the map with left and right exchanged, and traffic on the other side.
 
         Args:
-            middle: The y in metres of the line about which it is mirrored.
+            middle: The y in metres of the mirror line, which is parallel to the x axis.
         """
         nodes = tuple(node.model_copy(update={"at": mirrored_point(node.at, middle)}) for node in self.nodes)
         return self.model_copy(update={"nodes": nodes, "left_hand": not self.left_hand})
@@ -110,7 +110,7 @@ class MapDesign(FrozenFields):
 
     @cached_property
     def neighbours(self) -> dict[int, tuple[int, ...]]:
-        """For each node, the nodes to which a road leads from there, counter-clockwise."""
+        """For each node, the nodes to which roads lead from there, counter-clockwise by direction."""
         found: dict[int, list[int]] = {number: [] for number in range(1, len(self.nodes) + 1)}
         for one, other in self.roads:
             found[one].append(other)
@@ -119,7 +119,10 @@ class MapDesign(FrozenFields):
 
     @cached_property
     def chains(self) -> tuple[tuple[int, ...], ...]:
-        """The roads between junctions and ends: the nodes along each, with its bends."""
+        """The roads from one junction or end to the next, each as the nodes along the road, bends among them.
+
+        Each road is listed once, in one of its two directions.
+        """
         found: dict[tuple[int, ...], None] = {}
         for start, ends in self.neighbours.items():
             if self.node(start).kind == "bend":
@@ -135,7 +138,7 @@ class MapDesign(FrozenFields):
 
     @property
     def driven(self) -> Iterator[tuple[int, ...]]:
-        """The roads of the route in driving order, each as the nodes along it."""
+        """The roads of the route in driving order, each as the nodes along the road."""
         first = 0
         for n in range(1, len(self.route)):
             if self.node(self.route[n]).kind != "bend":
@@ -159,16 +162,16 @@ class MapDesign(FrozenFields):
 
 
 def has_nodes(data: Any) -> bool:
-    """Returns whether parsed JSON is a design of a map."""
+    """Returns whether parsed JSON is a design of a map: whether it has a field such as ``node1``."""
     return isinstance(data, Mapping) and any(KEY.fullmatch(str(key)) for key in data)
 
 
 def read_map_design(data: Mapping[str, Any]) -> tuple[MapDesign, tuple[str, ...]]:
-    """Reads a dictionary in RoadGPT's JSON format of maps; returns the design and remarks, which are none.
+    """Reads a dictionary in RoadGPT's JSON format of maps; returns the design and an empty tuple of remarks.
 
     Raises:
-        UsageError: A field is missing, misnamed, of the wrong type or out of range; roads or the route name
-            nodes that cannot be joined so.
+        UsageError: A field is missing, misnamed, of the wrong type or out of range, or the roads or the route
+            do not fit the nodes; see ``map_check``.
     """
     numbered = {int(found[1]): raw for key, raw in data.items() if (found := KEY.fullmatch(str(key)))}
     for key in data:
@@ -202,10 +205,10 @@ def _node(number: int, raw: Any) -> MapNode:
 
 
 def _value(model: type[Model], what: str, raw: Any, fields: str) -> Model:
-    """Returns the value of a part of the map.
+    """Returns a part of the map as an instance of ``model``.
 
     Raises:
-        UsageError: The part has another form; ``what`` is its name, and ``fields`` those that it must have.
+        UsageError: The part cannot be read. The message names the part, ``what``, and its ``fields``.
     """
     if not isinstance(raw, Mapping):
         raise UsageError(f"{what} cannot be read: give an object with {fields}")
@@ -229,7 +232,7 @@ def _numbers(raw: Any, what: str, most: int) -> Sequence[int]:
     """Returns the numbers of nodes in a list of two or more.
 
     Raises:
-        UsageError: They have another form.
+        UsageError: ``raw`` is not a list of 2 to ``most`` whole numbers.
     """
     is_list = isinstance(raw, (list, tuple)) and 2 <= len(raw) <= most
     if not is_list or any(isinstance(each, bool) or not isinstance(each, int) for each in raw):

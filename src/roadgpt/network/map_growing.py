@@ -26,8 +26,8 @@ from roadgpt.network.turning import curve_between, tangent_length
 from roadgpt.road import Profile, Road, World
 from roadgpt.road.road import check_length
 
-SHORTEST = 0.1  # m, of a road between two junctions; the rules want more
-NO_TURN = 1e-6  # rad; at a smaller turn there is no curve
+SHORTEST = 0.1  # m, least length of a straight road between two junctions; the rules require more
+NO_TURN = 1e-6  # rad; a bend with a smaller turn has no curve
 
 
 def build_map(design: MapDesign, world: World) -> Route:
@@ -35,11 +35,12 @@ def build_map(design: MapDesign, world: World) -> Route:
 
     Args:
         design: The nodes, the roads and the route.
-        world: The World, which gives the width of lanes and shoulders where the design gives none.
+        world: The World. It gives the width of the shoulders, and the lane width where the design has none.
 
     Raises:
-        UsageError: Junctions, roundabouts or bends have no room on a road, a road is longer than 50 km, or
-            the World asks for lanes or banked bends that networks do not have.
+        UsageError: Junctions, roundabouts or bends have no room on a road, the island of a roundabout is too
+            small for its arms, a bend is tighter than its lane is wide, a road is longer than 50 km, or the
+            World asks for lanes or banked bends that networks do not have.
     """
     if design.left_hand:  # traffic on the left is the mirror image of traffic on the right
         return build_map(design.mirrored(), world).mirrored
@@ -54,7 +55,11 @@ def build_map(design: MapDesign, world: World) -> Route:
 
 
 def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
-    """Returns the cross-section of the roads of a map; without lanes, that of the World.
+    """Returns the cross-section of the roads of a map: one lane in each direction, and shoulders.
+
+    Args:
+        lanes: The lanes of the map; None for the lane width of the World.
+        world: The World, which gives the width of the shoulders.
 
     Raises:
         UsageError: The World asks for lanes or banked bends that networks do not have.
@@ -67,9 +72,10 @@ def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
 def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     """Returns the sign or light of each arm of a junction.
 
-    With "lights", every arm has lights. Otherwise the two arms that are most nearly opposite are the main
-    road: with "stop" or "yield", the other arms have this sign, and with "priority", they give way. At a
-    roundabout every arm has lights, stop signs, or else gives way.
+    At a roundabout, all arms have lights with "lights" and stop signs with "stop", and otherwise give way. At
+    any other junction, all arms have lights with "lights" and no signs with "none". Otherwise the two arms
+    that are most nearly opposite are the main road and have priority; the others have a stop sign with
+    "stop", and give way with "yield" or "priority".
 
     Args:
         node: The junction.
@@ -94,12 +100,12 @@ class _MapGrowth:
     profile: Profile
     builder: Builder = field(default_factory=Builder)
     _roads: dict[tuple[int, ...], int] = field(default_factory=dict)
-    """The ids of roads, by the nodes along them."""
+    """The id of each road, by the nodes along the road."""
     _ends: dict[tuple[int, int], RoadEnd] = field(default_factory=dict)
-    """The end of the road that leads from a node towards another one."""
+    """For each node and the next node on one of its roads, the end of this road at the first node."""
     _built: dict[int, Junction | Roundabout] = field(default_factory=dict)
     _contacts: dict[int, dict[int, float]] = field(default_factory=dict)
-    """For each node, the distances in metres from it to the starts of its roads, by their next node."""
+    """For each node, the distance in metres to the start of each of its roads, by the road's next node."""
 
     def _contact(self, number: int, towards: int) -> float:
         """Returns the distance in metres from a node to the start of its road towards another node."""
@@ -134,7 +140,11 @@ class _MapGrowth:
         self._ends[end, nodes[-2]] = RoadEnd(road, "end")
 
     def _pieces(self, nodes: Sequence[int], before: float, after: float) -> tuple[Piece, ...]:
-        """Returns the straights and curves of a road that begins and ends so many metres from its nodes."""
+        """Returns the straights and curves of a road along nodes.
+
+        ``before`` is the distance in metres from the first node to the start of the road, ``after`` the
+        distance from the end of the road to the last node.
+        """
         pieces: list[Piece] = []
         taken, curve = before, tuple[Piece, ...]()
         for n, (one, other) in enumerate(pairwise(nodes), 1):
@@ -156,7 +166,7 @@ class _MapGrowth:
         return joined(pieces)
 
     def _bend(self, number: int, turn: float) -> tuple[float, tuple[Piece, ...]]:
-        """Returns the metres that a bend takes of the straights before and behind it, and its curve."""
+        """Returns the length in metres that a bend takes of each straight beside it, and the bend's curve."""
         if abs(turn) < NO_TURN:
             return 0.0, ()
         radius, width = self.design.node(number).radius or BEND, float(self.profile.width(0.0))
@@ -169,7 +179,7 @@ class _MapGrowth:
         return tangent, curve_between(tangent, tangent, turn)
 
     def add_junction(self, number: int, node: MapNode) -> None:
-        """Builds the junction or roundabout at a node, to which all roads are built already."""
+        """Builds the junction or roundabout at a node; all roads at the node must exist already."""
         others = self.design.neighbours[number]
         directions = [self.design.direction(number, other) for other in others]
         stubs = []
@@ -222,7 +232,7 @@ class _MapGrowth:
 
 
 def junction_of(node: MapNode) -> JunctionDesign:
-    """Returns a junction of a route with the kind, kerb and island of a node."""
+    """Returns the kind, kerb and radius of a node as a JunctionDesign, whose other fields mean nothing."""
     radius = ISLAND if node.radius is None else node.radius
     return JunctionDesign.model_construct(
         after=1, take=1, kind=cast(PlainKind, node.kind), kerb=node.kerb, radius=radius

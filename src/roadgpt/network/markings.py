@@ -1,8 +1,8 @@
-"""Says what is painted on the roads of a network, and which signs and lights stand at its junctions.
+"""Computes what is painted on the roads of a network, and where signs and lights stand at its junctions.
 
-The lines along roads are those of each road's profile. Inside junctions there are only edge lines along the
-kerbs, and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop
-or to give way has a line at the end of its road; at a roundabout the line lies at the outer edge of the ring.
+The lines along a road are those of its profile. Inside junctions there are only edge lines along the kerbs,
+and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop or to
+give way has a line across the end of its road; at a roundabout, this line lies at the outer edge of the ring.
 """
 
 from collections.abc import Iterator
@@ -19,27 +19,27 @@ from roadgpt.network.paved import ribbon, stations_of
 from roadgpt.network.polygon import Area
 from roadgpt.road.profile import DASH, GAP, LINE
 
-BLOCK, BLOCK_GAP = 0.5, 0.25  # m, of a give-way line (Germany, RMS-1)
+BLOCK, BLOCK_GAP = 0.5, 0.25  # m, lengths of a block and of a gap in a give-way line (Germany, RMS-1)
 BEFORE = 1.0  # m, from a sign to the junction
 BESIDE = 0.6  # m, from the outer edge of the shoulder to the middle of a sign
 SHORTEST = 0.3  # m; shorter pieces of lines come from rounding
 CIRCLE = 64  # segments in a quarter of the circle on which a give-way line lies
 
-STRIPE = 0.5  # m, width of a stripe of a crosswalk, and between two (Germany, RMS-1)
+STRIPE = 0.5  # m, width of a stripe of a crosswalk, and of the gap between two stripes (Germany, RMS-1)
 
 StrokeKind = Literal["edge", "lane", "stop", "give_way", "crosswalk"]
 
 
 class PaintedStroke(NamedTuple):
-    """One painted line without gaps; each dash of a broken line is a stroke."""
+    """One painted line without gaps; each dash of a broken line is a stroke of its own."""
 
     kind: StrokeKind
     width: float
-    """Width in metres; half of it lies on each side of the points."""
+    """Width in metres; half of the width lies on each side of the points."""
     points: Array
-    """Points ``(n, 3)`` of its middle in metres, at the height of the road."""
+    """Points ``(n, 3)`` in metres along the middle of the stroke, at the height of the road."""
     road: int | None = None
-    """The id of the road along which it leads; None for what lies across a road or along a kerb."""
+    """The id of the road along which the stroke leads; None for a stroke across a road or along a kerb."""
 
 
 class JunctionSign(NamedTuple):
@@ -47,9 +47,9 @@ class JunctionSign(NamedTuple):
 
     control: Control
     place: tuple[float, float, float]
-    """The foot of its post in metres, beside traffic that sees its front."""
+    """The foot of the post in metres, beside the traffic that the sign is for."""
     heading: float
-    """The heading in radians of traffic that sees its front."""
+    """The heading in radians of the traffic that the sign is for."""
 
 
 def strokes(network: Network) -> tuple[PaintedStroke, ...]:
@@ -73,9 +73,7 @@ def signs(network: Network) -> tuple[JunctionSign, ...]:
 
 
 def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
-    """Yields the lines along a road, or between the lanes of a ring. Inside junctions, only roads beside
-    ramps have lines; crosswalks interrupt the lines between lanes.
-    """
+    """Yields the lines of a road's profile; crosswalks interrupt the lines between lanes."""
     road, profile = member.road, member.profile
     s = stations_of(road)
     ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
@@ -97,8 +95,9 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
 
 
 def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[PaintedStroke]:
-    """Yields the edge lines along the kerbs and islands of a junction, whose paved area and height are given;
-    the carriageway lies on their left.
+    """Yields the edge lines along the kerbs and islands of a junction; the carriageway lies on their left.
+
+    ``inside`` is the paved area of the junction, and ``height`` its height in metres.
     """
     import shapely
 
@@ -155,8 +154,10 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
 
 
 def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:
-    """Returns the middle ``(n, 3)`` of the line at which traffic from an arm stops or gives way, in metres;
-    None if it does neither, or if no road leads from the arm into a roundabout.
+    """Returns points ``(n, 3)`` in metres along the middle of the line at which traffic from an arm stops or
+    gives way.
+
+    None if the arm has priority or no sign, or if it is an arm of a roundabout without a road into the ring.
     """
     if arm.control in ("priority", "none"):
         return None
@@ -165,7 +166,7 @@ def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | N
 
 
 def _across(network: Network, arm: Arm) -> Array:
-    """Returns the middle ``(2, 3)`` of the line at the end of an arm, from mid-road outwards."""
+    """Returns the two ends ``(2, 3)`` of the middle of the line at an arm, from mid-road outwards."""
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
     half = min(line_before(arm) + STOP_LINE / 2, member.road.length)
     s = member.road.length - half if at_end else half
@@ -210,7 +211,7 @@ def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) ->
 
 
 def _blocks(line: Array) -> Iterator[Array]:
-    """Yields the middles ``(n, 3)`` of the blocks of a give-way line; those at the ends touch its ends."""
+    """Yields the middle ``(n, 3)`` of each block of a give-way line; blocks touch both ends of the line."""
     along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))]
     count = max(1, round((along[-1] + BLOCK_GAP) / (BLOCK + BLOCK_GAP)))
     size = (along[-1] + BLOCK_GAP) / count
@@ -227,8 +228,9 @@ def _sign(network: Network, arm: Arm) -> JunctionSign:
 
 
 def place_of_sign(member: NetworkRoad, contact: Contact) -> tuple[float, float]:
-    """Returns the station and the offset in metres of the sign at one end of a road, beside traffic that
-    drives towards this end.
+    """Returns the station and the offset in metres of the sign at one end of a road.
+
+    The sign stands beside the traffic that drives towards this end, outside the shoulder.
     """
     before = min(BEFORE, member.road.length)
     s = member.road.length - before if contact == "end" else before

@@ -1,9 +1,9 @@
 """Defines the Network: roads that are joined by junctions and roundabouts.
 
-Ids of roads, junctions and lanes are those of OpenDRIVE. Lanes on the right of a road's reference line have
-negative ids and are driven along the road; lanes on its left have positive ids and are driven against it.
-With traffic on the left, lanes with positive ids are driven along the road. Every junction has its own
-connecting roads, one for each way from one arm to another.
+Ids of roads, junctions and lanes are those of OpenDRIVE. Lanes on the left of a road's reference line have
+positive ids, lanes on the right negative ids. If traffic drives on the right, lanes with negative ids are
+driven along the road, and lanes with positive ids against it; if traffic drives on the left, it is the other
+way round. Every junction has its own connecting roads, one for each way from one arm to another.
 """
 
 from collections.abc import Sequence
@@ -43,12 +43,12 @@ class RoadEnd(NamedTuple):
 
 
 class Leg(NamedTuple):
-    """One road of a route."""
+    """One road of a route, and the lane that the route follows there."""
 
     road: int
     """The id of the road."""
     lane: int
-    """The id of the lane that the route follows; ``Profile.leads_along`` says in which direction."""
+    """The id of the lane; ``Profile.leads_along`` says in which direction it is driven."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,44 +59,47 @@ class NetworkRoad:
     road: Road
     """The geometry; its ``profile`` is never None."""
     junction: int | None = None
-    """The id of the junction, if this is a connecting road."""
+    """The id of the junction to which a connecting road belongs; None for other roads."""
 
     @property
     def profile(self) -> Profile:
-        """The lanes of the road."""
+        """The cross-section of the road."""
         assert self.road.profile is not None
         return self.road.profile
 
     @property
     def shoulder(self) -> float:
-        """The width of its wider shoulder in metres, at most."""
+        """The difference in metres between the reach of the road with its shoulders and without them.
+
+        It is the width of the shoulders if both sides of the road are alike.
+        """
         return self.profile.reach - self.profile.paved_reach
 
     def ids_towards(self, contact: Contact) -> range:
-        """Returns the ids of the driving lanes that lead towards one of its ends, from the centre line
+        """Returns the ids of the driving lanes that lead towards one end of the road, from the centre line
         outwards.
         """
         return self.profile.along_ids if contact == "end" else self.profile.against_ids
 
     def lanes_towards(self, contact: Contact) -> tuple[Lane, ...]:
-        """Returns the lanes that lead towards one of its ends and their shoulder, from the centre line
-        outwards.
+        """Returns the driving lanes that lead towards one end of the road, and the shoulder beside them, from
+        the centre line outwards.
         """
         return self.profile.along if contact == "end" else self.profile.against
 
     def side_towards(self, contact: Contact) -> int:
-        """Returns 1 if traffic towards this end is on the left of the reference line, -1 if on the right."""
+        """Returns the side of the traffic towards an end: 1 left of the reference line, -1 right of it."""
         return self.profile.side if contact == "end" else -self.profile.side
 
     def begin_towards(self, contact: Contact, s: float) -> float:
-        """Returns the offset in metres at station ``s`` at which the lanes towards an end begin."""
+        """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end."""
         offset, (left, right) = self.profile.offset, self.profile.begins
         line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
         return line + left if self.side_towards(contact) > 0 else line - right
 
 
 class LaneLink(NamedTuple):
-    """The ids of three lanes that continue each other through a junction."""
+    """The ids of three lanes that lead one after another through a junction."""
 
     incoming: int
     """The lane of the incoming road."""
@@ -119,23 +122,23 @@ class Connection:
 
 @dataclass(frozen=True)
 class Continuation:
-    """Two roads that continue each other without a junction, because the number of lanes changes there."""
+    """Two roads joined without a junction, where the number of lanes or the lane of the route changes."""
 
     before: RoadEnd
     after: RoadEnd
     lanes: tuple[tuple[int, int], ...]
-    """Pairs of lane ids: lane of the road before, lane of the road after."""
+    """Pairs of lane ids that continue each other: of the road ``before``, and of the road ``after``."""
 
 
 @dataclass(frozen=True)
 class Arm:
-    """A road where it meets a junction."""
+    """The end of a road at a junction."""
 
     end: RoadEnd
     direction: float
     """The heading in radians out of the junction."""
     control: Control = "none"
-    """The sign or the light at which traffic into the junction has to stop or give way."""
+    """The sign or the light that traffic into the junction meets."""
     crosswalk: bool = False
     """Whether pedestrians cross the road there."""
 
@@ -155,7 +158,7 @@ class Junction:
     node: Point
     """The point in metres at which the reference lines of the arms meet; the centre of a roundabout."""
     kerb: float
-    """The radius in metres that was asked for where the kerbs of two neighbouring arms meet."""
+    """The requested radius in metres of the kerbs between neighbouring arms; 0 for a merge or a diverge."""
 
 
 @dataclass(frozen=True)
@@ -173,11 +176,11 @@ class Roundabout:
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """Roads, the junctions that join them, and the roundabouts among these.
+    """Roads, the junctions that join them, and the roundabouts that consist of some of the junctions.
 
     Raises:
-        ValueError: Two roads or two junctions have the same id, an arm or a connection names a road that does
-            not exist, or traffic drives on the left on some roads only.
+        ValueError: Two roads or two junctions have the same id; an arm, a connection or a continuation names
+            a road that does not exist; or traffic drives on the left on some roads only.
     """
 
     roads: tuple[NetworkRoad, ...]
@@ -236,8 +239,9 @@ class Network:
 
     @cached_property
     def mirrored(self) -> "Network":
-        """The network with the sign of y changed, with traffic on the other side of its roads. Roads,
-        junctions and roundabouts keep their ids and their order.
+        """The network with the sign of y changed and traffic on the other side of the roads.
+
+        Roads, junctions and roundabouts keep their ids and their order.
         """
         made = Network(
             tuple(replace(each, road=each.road.mirrored) for each in self.roads),
@@ -255,33 +259,33 @@ class Network:
     def right_hand(self) -> "Network":
         """The network itself, or its mirror image if traffic drives on the left.
 
-        What is defined for traffic on the right is computed there, once for both.
+        Computations for traffic on the right use this network, so that they need no second case.
         """
         return self.mirrored if self.left_hand else self
 
     def leaves_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of a road towards which a lane leads."""
+        """Returns the end of the road towards which the lane of a leg leads."""
         is_along = self.road(leg.road).profile.leads_along(leg.lane)
         return RoadEnd(leg.road, "end" if is_along else "start")
 
     def enters_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of a road from which a lane leads."""
+        """Returns the end of the road from which the lane of a leg leads."""
         is_along = self.road(leg.road).profile.leads_along(leg.lane)
         return RoadEnd(leg.road, "start" if is_along else "end")
 
     @cached_property
     def plain_roads(self) -> tuple[NetworkRoad, ...]:
-        """The roads outside junctions, among them the pieces of rings."""
+        """The roads that are not connecting roads; the pieces of rings are among them."""
         return tuple(each for each in self.roads if each.junction is None)
 
     @cached_property
     def junction_at(self) -> dict[RoadEnd, int]:
-        """The id of the junction at each end of a road that meets one."""
+        """For each end of a road at a junction, the id of the junction."""
         return {arm.end: junction.id for junction in self.junctions for arm in junction.arms}
 
     @cached_property
     def crossed(self) -> frozenset[RoadEnd]:
-        """The ends of roads with a crosswalk."""
+        """The ends of roads at which there is a crosswalk."""
         return frozenset(arm.end for each in self.junctions for arm in each.arms if arm.crosswalk)
 
     @cached_property
@@ -291,12 +295,12 @@ class Network:
 
     @cached_property
     def continued_at(self) -> dict[RoadEnd, Continuation]:
-        """The continuation at each end of a road that another road continues without a junction."""
+        """For each end of a road in a continuation, this continuation."""
         return {end: each for each in self.continuations for end in (each.before, each.after)}
 
     @cached_property
     def roundabout_of(self) -> dict[int, Roundabout]:
-        """The roundabout to which a junction or a road belongs, by the id of the junction or the road."""
+        """For the id of each junction, connecting road or ring road of a roundabout, this roundabout."""
         pairs = [
             (number, ring)
             for ring in self.roundabouts
@@ -309,7 +313,7 @@ class Network:
 
     @cached_property
     def nodes(self) -> tuple[tuple[Kind, tuple[Junction, ...]], ...]:
-        """The junctions as a driver counts them: each with its kind; those of one roundabout are one."""
+        """The junctions as a driver counts them, each with its kind; those of a roundabout count as one."""
         found: list[tuple[Kind, tuple[Junction, ...]]] = []
         for junction in self.junctions:
             ring = self.roundabout_of.get(junction.id)
@@ -321,18 +325,18 @@ class Network:
 
     @property
     def paved(self) -> Area:
-        """The area of all lanes for driving, seen from above, without shoulders."""
+        """The area of all driving lanes, seen from above, without shoulders; small holes are filled."""
         return self._paved[0]
 
     @property
     def paved_nodes(self) -> tuple[Area, ...]:
-        """The paved area inside each of the ``nodes``."""
+        """The paved area inside each of the ``nodes``, in their order."""
         return self._paved[1:]
 
     @cached_property
     def _paved(self) -> tuple[Area, ...]:
-        """The paved area of all roads, and those inside each of the ``nodes``. Where roads cross, small holes
-        between ways are paved; roundabouts have smaller islands."""
+        """The paved area of all roads, and the area inside each of the ``nodes``. Holes below ``ISLAND`` are
+        paved, at roundabouts those below ``SLIVER``."""
         areas = dict(zip(self._by_id, areas_of([each.road for each in self._by_id.values()]), strict=True))
         inside = [[each.id for each in self.inside(junctions)] for _, junctions in self.nodes]
         nodes = [covered_by([areas.pop(number) for number in numbers]) for numbers in inside]
@@ -340,8 +344,8 @@ class Network:
         return without_small_islands(covered_by([*nodes, *areas.values()]), nodes, least)
 
     def inside(self, junctions: tuple[Junction, ...]) -> list[NetworkRoad]:
-        """Returns the connecting roads of some junctions and, for those of a roundabout, the pieces of its
-        ring."""
+        """Returns the connecting roads of the junctions in one of the ``nodes``, with the pieces of the ring
+        if it is a roundabout."""
         ring = self.roundabout_of.get(junctions[0].id)
         numbers = [each.road for junction in junctions for each in junction.connections]
         return [self.road(number) for number in (*numbers, *(ring.ring if ring else ()))]
@@ -356,7 +360,7 @@ class Network:
         return outline_of(paved_by(inside))
 
     def bounds(self) -> Array:
-        """Returns the smallest and the largest x and y of the paved area, ``(2, 2)``, in metres."""
+        """Returns the limits of the paved area in metres, ``(2, 2)``: smallest x and y, largest x and y."""
         return np.array(self.paved.bounds, float).reshape(2, 2)
 
 

@@ -1,6 +1,6 @@
 """Writes networks and routes as JSON data, and reads them back exactly.
 
-A road file with a route has the fields ``route``, a list of [road, lane], and ``network``.
+A road file with a route has two more fields: ``route``, a list of [road, lane], and ``network``.
 """
 
 import copy
@@ -40,7 +40,7 @@ class _StoredNetwork:
 
 
 def network_to_json(network: Network) -> dict[str, Any]:
-    """Returns a network as JSON data, from which ``network_from_json`` restores it."""
+    """Returns a network as JSON data for ``network_from_json``."""
     roads = [{"id": each.id, "junction": each.junction, **each.road.to_json()} for each in network.roads]
     plain = TypeAdapter(_StoredNetwork).dump_python(
         _StoredNetwork(network.junctions, network.roundabouts, network.continuations), mode="json"
@@ -52,8 +52,8 @@ def network_from_json(data: Any) -> Network:
     """Restores a network from JSON data as returned by ``network_to_json``.
 
     Raises:
-        UsageError: A field is missing or of the wrong type, a road cannot be read, or junctions name roads
-            that do not exist.
+        UsageError: A field is missing or of the wrong type, a road cannot be read or has no lanes, or the
+            parts do not make a Network.
     """
     try:
         rows = data["roads"]
@@ -72,9 +72,10 @@ def network_from_json(data: Any) -> Network:
 
 
 def _with_lane_links(junctions: Any) -> Any:
-    """Returns stored junctions; where lanes of connections are pairs, as in older files, the third is added.
+    """Returns stored junctions in which every lane link has three lanes.
 
-    Older networks have one lane in each direction.
+    Older files have pairs without the outgoing lane. Their roads have one lane in each direction, so the
+    missing id is 1 or -1.
     """
     found = copy.deepcopy(junctions)
     for junction in found:
@@ -96,7 +97,7 @@ def legs_from_json(data: Any) -> tuple[Leg, ...]:
     """Restores the legs of a route from a list of [road, lane].
 
     Raises:
-        UsageError: The data have another form.
+        UsageError: The data are not a list of pairs of whole numbers.
     """
     try:
         return strictly(tuple[Leg, ...], data)

@@ -1,4 +1,4 @@
-"""Lists the ways of a route through junctions. A roundabout, which has several junctions, is passed once."""
+"""Lists the ways of a route through junctions. A roundabout has several junctions and is one passage."""
 
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple
@@ -9,42 +9,42 @@ from roadgpt.network.network import Arm, Junction, Leg, RoadEnd
 if TYPE_CHECKING:
     from roadgpt.network.route import Route
 
-CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of its stripes (Germany, R-FGUe)
+CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of the stripes (Germany, R-FGUe)
 GAP = 1.0  # m, between a stop line and a crosswalk
 CROSSED = sum(CROSSWALK) + GAP  # m, from a junction with a crosswalk to a stop line
-STOP_LINE = 0.5  # m, width of a stop line, which ends where the junction begins (Germany, RMS-1)
+STOP_LINE = 0.5  # m, width of a stop line; without a crosswalk it lies next to the junction (Germany, RMS-1)
 
 
 class Passage(NamedTuple):
     """The way of a route through one junction or one roundabout."""
 
     start: float
-    """Station in metres at which the route enters it."""
+    """Station in metres at which the route enters the junction or roundabout."""
     end: float
-    """Station in metres at which the route leaves it."""
+    """Station in metres at which the route leaves the junction or roundabout."""
     entered: Junction
-    """The junction, or that of the roundabout's junctions at which the route enters it."""
+    """The junction; for a roundabout, the junction of the arm on which the route arrives."""
     arrival: RoadEnd
-    """The end of the road on which the route arrives."""
+    """The end, at the junction, of the road on which the route arrives."""
     departure: RoadEnd
-    """The end of the road on which it goes on."""
+    """The end, at the junction, of the road on which the route goes on."""
     arms: tuple[RoadEnd, ...]
-    """The ends of all roads that meet there, counter-clockwise from the road of arrival; clockwise with
-    traffic on the left."""
+    """The ends of all roads that meet there, first the road of arrival, then counter-clockwise if traffic
+    drives on the right and clockwise if it drives on the left."""
 
     @property
     def exit(self) -> int:
-        """Number of the road of departure, counted from the road of arrival in the order of ``arms``."""
+        """Number of the exit, from 1 in the order of ``arms``; the road of arrival is the last exit."""
         return self.arms.index(self.departure) or len(self.arms)
 
     @property
     def stop_line(self) -> float | None:
-        """Station in metres of the stop line of a stop sign; None if there is no stop sign."""
+        """Station in metres at which the line of a stop sign begins; None if there is no stop sign."""
         return self.start - line_before(self._arm) - STOP_LINE if self.control == "stop" else None
 
     @property
     def control(self) -> Control:
-        """The sign or the light that the route meets."""
+        """The sign or the light that the route meets at the road of arrival."""
         return self._arm.control
 
     @property
@@ -53,20 +53,21 @@ class Passage(NamedTuple):
 
 
 def line_before(arm: Arm) -> float:
-    """Returns the distance in metres from a junction to the stop line of an arm, which leaves a crosswalk
-    free.
+    """Returns the distance in metres between a junction and the stop line of an arm.
+
+    It is 0 for an arm without a crosswalk; otherwise the crosswalk lies in between.
     """
     return CROSSED if arm.crosswalk else 0.0
 
 
 def passages_of(route: "Route") -> tuple[Passage, ...]:
-    """Returns the ways of a route through its junctions, in driving order."""
+    """Returns the passages of a route through its junctions and roundabouts, in driving order."""
     groups = groupby(range(len(route.legs)), key=lambda n: _place(route, route.legs[n]))
     return tuple(_passage(route, list(group)) for place, group in groups if place is not None)
 
 
 def _place(route: "Route", leg: Leg) -> tuple[str, int] | None:
-    """Returns what tells the junction or roundabout of a leg apart from others; None outside junctions."""
+    """Returns a key for the junction or roundabout in which a leg lies; None outside junctions."""
     ring = route.network.roundabout_of.get(leg.road)
     if ring is not None:
         return "roundabout", ring.junctions[0]

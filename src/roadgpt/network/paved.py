@@ -1,4 +1,7 @@
-"""Computes the paved area of roads: the union of their carriageways, seen from above."""
+"""Computes the paved area of roads: the union of their carriageways, seen from above.
+
+All roads here have a profile, a reference line of pieces, and no superelevation.
+"""
 
 import math
 from collections.abc import Sequence
@@ -17,21 +20,21 @@ from roadgpt.road import Road
 if TYPE_CHECKING:
     from shapely import Polygon
 
-SAG = 0.002  # m, between the edge of a bend and the chords of its polygon
-GRID = 1e-4  # m, to which corners are rounded, so that roads that touch are joined
-LONGEST = 8.0  # m, of a chord
-SLIVER = 1.0  # m^2; a smaller hole between ways is paved, as it is too small for an island
-ISLAND = 7.0  # m^2, of the smallest island where roads cross (AASHTO Green Book 9.6.3: 75 square feet)
-NEAR = 1e-3  # m, from a junction to a hole that it encloses
+SAG = 0.002  # m, largest distance between the edge of a bend and the chords of its polygon
+GRID = 1e-4  # m, step to which corners are rounded, so that roads that touch are joined
+LONGEST = 8.0  # m, longest chord of a bend
+SLIVER = 1.0  # m^2; a smaller hole between ways is too small for an island and is paved
+ISLAND = 7.0  # m^2, area of the smallest island where roads cross (AASHTO Green Book 9.6.3: 75 square feet)
+NEAR = 1e-3  # m, largest distance from a junction to a hole that the junction encloses
 
 
 def paved_by(roads: Sequence[Road]) -> Area:
-    """Returns the area that the carriageways of roads cover together."""
+    """Returns the area that the carriageways of roads cover together, without holes up to ``SLIVER``."""
     return covered_by(areas_of(roads))
 
 
 def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
-    """Returns the areas of the carriageways of roads, each without edges that cross."""
+    """Returns the area of the carriageway of each road, as a valid polygon without edges that cross."""
     import shapely
 
     areas = ribbons(roads)
@@ -42,10 +45,10 @@ def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
 
 
 def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
-    """Returns the area that several areas cover together, without small holes.
+    """Returns the area that several areas cover together, without holes up to ``SLIVER``.
 
-    Corners are rounded before and after they are joined, which takes half of the time of rounding while they
-    are joined.
+    The corners of ``areas`` should be rounded to ``GRID``; those of the union are rounded here. This takes
+    half of the time of a union that rounds its corners itself.
     """
     import shapely
 
@@ -53,7 +56,7 @@ def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
 
 
 def filled(area: Area) -> Area:
-    """Returns an area without holes that are smaller than ``SLIVER``."""
+    """Returns an area without its holes of ``SLIVER`` or less."""
     import shapely
 
     parts = []
@@ -65,15 +68,15 @@ def filled(area: Area) -> Area:
 
 
 def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[float]) -> tuple[Area, ...]:
-    """Returns the paved area of a network and those of its junctions, where small islands are paved.
+    """Returns the paved area of a network and then the paved areas of its junctions, small islands included.
 
-    An island may lie between the ways of a junction and the end of a road, so it is a hole of the network but
-    not of the junction.
+    An island may lie between the ways of a junction and the end of a road. It is then a hole in the area of
+    the network, but not in that of the junction.
 
     Args:
         whole: The paved area of the network.
-        nodes: The paved areas of its junctions.
-        least: The area in square metres of the smallest island of each of them.
+        nodes: The paved area of each junction.
+        least: For each junction, the area in square metres of the smallest island that is not paved.
     """
     import shapely
 
@@ -99,17 +102,16 @@ def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[fl
 
 
 def ribbon(road: Road) -> "Polygon":
-    """Returns the polygon of a road's carriageway; see ``ribbons``."""
+    """Returns the polygon of the carriageway of one road; see ``ribbons``."""
     found: Polygon = ribbons([road])[0]
     return found
 
 
 def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
-    """Returns the polygons of the carriageways of roads, which begin along their right edges.
+    """Returns one polygon for each road: its carriageway, with the right edge first.
 
-    The ends of the line between its lanes are corners of each, because lanes of other roads may end there:
-    rounding would otherwise leave a gap between this road and a corner of another road on its end. The roads
-    have no superelevation.
+    Both ends of the line between the directions are corners of the polygon, because lanes of other roads may
+    end there. Otherwise rounding would leave a gap between the end of this road and such a lane.
     """
     import shapely
 
@@ -144,8 +146,11 @@ def _pieces_of(road: Road) -> PieceCurve:
 
 
 def stations_of(road: Road) -> Array:
-    """Returns stations of a road so close together that its edges deviate from their chords by ``SAG`` at
-    most; every change of its curvature and of its lanes is among them.
+    """Returns stations in metres along a road, so close together that its edges deviate from the chords
+    between them by ``SAG`` at most.
+
+    The ends of all pieces of the reference line are among the stations; if widths vary, there is one at least
+    about every metre.
     """
     profile = road.profile
     assert profile is not None
@@ -162,7 +167,7 @@ def stations_of(road: Road) -> Array:
 
 
 def _changes(road: Road) -> list[float]:
-    """Returns stations, 1 m apart, at which widths vary."""
+    """Returns stations about 1 m apart along the whole road if any width varies, and otherwise none."""
     assert road.profile is not None
     widths = [road.profile.offset, *(lane.width for lane in (*road.profile.left, *road.profile.right))]
     if not any(isinstance(width, CubicProfile) for width in widths):
@@ -172,7 +177,10 @@ def _changes(road: Road) -> list[float]:
 
 
 def outline_of(area: Area) -> Array:
-    """Returns the outer outline ``(n, 2)`` of the largest part of an area, counter-clockwise, not closed."""
+    """Returns the outer outline ``(n, 2)`` in metres of the largest part of an area, counter-clockwise.
+
+    The first point is not repeated at the end.
+    """
     import shapely
     from shapely.geometry.polygon import orient
 

@@ -1,4 +1,4 @@
-"""Names the class of areas in the plane; shapely is loaded when the first area is computed."""
+"""Defines the type ``Area`` for areas in the plane, without loading shapely."""
 
 from typing import TYPE_CHECKING, TypeAlias
 

@@ -1,11 +1,11 @@
-"""Builds merges and exits: a ramp that joins or leaves a road, with a lane of its own.
+"""Builds merges and exits: ramps that join or leave a main road, with an additional lane of this road.
 
     main road  -----------+--------------------------------------
     ramp  ----------------'  node | lane for acceleration | taper
 
-The reference lines of the main road and of the ramp meet at the node. Behind a merge, and before an exit, the
-main road has one lane more. It ends, or begins, in a taper. Traffic drives on the right; on the left of a
-road, a ramp lies between its lanes and its median.
+The reference lines of the main road and of the ramp meet at the node. Behind a merge, the main road has an
+additional lane that ends in a taper; before an exit, it has one that begins in a taper. Traffic drives on the
+right. A ramp on the left joins the innermost lanes, beside the median.
 """
 
 import cmath
@@ -26,32 +26,32 @@ from roadgpt.road import Profile, Segment
 from roadgpt.road.profile import Lane
 
 ANGLE = math.radians(8.0)  # between the ramp and the main road
-CONTACT = 25.0  # m, from the node to each contact
-BESIDE = 60.0  # m, of the road that the route does not take
+CONTACT = 25.0  # m, from the node to each contact, where a road ends and the junction begins
+BESIDE = 60.0  # m, length of the road that the route does not take
 FAR = 1e6  # m, a station behind all changes of a cross-section
 
 
 def length_beside(ramp: RampDesign) -> float:
-    """Returns the length in metres of the road with the additional lane."""
+    """Returns the length in metres of the road with the additional lane, its taper included."""
     return ramp.length + ramp.taper
 
 
 def length_at_ramp(ramp: RampDesign) -> float:
-    """Returns the length in metres of a route at a ramp: in the junction and beside the additional lane."""
+    """Returns the length in metres of a route in the junction and on the road with the additional lane."""
     turn = ANGLE if ramp.take == "ramp" else 0.0
     return sum(piece.length for piece in curve_between(CONTACT, CONTACT, turn)) + length_beside(ramp)
 
 
 def is_on_left(ramp: RampDesign) -> bool:
-    """Returns whether a ramp lies on the left of a road on which traffic drives on the right."""
+    """Returns whether a ramp lies on the left, on a road with traffic on the right."""
     return ramp.side == "left"
 
 
 def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
-    """Returns sketches of the route at a ramp, and of the road that it does not take.
+    """Returns sketches of the route at a ramp, and of the road that the route does not take.
 
-    Points are x + iy in metres. The route arrives at 0 along +x; the last two points give its direction
-    behind the ramp.
+    Each sketch is a list of points x + iy in metres. The route arrives at 0 along +x; the last two points of
+    its sketch give the direction behind the ramp.
     """
     length, is_merge, by_ramp = length_beside(ramp), ramp.kind == "merge", ramp.take == "ramp"
     node = CONTACT if is_merge else length + CONTACT
@@ -82,14 +82,14 @@ class RampBuilder:
     arrival: int
     """The id of the road on which the route arrives."""
     end: NetworkPose
-    """The end of this road."""
+    """The pose at the end of the road on which the route arrives."""
     before: Profile
-    """The cross-section of this road."""
+    """The cross-section of the road on which the route arrives."""
     after: Profile
     """The cross-section of the road on which the route goes on."""
 
     def where_it_goes_on(self) -> NetworkPose:
-        """Returns where the road begins on which the route goes on."""
+        """Returns the pose at the start of the road on which the route goes on."""
         by_ramp, length = self.ramp.take == "ramp", length_beside(self.ramp)
         if self.ramp.kind == "merge":
             return self._node.ahead(CONTACT + length)
@@ -102,7 +102,9 @@ class RampBuilder:
 
     @property
     def _angle(self) -> float:
-        """The angle in radians by which a merge turns to the left from the ramp, and an exit to the right."""
+        """The angle in radians by which traffic turns right, from the ramp at a merge or onto the ramp at an
+        exit; negative for a ramp on the left.
+        """
         return -ANGLE if self._is_left else ANGLE
 
     @property
@@ -114,9 +116,11 @@ class RampBuilder:
         return self.end.ahead(length_beside(self.ramp) + CONTACT)
 
     def build(self, going_on: int) -> list[int]:
-        """Adds everything but the road on which the route goes on, whose id is given.
+        """Builds the place and returns the ids of the roads that the route passes there, in driving order.
 
-        Returns the ids of the roads that the route passes before it.
+        Args:
+            going_on: The id of the road on which the route goes on. It begins at ``where_it_goes_on`` and is
+                in the network already.
         """
         return self._merge(going_on) if self.ramp.kind == "merge" else self._exit(going_on)
 
@@ -170,8 +174,8 @@ class RampBuilder:
         return [beside, ways[1 if by_ramp else 0].road]
 
     def _lanes_beside(self, count: int) -> tuple[int, range]:
-        """Returns the index of the additional lane beside the lanes of the main road, and their indices
-        there; ``count`` is their number.
+        """Returns the index of the additional lane, and the indices of the ``count`` lanes of the main road,
+        on the road that has all of them.
         """
         return (0, range(1, count + 1)) if self._is_left else (count, range(count))
 
@@ -202,13 +206,14 @@ class RampBuilder:
         return Stub(end, heading, self._profile(road), s)
 
     def _back(self, junction: int, start: Stub, end: Stub) -> list[Connection]:
-        """Returns the way of oncoming traffic, in a list that is empty on a one-way road."""
+        """Returns a list with the connection for oncoming traffic; the list is empty on a one-way road."""
         lanes = [(n, n) for n in range(min(len(start.into), len(end.out_of)))]
         return [self._way(junction, start, end, lanes)] if lanes else []
 
     def _way(self, junction: int, start: Stub, end: Stub, lanes: Sequence[tuple[int, int]]) -> Connection:
-        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions; the
-        lines between them go on in the junction, which one passes without turning.
+        """Adds a connecting road for pairs of lanes, counted from 0 at the line between the directions.
+
+        The broken lines between the lanes go on in the junction, because traffic hardly turns there.
         """
         far = (CONTACT, CONTACT)
         return connected(self.builder, junction, self._node.point, (start, end), far, tuple(lanes), "broken")
@@ -227,7 +232,7 @@ class RampBuilder:
 
 
 def _constant(profile: Profile, s: float) -> Profile:
-    """Returns the cross-section that a road has at a station, as one that does not change along a road."""
+    """Returns the cross-section at a station in metres, as one that is the same along the whole road."""
     left, right = (
         tuple(replace(lane, width=width_at(lane.width, s)) for lane in side)
         for side in (profile.left, profile.right)
@@ -241,8 +246,8 @@ def _width(profile: Profile) -> float:
 
 
 def _with_lane(profile: Profile, width: CubicProfile, is_left: bool) -> Profile:
-    """Returns the cross-section with one more lane on the outside of the lanes on the right, or on their
-    inside, where it moves the line between the directions.
+    """Returns the cross-section with one more lane, outside all lanes on the right or, if ``is_left``, inside
+    them. The lane inside moves the line between the directions to the left.
     """
     if is_left:
         lane = Lane("driving", width, "broken")

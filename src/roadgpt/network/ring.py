@@ -1,9 +1,9 @@
 """Builds roundabouts with one or two lanes, for traffic on the right.
 
-The reference line of the ring is the edge of the central island, driven counter-clockwise with the lanes on
-its right. A road with one lane joins the outer lane of the ring. Each arm leads towards the centre and has a
-junction of its own: a mouth on the ring, through which one connecting road leads along the ring, one from the
-ring to the arm, and one from the arm to the ring.
+The reference line of the ring is the edge of the central island; the ring is driven counter-clockwise, with
+its lanes on the right of this line. A road with one lane joins the outer lane of the ring. Each arm leads
+towards the centre and has a junction of its own, its mouth: the part of the ring at the arm. Through a mouth,
+one connecting road leads along the ring, one from the ring to the arm, and one from the arm to the ring.
 """
 
 import math
@@ -22,8 +22,8 @@ from roadgpt.road.profile import Marking
 WIDTH = 5.0  # m, of the circulatory roadway with one lane
 WIDTH_OF_TWO = 9.0  # m, of a circulatory roadway with two lanes
 MOST_LANES = 2
-NARROW_WIDTH = 4.5  # m, of a mini roundabout
-MINI = 8.0  # m, largest radius of the island of a mini roundabout: an outer diameter of 25 m
+NARROW_WIDTH = 4.5  # m, of the circulatory roadway of a mini roundabout
+MINI = 8.0  # m, largest radius of the island of a mini roundabout, with an outer diameter of 25 m
 MOUTH = 9.5  # m along the ring, from the middle of a mouth to either end
 SMALLEST_MOUTH = 4.4  # m; with a shorter one, kerbs between the arms have radii below 3 m
 BETWEEN = 2.0  # m along the ring, between two mouths
@@ -45,7 +45,8 @@ def contact_distance(radius: float, lanes: int = 1) -> float:
 def mouth_of(radius: float, directions: Sequence[float]) -> float:
     """Returns half of the length in metres of each mouth, along the edge of the island.
 
-    It is at most ``MOUTH``, and so short that ``BETWEEN`` metres of ring remain between two mouths.
+    The result is at most ``MOUTH``, and so short that at least ``BETWEEN`` metres of ring remain between two
+    mouths.
 
     Args:
         radius: The radius of the central island in metres.
@@ -55,7 +56,11 @@ def mouth_of(radius: float, directions: Sequence[float]) -> float:
 
 
 def smallest_radius(directions: Sequence[float]) -> float:
-    """Returns the smallest radius in metres of an island around which the mouths of all arms fit."""
+    """Returns the smallest radius in metres of an island around which the mouths of all arms fit.
+
+    Args:
+        directions: The directions of the arms from the centre in radians, counter-clockwise.
+    """
     return (2 * SMALLEST_MOUTH + BETWEEN) / _least_gap(directions)
 
 
@@ -70,7 +75,8 @@ def around_length(radius: float, directions: Sequence[float], angle: float, lane
     Args:
         radius: The radius of the central island in metres.
         directions: The directions of the arms from the centre in radians, counter-clockwise.
-        angle: The angle in radians, counter-clockwise, from the arm of arrival to the arm that is taken.
+        angle: The angle in radians, counter-clockwise, from the arm of arrival to the arm that is taken;
+            2 pi for the way back onto the arm of arrival.
         lanes: The number of lanes of the ring.
     """
     half = mouth_of(radius, directions) / radius
@@ -97,12 +103,12 @@ def build_roundabout(
         radius: The radius of the central island in metres; at least ``smallest_radius``.
         stubs: The arms in counter-clockwise order; each ends ``contact_distance`` from the centre.
         controls: The sign or light of each arm.
-        kerb: Kept in the junctions.
+        kerb: The requested radius in metres of the kerbs. It is only stored in the junctions.
         lanes: The number of lanes of the ring.
         crosswalk: Whether each arm has a crosswalk.
 
     Raises:
-        UsageError: A road has more lanes in one direction than the ring.
+        UsageError: A road has more lanes in one direction than the ring has.
     """
     if any(max(len(stub.into), len(stub.out_of)) > lanes for stub in stubs):
         said = "one lane" if lanes == 1 else f"{lanes} lanes"
@@ -197,5 +203,7 @@ def _mouth(
 
 
 def _outermost(count: int) -> list[tuple[int, int]]:
-    """Returns the index of each of as many lanes of a road, and the number of ring lanes outside its own."""
+    """Returns, for each of ``count`` lanes of a road, its index and the number of ring lanes outside the ring
+    lane that continues it.
+    """
     return [(k, count - 1 - k) for k in range(count)]

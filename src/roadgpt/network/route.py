@@ -1,7 +1,7 @@
-"""Defines the Route: a way through a network that is a Road itself.
+"""Defines the Route: a way through a network, which is itself a Road.
 
-Its centre line is the reference lines of its roads, one after another, so everything that can be done with a
-Road can be done with a Route: check, drive, judge and draw it.
+The centre line of a Route consists of the reference lines of its roads, one after another. Everything that
+can be done with a Road can be done with a Route: check, drive, judge and draw it.
 """
 
 from collections.abc import Sequence
@@ -26,9 +26,10 @@ from roadgpt.road.reversal import reversed_cubics, reversed_road
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Route(Road):
-    """A way through a network. Its profile has the lanes of the roads that it follows.
+    """A way through a network.
 
-    Inside junctions there are no oncoming lanes and no shoulders.
+    Its profile has the lane that the route follows, and on each side one lane as wide as all other lanes
+    there. Inside junctions there are no oncoming lanes, and no shoulders until ``on_ground`` adds them.
     """
 
     network: Network
@@ -36,11 +37,11 @@ class Route(Road):
 
     @classmethod
     def along(cls, network: Network, legs: Sequence[Leg]) -> Self:
-        """Returns the route that follows roads of a network in this order.
+        """Returns the route that follows these legs through a network, in this order.
 
         Raises:
-            UsageError: There is no leg, a road or a lane does not exist, two roads that follow each other are
-                not joined, or the route stays in a junction at an end.
+            UsageError: There is no leg, a road or a lane does not exist, two legs that follow each other are
+                not joined, or the route begins or ends inside a junction.
         """
         if not legs:
             raise UsageError("a route has no road; give one or more [road, lane]")
@@ -73,9 +74,9 @@ class Route(Road):
 
     @cached_property
     def starts(self) -> tuple[float, ...]:
-        """The station of the start of each leg, and of the end of the route, in metres.
+        """The stations in metres of the start of each leg and, as the last one, of the end of the route.
 
-        A leg that only changes the lane begins in the middle of the change.
+        A leg on the same road as the leg before begins in the middle of the lane change between them.
         """
         found, start = [], 0.0
         for number, group in groupby(self.legs, key=lambda leg: leg.road):
@@ -87,7 +88,7 @@ class Route(Road):
 
     @cached_property
     def roads(self) -> tuple[tuple[float, NetworkRoad], ...]:
-        """The roads outside junctions and roundabouts that it follows, each with the station of its start."""
+        """The roads outside junctions and roundabouts, each after its start station in metres."""
         own = zip(self.starts, self.legs, strict=False)
         firsts = [next(group) for _, group in groupby(own, key=lambda each: each[1].road)]
         members = [(start, self.network.road(leg.road)) for start, leg in firsts]
@@ -99,7 +100,7 @@ class Route(Road):
 
     @cached_property
     def passages(self) -> tuple[Passage, ...]:
-        """The ways through the junctions, in driving order; each roundabout is one."""
+        """The passages through junctions in driving order; a way through a roundabout is one passage."""
         return passages_of(self)
 
     @property
@@ -110,7 +111,7 @@ class Route(Road):
     def on_ground(self) -> Self:
         """Returns the route with shoulders that reach to the edge of the ground.
 
-        The ground is the paved area of the network, widened by its shoulders.
+        The ground is the paved area of the network, widened by the widest shoulder of its roads.
         """
         assert self.profile is not None
         left, right = shoulders_on_ground(self)
@@ -175,7 +176,7 @@ def _continues(found: Continuation, one: Leg, two: Leg) -> bool:
 
 
 def _directed(member: NetworkRoad, leg: Leg) -> Road:
-    """Returns the road in the direction in which the route follows it; traffic drives on the right."""
+    """Returns a road in the direction in which the route drives along it; traffic drives on the right."""
     profile = member.profile
     if profile.leads_along(leg.lane):
         return member.road
@@ -195,7 +196,9 @@ def _turned(lane: Lane, length: float) -> Lane:
 
 
 def _turned_offset(profile: Profile, length: float) -> Width:
-    """Returns the offset of the line on which the lanes of the other direction begin, seen from them."""
+    """Returns the offset of the line between the directions after the road is turned round: the oncoming
+    lanes become the lanes along the road, and the median moves to their left.
+    """
     return added([(-1, _reversed(profile.offset, length)), (-1, profile.median)], length)
 
 
@@ -230,7 +233,9 @@ def _parts(network: Network, legs: Sequence[Leg]) -> list[_Part]:
 
 
 def _profile(parts: Sequence[_Part]) -> Profile:
-    """Returns the cross-section of a route: its lane, the lanes beside it, and the shoulders."""
+    """Returns the cross-section of a route: its own lane, one lane for all other lanes on each side, and the
+    shoulders.
+    """
     roads = [part.road for part in parts]
     starts = [0.0, *accumulate(road.length for road in roads)]
     rows = [lane_along(part.road, part.lanes) for part in parts]
@@ -250,7 +255,7 @@ def _profile(parts: Sequence[_Part]) -> Profile:
 
 
 def _joined_widths(widths: Sequence[Width], roads: Sequence[Road], starts: Sequence[float]) -> Width:
-    """Returns widths of roads that follow each other as one function of the station."""
+    """Returns the widths of roads that follow each other as one function of the station along all of them."""
     if all(width == widths[0] and not isinstance(width, CubicProfile) for width in widths):
         return widths[0]
     stations: list[float] = []

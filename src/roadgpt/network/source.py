@@ -1,4 +1,4 @@
-"""Reads roads, routes and designs from files, and makes roads from designs with or without junctions."""
+"""Reads roads, routes and designs from files, and makes roads from all kinds of designs."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,9 +15,9 @@ from roadgpt.road import Design, Geometry, Road, World, build, read_design
 from roadgpt.road.source import read_blueprint as read_road_blueprint
 
 AnyDesign = Design | NetworkDesign | MapDesign
-"""A design of a road, of a route through junctions, or of a map with a route."""
+"""A design of a road, of a route through junctions, or of a map with one route."""
 Blueprint = AnyDesign | Road
-"""Anything from which a road is made."""
+"""Anything from which ``made_from`` makes a road."""
 
 
 def read_blueprint(path: str | Path) -> tuple[Blueprint, tuple[str, ...]]:
@@ -41,15 +41,15 @@ def _of_network(data: Any) -> tuple[Blueprint, tuple[str, ...]] | None:
 
 
 def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None = None) -> Road:
-    """Returns the road in a road file or in the folder of a run.
+    """Returns the road of a road file, a design file or the folder of a run.
 
     Args:
         path: The file, or a folder that holds ``road.json``.
         geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
-        world: The World, which gives the lanes of a design with junctions; None for the usual World.
+        world: The World, as for ``made_from``; None for the usual World.
 
     Raises:
-        UsageError: The file cannot be read, is not valid, or holds no road.
+        UsageError: The file cannot be read, is not valid, or holds no road; see also ``made_from``.
     """
     return made_from(read_blueprint(path)[0], world or World(), geometry)
 
@@ -58,8 +58,10 @@ def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]
     """Reads a dictionary in RoadGPT's JSON format, of a road, a route or a map; returns the design and
     remarks.
 
+    Each remark is a sentence about a contradiction in the data or an unusual value.
+
     Raises:
-        UsageError: A field is missing, misnamed, of the wrong type or out of range.
+        UsageError: A field is missing, misnamed, of the wrong type, out of range or contradicts another.
     """
     if isinstance(data, Mapping) and has_nodes(data):
         return read_map_design(data)
@@ -75,8 +77,8 @@ def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -
         geometry: How a design without junctions becomes a road.
 
     Raises:
-        UsageError: The road is too long, the parts of a map have no room, or the World asks for lanes that
-            networks do not have.
+        UsageError: The road is too long, or ``geometry`` is not "arcs" for a design with junctions or a map;
+            see also ``build_route`` and ``build_map``.
     """
     if isinstance(blueprint, (NetworkDesign, MapDesign)):
         if geometry != "arcs":
@@ -86,20 +88,22 @@ def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -
 
 
 def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
-    """Returns the route of a design with junctions or of a map, without the ground beside it.
+    """Returns the route of a design with junctions or of a map, before ``Route.on_ground``.
 
     Raises:
-        UsageError: As for ``made_from``.
+        UsageError: The design cannot be built; see ``build_route`` and ``build_map``.
     """
     return build_map(design, world) if isinstance(design, MapDesign) else build_route(design, world)
 
 
 def road_from_json(data: Mapping[str, Any]) -> Road:
-    """Restores a road or a route from JSON data as returned by its ``to_json``.
+    """Restores a road or a route from JSON data as returned by ``Road.to_json`` or ``Route.to_json``.
+
+    A route gets shoulders to the edge of the ground; see ``Route.on_ground``.
 
     Raises:
-        UsageError: A field is missing, is not a number or is not finite, or the road is too long or too
-            steep.
+        UsageError: A field is missing or of the wrong type, a number is not finite, the road is too long or
+            too steep, or the route does not fit its network.
     """
     if "network" not in data:
         return Road.from_json(data)

@@ -12,7 +12,7 @@ from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT, elevation_of
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
 LANDING = 4.0  # m of level road before a junction: about the length of a car that waits there
-MOST_OF_LANDING = 0.2  # share of a segment that the level road may take
+MOST_OF_LANDING = 0.2  # largest share of a segment that the level road may take
 
 
 def road_of(
@@ -29,8 +29,9 @@ def road_of(
         start: The point in metres at which the road begins.
         heading: The heading there in radians.
         profile: The cross-section.
-        is_level: Whether the grade is 0 at the start, and whether it is 0 at the end. A vertical curve of
-            the usual radius, within the first or the last segment, leads to the grade of that segment.
+        is_level: Whether the grade is 0 at the start, and whether it is 0 at the end. Between such an end and
+            the grade of the first or last segment there is a vertical curve within this segment, with the
+            usual radius or, where there is too little room, a smaller one.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
@@ -38,7 +39,7 @@ def road_of(
 
 
 def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
-    """Returns the heights along segments, starting at ``z`` metres, with level ends; see ``road_of``."""
+    """Returns the heights along segments that start at ``z`` metres; for ``is_level``, see ``road_of``."""
     found = elevation_of(segments, z)
     knots = list(zip(found.stations, found.grades, strict=True))
     if is_level[0]:
@@ -71,7 +72,7 @@ def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
 
     Args:
         road: The road; its heights are given by grades.
-        is_level: Whether it was made level at its start, and at its end.
+        is_level: Whether ``road_of`` made its start level, and whether it made its end level.
     """
     profile = road.elevation
     assert isinstance(profile, GradeProfile)
@@ -90,7 +91,8 @@ def without_level_ends(road: Road, is_level: tuple[bool, bool]) -> Road:
 
 
 def climb_between(z: float, end: float, length: float) -> GradeProfile:
-    """Returns heights that lead from one height to another, level at both ends, with one grade between.
+    """Returns heights that lead from one height to another: level at both ends, with one grade between the
+    two vertical curves.
 
     Args:
         z: The height in metres at the start.
@@ -114,10 +116,10 @@ def climb_between(z: float, end: float, length: float) -> GradeProfile:
 
 
 def joined_grades(roads: Sequence[Road]) -> GradeProfile:
-    """Returns the heights along roads that follow each other.
+    """Returns the heights along one or more roads that follow each other, from the start of the first one.
 
     Raises:
-        TypeError: The heights of a road are not given by grades.
+        TypeError: The elevation of a road is not a GradeProfile.
     """
     knots: list[tuple[float, float]] = []
     start, height = 0.0, 0.0
@@ -135,8 +137,12 @@ def joined_grades(roads: Sequence[Road]) -> GradeProfile:
 
 
 def joined_roads(roads: Sequence[Road]) -> Road:
-    """Returns roads that continue each other as one road, with the cross-section of the one with the fewest
-    lanes.
+    """Returns one road made of roads that continue each other.
+
+    Its cross-section is that of the road with the fewest lanes in the direction of the roads.
+
+    Raises:
+        TypeError: The elevation of a road is not a GradeProfile.
     """
     if len(roads) == 1:
         return roads[0]

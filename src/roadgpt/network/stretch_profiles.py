@@ -1,7 +1,7 @@
 """Computes the cross-section of each road between the junctions of a NetworkDesign.
 
-Where the route joins a road from a ramp, or leaves it by a ramp, the line between the directions lies beside
-the reference line, so that the reference line leads along the ramp.
+Where the route joins a road from a ramp, or leaves a road by a ramp, the line between the directions of this
+road lies beside its reference line, so that the reference line of the route can lead along the ramp.
 """
 
 from collections.abc import Sequence
@@ -21,15 +21,15 @@ from roadgpt.road.world import OWN
 
 MAIN = LanesDesign(forward=2, backward=0)
 """The lanes of a road that a ramp joins, where none are given: one carriageway of a motorway."""
-MOST_OF_ROAD = 0.8  # of a road, that the taper of a lane may take
+MOST_OF_ROAD = 0.8  # largest share of a road that the taper of a lane may take
 
 
 def stretch_profiles(design: NetworkDesign, world: World) -> list[Profile]:
     """Returns the cross-section of each road of a design, with the tapers of lanes that end or begin.
 
     Raises:
-        UsageError: The World asks for lanes or banked bends that networks do not have, or a road would have
-            no lane or too many.
+        UsageError: The World asks for lanes or banked bends that networks do not have, or the lanes of the
+            design do not fit; see ``profiles_between``.
     """
     section = world.section
     refuse_other_lanes(world)
@@ -58,7 +58,9 @@ def profiles_between(
         shoulder: The width of every shoulder in metres.
 
     Raises:
-        UsageError: A road would have no lane or too many, or a ramp has oncoming traffic.
+        UsageError: A road would have no lane or too many, or other lanes than a lane drop or gain leaves; a
+            ramp on the left would cross oncoming lanes; or the ramp that the route takes has oncoming traffic
+            or more than one lane.
     """
     lanes = [first]
     for number, place in enumerate(places, 1):
@@ -95,9 +97,9 @@ def _check_oncoming(number: int, ramp: RampDesign, around: Sequence[LanesDesign]
 
 
 def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> list[float]:
-    """Returns the offset of the line between the directions from the reference line of each road.
+    """Returns the offset of the line between the directions from the reference line, in metres for each road.
 
-    It changes only where the reference line leads from a ramp to a road beside it, or the other way.
+    It changes only at junctions and where the route leads from a ramp to the main road, or the other way.
     """
     found: list[float] = []
     for n in range(len(lanes)):
@@ -114,7 +116,9 @@ def _offsets(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> lis
 
 
 def _first_offset(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -> float:
-    """Returns the offset with which the reference line leads along the ramp of the next exit."""
+    """Returns the offset with which the reference line leads along the ramp of the next exit; 0 if the route
+    takes no such exit before the next junction.
+    """
     for place, (own, behind) in zip(places, pairwise(lanes), strict=False):
         if isinstance(place, RampDesign) and _is_ramp(place, "diverge"):
             return _beside_ramp(place, behind, own)
@@ -124,7 +128,7 @@ def _first_offset(places: Sequence[PlaceDesign], lanes: Sequence[LanesDesign]) -
 
 
 def _beside_ramp(place: RampDesign, ramp: LanesDesign, main: LanesDesign) -> float:
-    """Returns the offset of the line between the directions of a road from that of a ramp beside it."""
+    """Returns the offset in metres of the main road's line between the directions from that of the ramp."""
     return -ramp.width if is_on_left(place) else main.forward * main.width
 
 
@@ -172,8 +176,8 @@ def _profile(lanes: LanesDesign, shoulder: float) -> Profile:
 def _tapered(
     profile: Profile, gain: LanesChangeDesign | None, drop: LanesChangeDesign | None, length: float
 ) -> Profile:
-    """Returns the cross-section with a lane whose width rises from 0 at the start, and one whose width falls
-    to 0 at the end. It may be the same lane.
+    """Returns the cross-section with a lane whose width rises from 0 at the start, and a lane whose width
+    falls to 0 at the end. Both may be the same lane.
     """
     first, last = (None if each is None else _index(each, profile) for each in (gain, drop))
     most = MOST_OF_ROAD * length / (2 if first == last else 1)

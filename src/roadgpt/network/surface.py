@@ -1,7 +1,7 @@
-"""Divides the surface of a network into roads outside junctions and the level areas of its junctions.
+"""Divides the surface of a network into the roads outside junctions and the level areas of the junctions.
 
-A roundabout is one area, with the pieces of its ring. Pictures, pages and exported meshes are made from these
-parts: together, the roads and the areas cover the paved area of the network.
+A roundabout is one area, which includes the pieces of its ring. The roads and the areas together cover the
+paved area of the network. Pictures, pages and exported meshes are made from these parts.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
-GREEN = 0.1  # share of a hole in the paved area that must remain inside its shoulder for grass to grow there
+GREEN = 0.1  # least share of a hole in the paved area that shoulders leave free, so that grass grows there
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,16 +31,16 @@ class JunctionSurface:
     height: float
     """Height in metres."""
     junctions: tuple[int, ...]
-    """The ids of the junctions; a roundabout has several."""
+    """The ids of the junctions: one, or all those of a roundabout."""
     paved: Area
-    """The area of its connecting roads and of its ring."""
+    """The area of the connecting roads, and of the ring of a roundabout."""
     shoulder: Area
     """The shoulder around the paved area, without the shoulders of the roads that lead there; may be
     empty."""
     kerbed: tuple["Polygon", ...]
-    """Traffic islands: holes in the paved area that are too small for a shoulder."""
+    """Traffic islands with kerbs: holes in the paved area that are too small for a shoulder."""
     green: tuple["Polygon", ...]
-    """Islands with grass, inside their shoulders, such as the middle of a roundabout."""
+    """The areas of grass inside the shoulders of larger islands, such as the middle of a roundabout."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,11 +51,11 @@ class NetworkSurface:
     """The roads outside junctions and roundabouts."""
     areas: tuple[JunctionSurface, ...]
     shoulder: float
-    """The width in metres of the shoulder around the junctions; 0 for none."""
+    """The width in metres of the shoulder around the junctions, the widest of the network; 0 for none."""
 
     @classmethod
     def of(cls, network: Network) -> "NetworkSurface":
-        """Returns the parts of a network's surface."""
+        """Returns the surface of a network, divided into its parts."""
         roads = roads_outside(network)
         width = max((each.shoulder for each in network.roads), default=0.0)
         beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
@@ -67,7 +67,12 @@ class NetworkSurface:
 
     @property
     def reach(self) -> float:
-        """The largest distance in metres from a reference line to the outer edge of its shoulder."""
+        """An upper bound in metres of the distance from a road's reference line to the outer edge of the
+        shoulder.
+
+        Raises:
+            ValueError: There are no roads.
+        """
         return self.shoulder + max(each.profile.paved_reach for each in self.roads)
 
 
@@ -77,7 +82,7 @@ def roads_outside(network: Network) -> tuple[NetworkRoad, ...]:
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:
-    """Returns whether a road's start and its end lie at no junction."""
+    """Returns whether the start of a road lies at no junction, and whether its end lies at none."""
     return (
         RoadEnd(road.id, "start") not in network.junction_at,
         RoadEnd(road.id, "end") not in network.junction_at,
@@ -94,7 +99,15 @@ def _with_shoulders(member: NetworkRoad) -> Road:
 def _area_of(
     network: Network, node: tuple[Kind, tuple[Junction, ...]], paved: Area, width: float, beside: Area
 ) -> JunctionSurface:
-    """Returns the surface of one junction; ``beside`` is the area of all roads with their shoulders."""
+    """Returns the surface of one junction or roundabout.
+
+    Args:
+        network: The network.
+        node: The junction, as in ``Network.nodes``.
+        paved: The paved area of the junction.
+        width: The width in metres of the shoulder.
+        beside: The area of all roads outside junctions, with their shoulders.
+    """
     import shapely
 
     kind, junctions = node
@@ -123,8 +136,10 @@ def polygons(shape: Any) -> Area:
 
 
 def triangulated(area: Area) -> tuple[Array, NDArray[np.int64]]:
-    """Returns points ``(n, 2)`` in metres, and triangles that fill an area: indices ``(m, 3)`` of points,
-    counter-clockwise. Every point is a corner of the area.
+    """Returns the corners ``(n, 2)`` of an area in metres, and triangles that fill the area.
+
+    The triangles are indices ``(m, 3)`` into the corners, counter-clockwise. Both arrays have no rows for an
+    empty area.
     """
     import shapely
 

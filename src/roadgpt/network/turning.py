@@ -1,8 +1,8 @@
 """Computes the curve of a connecting road: a clothoid, an arc and a clothoid between two straight lines.
 
-The two lines meet at one point. A curve of radius 1 m that turns by ``turn`` radians begins
-``tangent_length(turn)`` metres before this point and ends as far behind it; a curve of radius R is R times as
-large.
+The two lines meet at one point. A curve whose arc has a radius of 1 m and that turns by ``turn`` radians
+begins ``tangent_length(turn)`` metres before this point and ends as far behind the point. A curve of radius R
+is R times as large.
 """
 
 import math
@@ -13,13 +13,13 @@ from scipy.special import fresnel
 from roadgpt.geometry import Piece
 from roadgpt.geometry.pieces import joined
 
-SHARE = 0.3  # of the angle of a turn that its two clothoids take; the arc turns by the rest
-STRAIGHT = 1e-9  # rad; a smaller turn is a straight line
+SHARE = 0.3  # share of the angle of a turn that belongs to the two clothoids; the rest belongs to the arc
+STRAIGHT = 1e-9  # rad; a way with a smaller turn is a straight line
 
 
 @lru_cache(maxsize=1024)
 def tangent_length(turn: float) -> float:
-    """Returns the distance, in radii, from the start of a curve to the point where its tangents meet.
+    """Returns the distance from the start of a curve to the point where its tangents meet, in arc radii.
 
     A clothoid of length L before an arc of radius 1 turns by L / 2 and moves the arc inwards by ``shift`` and
     forwards by ``ahead``.
@@ -36,11 +36,13 @@ def tangent_length(turn: float) -> float:
 
 
 def curve_between(before: float, after: float, turn: float) -> tuple[Piece, ...]:
-    """Returns lines and a curve that lead from one line to another, in the largest radius that fits.
+    """Returns pieces that lead from one line to another along a curve with the largest radius that fits.
+
+    The shorter of the two distances decides the radius; on the other line, a straight piece remains.
 
     Args:
-        before: Distance in metres from the start to the point where the two lines meet.
-        after: Distance in metres from this point to the end.
+        before: Distance in metres from the start to the point where the two lines meet, more than 0.
+        after: Distance in metres from this point to the end, more than 0.
         turn: The change of heading in radians, positive to the left, between -pi and pi.
     """
     if abs(turn) < STRAIGHT:

@@ -48,7 +48,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     Args:
         run: a Run that has a road.
         scale: "equal" for axes that fit the road; "thesis" for x and y from 0 to 220 m.
-        frame: the part of the map to show, in metres; None shows the whole road.
+        frame: the part of the map to show, in metres; None: the axes that ``scale`` gives.
     """
     road, world = run.road, run.world
     assert road is not None
@@ -127,8 +127,8 @@ def _path(figure: Figure, axes: Axes, run: Run) -> None:
 
 
 def driven_path(axes: Axes, drive: Drive) -> LineCollection:
-    """Draws the path of the car's centre of gravity, coloured by speed in km/h. The path has a coloured
-    outline where the car was outside its lane."""
+    """Draws the path of the car's centre of gravity, coloured by speed in km/h, and returns the drawn path.
+    The path has a coloured outline where the car was outside its lane."""
     track = np.stack([drive["x"], drive["y"]], axis=-1)
     speed = drive["speed"] * 3.6
     every = max(1, len(track) // 600)

@@ -21,8 +21,9 @@ class JunctionStretch(NamedTuple):
     start: float
     """Station in metres at which the route enters the junction."""
     end: float
-    """Station in metres at which it leaves the junction."""
+    """Station in metres at which the route leaves the junction."""
     name: str
+    """Name of the kind of junction, as pictures show it."""
 
 
 def junction_stretches(road: Road) -> tuple[JunctionStretch, ...]:
@@ -38,8 +39,8 @@ def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None
     Args:
         axes: The axes, with the limits of x.
         road: The road; one without junctions leaves the axes as they are.
-        names: Whether to write the names of the junctions at the top or at the foot of the axes; None writes
-            no names.
+        names: Where to write the names of the junctions: at the top or at the foot of the axes; None: no
+            names are written.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None

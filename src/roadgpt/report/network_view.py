@@ -70,7 +70,7 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
 
 
 def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:
-    """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker one."""
+    """Draws the roads of a network as lines that are ``points`` wide, and the route as a darker line."""
     lines = [each.road.centreline()[:, :2] for each in route.network.roads]
     axes.add_collection(LineCollection(lines, colors=FAR_ASPHALT, linewidths=points, zorder=2))
     line = route.centreline()
@@ -87,7 +87,7 @@ def _fill(axes: Axes, area: Area, colour: str, layer: float) -> None:
 
 
 def path_of(area: Area) -> Path:
-    """Returns an area as a path of matplotlib; its holes stay empty."""
+    """Returns an area as a matplotlib path; the holes in the area stay empty."""
     import shapely
     from shapely.geometry.polygon import orient
 
@@ -122,12 +122,14 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
 
 
 def signs_shown(road: Road, per_inch: float) -> tuple[JunctionSign, ...]:
-    """Returns the signs and lights of a road that are drawn where ``per_inch`` metres are one inch."""
+    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. Empty for a road
+    without junctions, and if there are more than 50 m per inch.
+    """
     return signs(road.network) if isinstance(road, Route) and per_inch <= NEAR else ()
 
 
 def sign_style(control: Control) -> dict[str, Any]:
-    """Returns how matplotlib draws the sign or light of a junction."""
+    """Returns the keyword arguments with which matplotlib's ``plot`` draws a sign or a traffic light."""
     colour = SIGNS[control]
     return {
         "marker": SHAPES[control], "ms": SIGN_SIZE, "mfc": "white" if control == "yield" else colour,

@@ -56,7 +56,9 @@ class Entry:
     number: int
     outcome: str
     points: Array
+    """Points of the road, ``(n, 2)``, metres."""
     failed_at: tuple[float, float] | None
+    """Position of the car when it failed, x and y in metres; None if it did not fail or has no records."""
     share: float | None = None
     """Largest share of the car that was outside its lane; None if there is no drive."""
     paved: Outline | None = None

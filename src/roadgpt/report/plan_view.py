@@ -72,8 +72,8 @@ def stations_of(road: Road) -> Array:
 
 
 def plan_points(road: Road) -> Array:
-    """Returns points, shape ``(n, 2)``, along the centre line of a road, and for a route along those of all
-    roads of its network."""
+    """Returns points, shape ``(n, 2)``, along the centre line of a road; for a route, also along the
+    reference lines of all roads in its network."""
     points: Array = road.at(stations_of(road))[:, :2]
     if isinstance(road, Route):
         return np.concatenate([points, lines_of(road)[:, :2]])
@@ -82,7 +82,7 @@ def plan_points(road: Road) -> Array:
 
 def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """Draws shoulders, carriageway and, where lanes are wide enough, markings; ``per_inch`` is the number
-    of metres per inch of the picture. Of a route, draws the whole network.
+    of metres per inch of the picture. For a route, draws the whole network.
     """
     s, profile = stations_of(road), world.profile_of(road)
     if isinstance(road, Route):

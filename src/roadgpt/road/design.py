@@ -22,7 +22,7 @@ from roadgpt.road.profile_json import ONLY_NETWORKS
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
 MAX_TURN = 70.0  # degrees in one segment, RoadGPT's system prompt
 MAX_SEGMENTS = 500
-REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # of a segment in a file
+REQUIRED = ("distance", "direction", "incline", "turn_degrees")  # fields of each segment in a file
 FITS = 0.99  # a remark is made if less than this share of a given vertical radius can be built
 KEY = re.compile(r"road_segment(\d{1,6})")
 
@@ -33,7 +33,7 @@ Length = Annotated[float, Field(ge=0.001, le=100_000, allow_inf_nan=False)]
 
 
 class FrozenFields(BaseModel):
-    """A value whose fields cannot be changed, and that has no other fields."""
+    """Base class of values whose fields cannot be changed; unknown fields are refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -67,6 +67,7 @@ class Design(FrozenFields):
     """Where a road starts, its heading there, and its segments in driving order."""
 
     starting_point: tuple[Finite, Finite, Finite]
+    """x, y and z in metres."""
     theta: Finite
     """Heading at the start in degrees, 0 along +x, counter-clockwise."""
     segments: Annotated[tuple[Segment, ...], Field(min_length=1, max_length=MAX_SEGMENTS)]
@@ -107,7 +108,7 @@ def read_design(data: Mapping[str, Any]) -> tuple[Design, tuple[str, ...]]:
     is used. A turn of more than 70 degrees or an incline of more than 15 % is kept, with a remark.
 
     Raises:
-        UsageError: A field is missing, misnamed, of the wrong type or out of range.
+        UsageError: There is no segment, or a field is missing, misnamed, of the wrong type or out of range.
     """
     if not isinstance(data, Mapping):
         raise UsageError("a design is a JSON object with starting_point, theta and road_segment1, ...")
@@ -197,7 +198,7 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
 
 
 def no_truths(what: str, data: Mapping[str, Any]) -> None:
-    """Raises UsageError where true or false is given in place of a number."""
+    """Raises UsageError if a value, or a number in a list, is true or false; ``what`` names the data."""
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):

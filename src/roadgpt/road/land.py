@@ -1,6 +1,6 @@
 """Creates the terrain around a road.
 
-Near the road it lies below the road surface; farther away it has gentle hills.
+Near the road, the terrain lies below the road surface; farther away, it has gentle hills.
 """
 
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from roadgpt.road.road import Road
 from roadgpt.road.world import World
 
 MARGIN = 130.0  # m around the road
-FINEST, CELLS = 4.0, 160  # m, and the most cells along the longer side
-FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin; these rows and columns reach the horizon
+FINEST, CELLS = 4.0, 160  # m, smallest cell; number of cells along the longer side at most
+FAR = (300.0, 900.0, 2500.0, 7000.0)  # m beyond the margin: further rows and columns up to the horizon
 BELOW = 0.35  # m; the land near the road is at least this far below it
 LEAST = 40.0  # m, least side of the area without the margin
 LONGEST_STEP = 2.0  # m along the road
@@ -53,9 +53,9 @@ class Land:
 
         Args:
             line: Points ``(n, 3)`` in metres on the centre lines, at most ``LONGEST_STEP`` apart along each.
-            reach: The distance in metres from the lines within which the terrain lies below them; None for
-                flat terrain below all points.
-            floor: The greatest height in metres of flat terrain.
+            reach: Distance in metres from the lines; up to this distance, the terrain lies below the lines.
+                None for flat terrain below all points.
+            floor: The greatest height in metres of flat terrain; not used if ``reach`` is given.
         """
         low, high = line[:, :2].min(axis=0), line[:, :2].max(axis=0)
         low, high = np.minimum(low, (low + high - LEAST) / 2), np.maximum(high, (low + high + LEAST) / 2)
@@ -70,7 +70,10 @@ class Land:
         return cls(*_widened(x, y, heights, away), cell)
 
     def height(self, x: Array, y: Array) -> Array:
-        """Returns interpolated heights in metres at n points ``x``, ``y``."""
+        """Returns interpolated heights ``(n,)`` in metres at points ``x``, ``y``, ``(n,)`` each.
+
+        Beyond the grid, the height is that of the nearest point on its border.
+        """
         return self.between(self.heights, x, y)
 
     def between(self, values: Array, x: Array, y: Array) -> Array:

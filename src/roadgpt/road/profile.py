@@ -6,9 +6,9 @@
                        |     centre line
                  carriageway
 
-Traffic on the right of the centre line drives along the road, towards larger stations; traffic on the left
-drives against it. With traffic on the left, it is the other way round. A road with one lane in each direction
-is the default.
+Lanes on the right of the centre line lead along the road, towards larger stations; lanes on the left lead
+against it. If traffic drives on the left, the lanes on the left lead along the road. The default is one lane
+in each direction.
 """
 
 from collections.abc import Sequence
@@ -71,19 +71,19 @@ class Profile:
     Args:
         left: Lanes on the left, from the centre line outwards, driving lanes first.
         right: Lanes on the right in the same order.
-        driven: Index in ``along`` of the lane that the tested car keeps to; there is one at least.
-        centre_marking: The marking on the centre line.
+        driven: Index in ``along`` of the lane that the tested car keeps to; ``along`` has at least one lane.
+        centre_marking: The marking on the line between the directions, or on either side of a median.
         superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
             positive where it falls to the right, as in OpenDRIVE; None for a level cross-section.
-        offset: Offset in metres of the line between the lanes on the left and those on the right, where it
-            is not the centre line of the road itself: the element ``laneOffset`` of OpenDRIVE.
-        median: Width in metres of a median: oncoming lanes begin that far beside this line.
+        offset: Offset in metres from the centre line of the road to the line between the lanes on the left
+            and those on the right: the element ``laneOffset`` of OpenDRIVE.
+        median: Width in metres of the median between this line and the oncoming lanes; 0 for no median.
         left_hand: Whether traffic drives on the left: the lanes on the left then lead along the road, and
             those on the right against it.
 
     Raises:
         ValueError: ``driven`` is not the index of a driving lane, a shoulder is followed by a driving lane, a
-            width is negative, or the last cubic of a width or of the superelevation is not constant.
+            width is negative, or a width, the superelevation or the offset does not end with a constant.
     """
 
     left: tuple[Lane, ...]
@@ -152,7 +152,7 @@ class Profile:
 
     @property
     def side(self) -> Literal[1, -1]:
-        """The sign of the ids of the lanes that lead along the road: 1 on its left, -1 on its right."""
+        """The sign in OpenDRIVE of the ids of the lanes along the road: 1 on its left, -1 on its right."""
         return 1 if self.left_hand else -1
 
     @property
@@ -179,7 +179,7 @@ class Profile:
     def against_ids(self) -> range:
         """The ids in OpenDRIVE of the oncoming driving lanes, from the centre line outwards.
 
-        A median has the id before the first of them.
+        If there is a median, its id is ``-side``, and these ids begin after it.
         """
         first = 2 if self.median else 1
         return range(-self.side * first, -self.side * (first + self.count[1]), -self.side)
@@ -233,8 +233,8 @@ class Profile:
 
     @property
     def begins(self) -> tuple[float, float]:
-        """The distances in metres from the line between the directions to where the lanes on the left and
-        those on the right begin: a median lies on the side of oncoming lanes.
+        """The distances in metres from the line between the directions to the first lane on the left and to
+        the first on the right. The median lies on the side of the oncoming lanes.
         """
         return (0.0, self.median) if self.left_hand else (self.median, 0.0)
 
@@ -267,7 +267,7 @@ class Profile:
 
     def sides(self, s: ArrayLike) -> Edges:
         """Returns the offsets at which the lanes on the left and those on the right begin: the edges of the
-        median, or twice the line between the directions.
+        median. Without a median, both are the offset of the line between the directions.
         """
         centre, begin = self.centre(s), self.begins
         return Edges(centre + begin[0], centre - begin[1])

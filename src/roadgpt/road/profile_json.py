@@ -1,7 +1,7 @@
 """Reads and writes cross-sections as the field ``profile`` of a road file.
 
 A width is a number, or rows ``[s, a, b, c, d]``. At a distance ``u`` in metres after station ``s``, the width
-is ``a + b u + c u^2 + d u^3`` metres. The superelevation is written in the same way, in radians.
+is ``a + b u + c u^2 + d u^3`` metres. The superelevation is always written as such rows, in radians.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ ONLY_NETWORKS = "traffic drives on the left on the roads of networks only"
 MOST_LANES = 20  # on one side
 MOST_ROWS = 20_000
 WIDEST = 100.0  # m, of a lane or shoulder
-LARGEST = 1e12  # of a station or a coefficient
+LARGEST = 1e12  # greatest absolute value of a station or a coefficient
 STEEPEST = 0.35  # rad, of superelevation
 
 

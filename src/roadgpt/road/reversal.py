@@ -11,7 +11,8 @@ from roadgpt.road.road import Road
 def reversed_road(road: Road) -> Road:
     """Returns a road that leads from the end of the given road to its start.
 
-    The given road must consist of lines, arcs and clothoids, or be a spline through nodes.
+    The given road must consist of lines, arcs and clothoids, or be a spline through nodes. The result has no
+    ``profile`` of its own.
     """
     if road.nodes is not None:
         return Road.through(road.nodes[::-1])
@@ -35,7 +36,12 @@ def _turned(profile: ElevationProfile, length: float) -> ElevationProfile:
 
 
 def reversed_cubics(profile: CubicProfile, length: float) -> CubicProfile:
-    """Converts cubic functions of the station to functions of the distance from the end of the road."""
+    """Converts cubic functions of the station to functions of the distance from the end of the road.
+
+    Args:
+        profile: the cubic functions.
+        length: the length of the road in metres.
+    """
     stations = np.array([0.0, *(s for s in profile.stations if 0 < s < length), length])
     at_ends = shifted(profile.cubics(stations[:-1]), np.diff(stations)) * np.array([1.0, -1.0, 1.0, -1.0])
     rows = [(a, b, c, d) for a, b, c, d in at_ends[::-1].tolist()]

@@ -30,8 +30,8 @@ FARTHEST = 1_000_000.0  # m, of a point from the origin
 SHORTEST = 1e-3  # m
 SHARPEST = 1e3  # 1/m, greatest curvature in a file
 STEEPEST = 10.0  # metres up or down for each metre forward
-LOOKED_AT = 5000  # places at which the grade of a road is checked
-MOST_POINTS = 200_000  # of a road that goes through points
+LOOKED_AT = 5000  # number of stations at which the grade of a road is checked
+MOST_POINTS = 200_000  # of a road that is given by points
 BANKED_ROUNDS = 4  # of the iteration that finds the station of a point on a banked road
 
 
@@ -85,8 +85,9 @@ class Road:
                 ``points``.
 
         Raises:
-            UsageError: The array does not have this shape, there are fewer than two points, a number is not
-                finite, two neighbouring points are the same, or the road is too long or too steep.
+            UsageError: The array does not have this shape, there are fewer than two points or more than
+                200,000, a number is not finite or beyond 1,000 km, two neighbouring points are the same, or
+                the road is too long or too steep.
         """
         nodes = _checked(points)
         control = None if road_points is None else _checked(road_points)[:, :2]
@@ -173,7 +174,7 @@ class Road:
         return replace(self, plan=self.plan.mirrored, profile=profile, _sampled={})
 
     def heading(self, s: ArrayLike) -> Array:
-        """Returns headings in radians."""
+        """Returns headings in radians, counter-clockwise from +x."""
         return self.plan.heading(s)
 
     def curvature(self, s: ArrayLike) -> Array:
@@ -189,7 +190,7 @@ class Road:
         return self.elevation.vertical_curvature(s)
 
     def sample(self, step: float = 1.0) -> Samples:
-        """Returns samples of the road about every ``step`` metres, both ends included.
+        """Returns samples of the road about every ``step`` metres, both ends included; at least two.
 
         The result is cached.
         """
@@ -214,8 +215,9 @@ class Road:
     def control_points(self) -> Array:
         """Returns the road's control points ``(n, 2)`` in metres for the spline of the SBFT competition.
 
-        For a road that was not built from points, the control points are sampled from the centre line,
-        densely enough for the spline to preserve the radii of the road.
+        For a road that was not built from points, the control points are sampled from the centre line at most
+        2 m apart, so that the spline preserves the radii of the road. The SBFT rules allow only 500 points;
+        on a road longer than 998 m, these points are farther apart.
         """
         if self.road_points is not None:
             return self.road_points
@@ -255,7 +257,7 @@ class Road:
 
         Args:
             data: The JSON data.
-            in_network: Whether it is a road of a network, on which traffic may drive on the left.
+            in_network: Whether the road belongs to a network, where traffic may drive on the left.
 
         Raises:
             UsageError: A field is missing, is not a number or is not finite, the road is too long or too

@@ -18,7 +18,7 @@ from roadgpt.road.points import SUFFIXES, plain, points_in, points_of_table
 from roadgpt.road.road import Road
 from roadgpt.road.world import World
 
-ASTRAY = 1.5  # m; a control point that is farther from points of the road, 1 m apart, is not on the road
+ASTRAY = 1.5  # m; a control point farther than this from all points 1 m apart on a road is not on the road
 OPENDRIVE = ".xodr"
 LARGEST = 50_000_000  # bytes of a road file
 SHAPES = (
@@ -111,6 +111,10 @@ def _lanes_told(found: ImportedRoad) -> tuple[str, ...]:
 
 def road_of(data: Any, geometry: Geometry = "arcs") -> Road:
     """Returns the road that parsed JSON describes.
+
+    Args:
+        data: The parsed JSON of a road file.
+        geometry: How a design becomes a road, as in ``read_road``.
 
     Raises:
         UsageError: The data hold no road.

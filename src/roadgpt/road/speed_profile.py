@@ -52,7 +52,7 @@ class PathGeometry(Protocol):
 
     @property
     def crest(self) -> Sequence[float]:
-        """Vertical curvature in 1/m, negative on a crest."""
+        """Change of grade d2z/ds2 in 1/m, negative on a crest."""
 
     @property
     def superelevation(self) -> Sequence[float]:
@@ -145,13 +145,13 @@ def plan_speed(
 ) -> list[float]:
     """Returns the speed in m/s at every station of the path.
 
-    The wheel load takes slopes, crests, dips and superelevation into account. Without superelevation it is
-    ``g cos(slope angle) + v^2 * vertical curvature`` per unit of mass.
+    The wheel load takes slopes, crests, dips and superelevation into account. Per unit of mass and without
+    superelevation, it is ``g cos a + v^2 k cos(a)^3``, where a is the slope angle and k is ``line.crest``.
 
     Args:
         line: The path.
         limits: The limits that the driver respects.
-        highest: The highest speed in m/s at each station, besides these limits; None for no other.
+        highest: A further limit of the speed in m/s for each station; None for no further limits.
     """
     slopes = list(map(_inclination, line.grade, line.superelevation, line.curvature))
     top = list(map(_corner_speed, slopes, line.curvature, line.crest, repeat(limits)))

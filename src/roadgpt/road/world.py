@@ -24,16 +24,16 @@ Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 STEEPEST = 0.12  # ratio, largest superelevation of bends
 OWN = {"lanes": "1+1", "lane_width_end": None, "centre_line": None, "bank": "none"}
-"""The fields that change the usual cross-section of two equal lanes, with their defaults. Files leave out a
-field that has its default.
+"""The fields that change the usual cross-section of two equal lanes, with their defaults. Files contain
+only those that differ from their default.
 """
 
 
 def lanes_in(text: str) -> str:
-    """Removes the blanks from a text such as "2 + 1" (2 lanes forward, 1 backward), and returns the text.
+    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) without blanks.
 
     Raises:
-        ValueError: The text has another form; the message says which one is needed.
+        ValueError: The text has another form; the message says which form is needed.
     """
     plain = text.replace(" ", "")
     if not re.fullmatch(r"[1-4]\+[0-4]", plain):
@@ -75,7 +75,7 @@ class Site(BaseModel):
 class CrossSection(BaseModel):
     """The lanes, shoulders and banked bends of roads that have no Profile of their own.
 
-    It does not depend on a road's length; ``profile`` makes the Profile of one road from it.
+    A CrossSection is the same for roads of all lengths; ``profile`` makes the Profile of one road from it.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -171,7 +171,7 @@ FIELDS = {
 }
 """The fields of a World in the order in which files list them, each with the part that it belongs to."""
 KEYS = {"shoulder": "verge"}
-"""The fields that have another name in files, with that name."""
+"""The fields that have another name in files, each with its name in files."""
 EARLIER = {key: name for name, key in KEYS.items()}
 
 

@@ -85,7 +85,9 @@ def perform(
         BriefError: the words cannot be read.
         DesignError: nothing could be designed.
         ChatError: a language model could not be reached, or gave no usable answer.
-        UsageError: a plug-in is not installed, or the driver's file does not define a driver.
+        UsageError: a plug-in is not installed, the driver's file does not define a driver, or the simulator
+            cannot apply a setting of the world.
+        DriverError: the driver hung while it was created.
     """
     check_parts(setup, world)
     begun = time.perf_counter()
@@ -157,7 +159,9 @@ def prove(
             driven.
 
     Raises:
-        UsageError: a plug-in is not installed, or the driver's file does not define a driver.
+        UsageError: a plug-in is not installed, the driver's file does not define a driver, the simulator
+            cannot apply a setting of the world, or no road can be built from the design.
+        DriverError: the driver hung while it was created.
     """
     world = world.on_surface_of(brief)
     check_parts(setup, world)

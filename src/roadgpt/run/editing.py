@@ -69,7 +69,7 @@ def original_of(run: Run, path: str) -> Original:
 
 
 def reject_used(out: Path) -> None:
-    """Raises UsageError if the folder is not empty."""
+    """Raises UsageError if ``out`` is a folder that is not empty."""
     if out.is_dir() and any(out.iterdir()):
         raise UsageError(f"{out} is not empty; a changed road goes into a new folder: name another one")
 

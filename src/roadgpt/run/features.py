@@ -1,5 +1,4 @@
-"""Computes the features that are the axes of the SBFT competition's feature map of tests: two features of the
-road, and three of the drive.
+"""Computes the features by which the SBFT competition maps tests: two of the road and three of the drive.
 
     MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last triple is left out
     DIR_COV    share of 25 bins, from 0 to 360 degrees, that contain a direction of the road (angle to north)
@@ -56,8 +55,9 @@ def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> 
 
 
 def max_curvature(plan: NDArray[np.float64]) -> float:
-    """Returns the largest curvature of points ``(n, 2)``, in 1/m; 0 for collinear or fewer than six
-    points."""
+    """Returns the largest curvature in 1/m of a line of points ``(n, 2)``; 0 if the points are collinear or
+    fewer than six.
+    """
     return float((1 / radii(plan)).max(initial=0.0))
 
 

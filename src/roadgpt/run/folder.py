@@ -5,7 +5,8 @@ campaign/
   runs/0001/
     brief.json design.json road.json drive.npz verdict.json    the Run's values, each in its own format
     run.json               outcome, findings, seed, versions, and the full request
-    seconds.json           wall-clock times: the only file that differs when a Run is repeated
+    seconds.json           wall-clock times; they differ when a Run is repeated, as do the times in run.json
+                           if a language model was used; no other content differs
     error.txt              the traceback, if a simulator or driver failed
     *.png                  the pictures
 """
@@ -69,8 +70,9 @@ def write_run(run: Run, campaign: Path, draw: Draw | None = None, test: str | No
 
 
 def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path:
-    """Writes the Run's own folder, but no test file, so that the Run does not count as finished yet; returns
-    the folder."""
+    """Writes the Run's own folder and returns it. Without its test file, the Run does not count as finished
+    yet.
+    """
     folder = run_folder(campaign, run.index)
     refuse_links(campaign / RUNS, folder)
     with whole_folder(folder) as draft:
@@ -82,8 +84,9 @@ def write_run_folder(run: Run, campaign: Path, draw: Draw | None = None) -> Path
 
 
 def remove_run(index: int, campaign: Path) -> None:
-    """Removes a Run from a campaign's folder, its test file first, so that the Run counts as unfinished from
-    then on."""
+    """Removes a Run from a campaign's folder. The test file is removed first; from then on, the Run counts as
+    unfinished. Nothing happens if there is no such Run.
+    """
     (campaign / test_name(index)).unlink(missing_ok=True)
     shutil.rmtree(run_folder(campaign, index), ignore_errors=True)
 
@@ -136,15 +139,18 @@ def finished(campaign: Path) -> list[int]:
 
 
 def is_run(path: Path) -> bool:
-    """Checks whether a folder holds a Run."""
+    """Returns whether a folder holds a Run."""
     return (path / "run.json").is_file()
 
 
 def read_run(path: Path | str) -> Run:
-    """Reads the Run in a folder, or the Run that a ``test.NNNN.json`` file belongs to.
+    """Reads the Run in a folder.
+
+    Args:
+        path: the Run's own folder, a file in this folder, or the Run's ``test.NNNN.json``.
 
     Raises:
-        UsageError: there is no Run, or one of its files cannot be read.
+        UsageError: there is no Run, one of its files cannot be read, or another version of RoadGPT wrote it.
     """
     folder = _folder_of(Path(path))
     card = _loaded(folder / "run.json")

@@ -1,4 +1,4 @@
-"""Defines the Run, which holds everything about one road from words to verdict, and its Request."""
+"""Defines the Run, which holds everything about one road from words to verdict, and the Run's Request."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -31,6 +31,7 @@ class Setup(Frozen):
     simulator: str = "mujoco"
     geometry: Geometry = "arcs"
     keep_driving: bool = False
+    """Whether a drive goes on after the car has left its lane."""
     drives: bool = True
     """Whether roads are driven; if False, they are only designed and checked."""
     chat: ChatSettings | None = None
@@ -51,8 +52,7 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """A request for roads; it does not include how many roads to make. The same Request gives the same
-    files."""
+    """A request for roads, without their number. The same Request gives the same files, except for times."""
 
     words: str = ""
     """The description; empty if the roads were not made from words."""
@@ -76,7 +76,9 @@ class Request(Frozen):
 
 @dataclass(frozen=True)
 class Seconds:
-    """Wall-clock times; the only part of a Run that differs when the Run is repeated."""
+    """Wall-clock times. They differ when a Run is repeated; if a language model was used, the times in
+    ``Run.designing`` and ``Run.spent`` differ, too.
+    """
 
     design: float = 0.0
     """Seconds of reading, designing and checking."""
@@ -91,8 +93,7 @@ class Seconds:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Everything about one road from words to verdict. The values of stages that were not reached are
-    None."""
+    """Everything about one road from words to verdict. Results of stages that were not reached are None."""
 
     request: Request
     index: int

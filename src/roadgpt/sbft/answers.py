@@ -47,7 +47,8 @@ def nodes(points: Any) -> Points:
     metres.
 
     Raises:
-        UsageError: there is no spline through the points.
+        UsageError: a coordinate is not finite, the road is longer than 50 km, or there is no spline through
+            the points.
     """
     table = np.asarray(points, float)[:, :2]
     if not np.isfinite(table).all():
@@ -91,8 +92,12 @@ _ASKED: list[tuple[Any, Iterator[Any]]] = []
 
 
 def begin(map_size: int | None = None, **asked: Any) -> None:
-    """Starts a sequence of roads for a description. ``asked`` holds the description and other settings;
-    environment variables override them.
+    """Starts a sequence of roads for a description; ``another`` then returns the roads.
+
+    Args:
+        map_size: side length of the square map, metres; None: 200 m.
+        asked: attributes of RoadGPTTestGenerator, such as the description; environment variables override
+            them.
 
     Raises:
         UsageError: a setting is unknown or invalid.
@@ -124,7 +129,9 @@ def another() -> Points:
 
 
 def tell(outcome: str, steering: list[float], distances: list[float]) -> None:
-    """Reports the outcome of the last road that was asked for, with two columns of its execution data."""
+    """Reports the outcome of the last road that ``another`` returned, as ``tell_columns`` of
+    RoadGPTTestGenerator does. Has no effect before ``begin``.
+    """
     if _ASKED:
         _ASKED[0][0].tell_columns(outcome, steering, distances)
 

@@ -52,11 +52,21 @@ class RoadGPTTestGenerator:
     """Whether outcomes steer the choice of roads. Without a search, or with another designer than
     ``planner``, roads are drafted one after another."""
     oob_tolerance: float | None = None
-    """Share of the car, 0 to 1, that may be outside its lane; None: that of the executor, if it tells it."""
+    """Share of the car, 0 to 1, that may be outside its lane; None: the executor's ``oob_tolerance``, or the
+    World's default if the executor has none.
+    """
 
     def __init__(self, executor: Any = None, map_size: int | None = None) -> None:
         """Takes the arguments that the competition passes. Environment variables take precedence over class
-        attributes."""
+        attributes.
+
+        Args:
+            executor: the competition's executor, which drives the roads; None if only ``roads`` is used.
+            map_size: side length of the square map, metres; None: 200 m.
+
+        Raises:
+            UsageError: the environment variable ROADGPT_SEED or ROADGPT_SEARCH has an invalid value.
+        """
         self.executor = executor
         self.map_size = map_size or MAP_SIZE
         self.description = os.environ.get("ROADGPT_DESCRIPTION", self.description)
@@ -73,7 +83,8 @@ class RoadGPTTestGenerator:
 
         Raises:
             BriefError: the description cannot be read, or demands something that the map does not allow.
-            DesignError: no road can be designed.
+            DesignError: no valid road was found in 20 attempts in a row.
+            ChatError: a language model cannot be used, or its answers are not usable.
         """
         create: Callable[[Points], Any] = import_module(
             "code_pipeline.tests_generation"
@@ -96,7 +107,13 @@ class RoadGPTTestGenerator:
         self.tell_columns(outcome, steering, [float(record.oob_distance) for record in records or ()])
 
     def tell_columns(self, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
-        """Reports the outcome of the last road as ``tell`` does; ``distances`` holds ``oob_distance``."""
+        """Reports the outcome of the last road as ``tell`` does, with the records as two columns.
+
+        Args:
+            outcome: as for ``tell``.
+            steering: angle of the steering wheel in each record, degrees.
+            distances: ``oob_distance`` of each record, metres.
+        """
         self._told(outcome, steering, distances)
 
     def roads(self) -> Iterator[Points]:
@@ -104,7 +121,7 @@ class RoadGPTTestGenerator:
         there are at most 500 per road, and every road is valid in the competition.
 
         Raises:
-            BriefError, DesignError: as for ``start``.
+            BriefError, DesignError, ChatError: as for ``start``.
         """
         world = World(site=Site(map_size=float(self.map_size)))
         setup = Setup(reader=self.reader, designer=self.designer, drives=False, chat=_chat(self))

@@ -1,4 +1,4 @@
-"""The search of a campaign, asked for one road at a time; the outcomes may come from another simulator."""
+"""Runs the search of a campaign one road at a time; the outcomes may come from another simulator."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -15,8 +15,8 @@ from roadgpt.road import Design, Road, World, build
 from roadgpt.run import Request, Setup
 from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
 
-KEPT = 100  # tests whose outcomes are waited for
-CAR_WIDTH = 2.0  # m, of a usual car, from which the margin of a drive is estimated
+KEPT = 100  # latest tests whose outcomes are still accepted
+CAR_WIDTH = 2.0  # m, width of a typical car, with which the margin of a drive is estimated
 
 T = TypeVar("T")
 U = TypeVar("U")
@@ -33,18 +33,21 @@ class HerePool:
 class RoadSearch:
     """Searches for roads on which a car fails: ``ask`` returns a road, and ``tell`` receives its outcome.
 
-    A road whose outcome is never told teaches nothing, and does no harm.
+    The search ignores each road whose outcome is never reported.
     """
 
     def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
-        """Begins a search inside a description.
+        """Begins a search among the roads that meet a description.
 
         Args:
-            brief: the requirements that every road keeps.
+            brief: the requirements that every road satisfies.
             words: the description.
             seed: seed of the search.
-            world: the map, and the tolerance with which a drive fails.
-            setup: the rules that every road keeps.
+            world: the map, and the share of the car outside its lane above which a drive fails.
+            setup: the rules that every road satisfies.
+
+        Raises:
+            UsageError: a search cannot make such roads, for example because they have junctions.
         """
         request = Request(words=words, seed=seed, world=world, setup=setup)
         self._cell = Cell("c01", request, brief, "quality_diversity", "failures")
@@ -89,7 +92,8 @@ class RoadSearch:
 
         Args:
             number: the number that ``ask`` returned; unknown numbers are ignored.
-            outcome: "PASS" or "FAIL"; after anything else the test teaches nothing.
+            outcome: "PASS" or "FAIL"; tests with another outcome, or with fewer than three records, are
+                ignored.
             steering: angle of the steering wheel in degrees at each record of the drive.
             distances: distance in metres from the car's middle to the edge of its lane at each record,
                 negative outside (``oob_distance`` of the competition).

@@ -8,12 +8,12 @@ IncidentKind = Literal["out of lane", "wrong turn", "wrong way", "off road", "st
 
 @dataclass(frozen=True)
 class Incident:
-    """One thing that the car did wrong, where it began."""
+    """One thing that the car did wrong, with the place and the time at which it began."""
 
     kind: IncidentKind
     at_s: float
     """Station of the car's centre of gravity in metres."""
     at_xy: tuple[float, float]
-    """Position of the car's centre of gravity in metres."""
+    """Position (x, y) of the car's centre of gravity in metres."""
     at_time: float
-    """Seconds since the start."""
+    """Time in seconds since the start of the drive."""

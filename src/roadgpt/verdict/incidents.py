@@ -2,17 +2,18 @@
 
 The kinds of incidents:
 
-- out of lane: as the oracle defines it; inside a junction the lane is that of the route's connecting road;
-- wrong turn: more than 90 % of the car is outside its lane; its middle is beside the route's own road, on
-  another road or another way through the junction; and it heads along that one;
-- wrong way: the car is on its road and its heading differs by more than 90 degrees from that of the route,
-  for 1 s or longer;
+- out of lane: as in ``verdict.oracle``; inside a junction, the lane is that of the route's connecting road;
+- wrong turn: more than 90 % of the car is outside its lane; its centre of gravity is beside the road of the
+  route and on another road; and its heading is within 30 degrees of the direction of that other road;
+- wrong way: the car's centre of gravity is on the road of the route, and its heading differs by more than 90
+  degrees from that of the route, for 1 s or longer;
 - off road: the outer edge of a tyre is outside the paved area of the network;
-- stop line: the front of the car crosses the line at a stop sign, and the car never stood still (0.1 m/s)
-  within the last 4 m.
+- stop line: the front of the car crosses the line at a stop sign, and the car never stood still (below 0.1
+  m/s) while its front was within the last 4 m before the line.
 
-Sources: CARLA leaderboard and scenario_runner, for the stop sign; the others are like its criteria, with
-sharper limits. An incident lasts from the first step at which its condition holds to the last one in a row.
+The rule for stop signs is that of CARLA (leaderboard and scenario_runner). The other kinds resemble CARLA's
+criteria, with stricter limits. An incident begins at the first step at which its condition holds, and ends
+when the condition no longer holds.
 """
 
 import math
@@ -35,7 +36,7 @@ BoolArray = NDArray[np.bool_]
 
 GONE = 0.9  # share of the car outside its lane; a car that slides wide and comes back took no wrong turn
 ALONG = math.radians(30.0)  # between the heading of the car and that of a wrong road on which it drives
-BACKWARDS = math.radians(90.0)  # from the heading of the route
+BACKWARDS = math.radians(90.0)  # between the heading of the car and that of the route
 PATIENCE = 1.0  # s of driving the wrong way
 STOOD = 0.1  # m/s
 STOP_WITHIN = 4.0  # m before the line
@@ -44,7 +45,7 @@ STEP = 1.0  # m, between points at which the heading of other roads is known
 
 
 def incidents_of(road: "Road", drive: "Drive", world: "World") -> tuple[Incident, ...] | None:
-    """Returns what the car did wrong, in the order of time; None on a single road."""
+    """Returns what the car did wrong, in order of time; None if the road is not a Route."""
     if not isinstance(road, Route):
         return None
     found: list[tuple[int, IncidentKind]] = [
@@ -66,7 +67,10 @@ def incidents_of(road: "Road", drive: "Drive", world: "World") -> tuple[Incident
 
 
 def begins(holds: BoolArray) -> list[int]:
-    """Returns the steps at which a condition, shape ``(n,)``, begins to hold."""
+    """Returns the indices of the steps at which a condition begins to hold.
+
+    ``holds`` says for each step whether the condition holds, shape ``(n,)``.
+    """
     steps = np.flatnonzero(holds & ~np.concatenate([[False], holds[:-1]]))
     return [int(step) for step in steps]
 
@@ -118,9 +122,10 @@ def _is_backwards(route: Route, drive: "Drive") -> BoolArray:
 
 
 def wheels(drive: "Drive") -> FloatArray:
-    """Returns the outer edges of the four tyres in plan at every step, in metres, shape ``(n, 4, 2)``.
+    """Returns the points (x, y) of the outer edges of the four tyres at every step, in metres, ``(n, 4, 2)``.
 
-    The rear axle is taken to be as far behind the middle of the car as the front axle is ahead of it.
+    The order is front left, front right, rear right, rear left. The rear axle is assumed to be as far
+    behind the middle of the car as the front axle is ahead of the middle.
     """
     box = drive.car
     front, side = box.axle, box.tyres / 2

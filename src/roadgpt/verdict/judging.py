@@ -32,10 +32,10 @@ INCIDENTS: dict[str, str] = {
     "stop line": "no stop at a stop sign",
 }
 
-LEAST = 0.005  # m; a smaller distance beyond a marking is not stated
+LEAST = 0.005  # m; smaller distances beyond a marking are not stated
 
-# The competition's own words, to which it adds the name of the simulation. To the competition, a car that
-# falls has left the lane. It has no stop signs.
+# The competition's own words, to which it adds the name of the simulation. For the competition, a car that
+# falls has left the lane. The competition has no stop signs.
 SBFT: dict[Cause | None, str] = {
     None: "Successful test",
     "out of lane": "Car drove out of the lane",
@@ -48,7 +48,7 @@ SBFT: dict[Cause | None, str] = {
 }
 
 FAILING: tuple[Cause, ...] = ("wrong turn", "wrong way", "stop line")
-"""The incidents that fail a test in which nothing else failed. A tyre off the road does not."""
+"""The incidents that fail a test if nothing else failed. A tyre off the road fails no test."""
 
 
 def judge(
@@ -63,7 +63,7 @@ def judge(
 
     On a route through junctions, ``incidents`` lists what the car did wrong, as defined in
     ``roadgpt.verdict.incidents``. If the car kept its lane up to the goal, the first wrong turn, wrong way or
-    missed stop is the failure. A tyre off the road is counted and fails no test, as on a single road.
+    missed stop is the failure. A tyre off the road is counted but fails no test.
 
     Args:
         road: The road.
@@ -135,7 +135,7 @@ def _first_failure(road: "Road", drive: "Drive", world: "World") -> tuple[int, C
 
 
 def _first_of(incidents: Sequence[Incident], drive: "Drive", step: int) -> tuple[int, Cause | None]:
-    """Returns step and cause of the first incident that fails a test; ``step`` and None if there is none."""
+    """Returns the step and the cause of the first failing incident; ``step`` and None if there is none."""
     for each in incidents:
         for cause in FAILING:
             if each.kind == cause:

@@ -19,7 +19,10 @@ Side = Literal["left", "right"]
 
 @dataclass(frozen=True)
 class Verdict:
-    """The result of one drive. Positions are those of the car's centre of gravity where it first failed."""
+    """The result of one drive.
+
+    The place of a failure is that of the car's centre of gravity at the first failure.
+    """
 
     __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid", allow_inf_nan=False)
 
@@ -27,7 +30,7 @@ class Verdict:
     cause: Cause | None
     """Cause of the failure; None if the car kept its lane and reached the goal.
 
-    "wrong turn", "wrong way" and "stop line" occur on routes through junctions only, if nothing else failed.
+    "wrong turn", "wrong way" and "stop line" occur only on routes through junctions, if nothing else failed.
     """
     description: str
     """The result of the drive in one sentence."""
@@ -49,9 +52,9 @@ class Verdict:
     beyond: float | None = None
     """Largest distance in metres by which the car's body extended beyond a marking of its lane.
 
-    The distance is measured from the outer edge of the centre line or edge line, over the same steps as
-    ``max_oob``; it is 0 if the car never extended beyond them. It is None if the verdict was read from a file
-    of an older version and the drive is missing.
+    The distance is measured from the outer edge of the marking, over the same steps as ``max_oob``; it is 0
+    if the car never extended beyond a marking. The field is None if the verdict was read from a file of an
+    older version and the drive is missing.
     """
     at_s: float | None = None
     """Station in metres where the car failed; None if it kept its lane."""
@@ -62,19 +65,19 @@ class Verdict:
     side: Side | None = None
     """The side on which the car left its lane or fell; None for other results."""
     incidents: tuple[Incident, ...] | None = None
-    """What the car did wrong on a route through junctions, in the order of time; None on a single road.
+    """What the car did wrong on a route through junctions, in order of time; None on a single road.
 
-    It is given for a drive that passed, too: a tyre off the road fails no test.
+    A drive that passed may have incidents, too, because a tyre off the road fails no test.
     """
 
     @property
     def counts(self) -> dict[str, int]:
-        """How often each kind of incident occurred, for the kinds that did."""
+        """The number of incidents of each kind that occurred; empty if there were none."""
         return dict(Counter(each.kind for each in self.incidents or ()))
 
     @property
     def severity(self) -> Severity:
-        """How far outside its lane the car was, as a grade that does not depend on whether it passed."""
+        """How far outside its lane the car was, as a grade that follows from ``max_oob`` alone."""
         return severity(self.max_oob)
 
     @property
@@ -97,7 +100,7 @@ class Verdict:
 
     @classmethod
     def from_json(cls, data: Mapping[str, Any]) -> Self:
-        """Converts the result of ``to_json`` back to a Verdict.
+        """Returns the Verdict from the result of ``to_json``.
 
         Raises:
             UsageError: a field is missing or unknown, or its value is invalid.

@@ -1,8 +1,8 @@
 """Changes the curvature and the grade of a road piece by piece, and builds the changed road.
 
 A road is sampled every half metre. A change makes some samples longer or shorter and changes their curvature
-or grade; everything behind them moves along. The result is built for one drive: it may leave the map or meet
-itself.
+or grade; the road after these samples moves accordingly. The changed road is built for one drive only, so it
+may leave the map or overlap itself.
 """
 
 from dataclasses import dataclass, replace
@@ -51,14 +51,18 @@ class Alignment:
         return np.cumsum(self.steps)
 
     def bends(self) -> list[Bend]:
-        """Returns the bends in order: the longest pieces that bend to one side all along."""
+        """Returns the bends in driving order. A bend is a longest possible sequence of samples that all curve
+        to the same side, with a radius below 250 m.
+        """
         side = np.where(np.abs(self.curvature) > STRAIGHT, np.sign(self.curvature), 0.0)
         edges = [0, *(np.flatnonzero(np.diff(side)) + 1), len(side)]
         pieces = pairwise(edges)
         return [Bend(int(first), int(end) - 1) for first, end in pieces if side[first]]
 
     def widened(self, bend: Bend, factor: float) -> Self:
-        """Multiplies the radius and the length of a bend, so that it turns as many degrees as before."""
+        """Returns a copy in which the radius and the length of a bend are multiplied by ``factor``, so that
+        the bend turns as many degrees as before.
+        """
         within = slice(bend.first, bend.last + 1)
         steps, curvature = self.steps.copy(), self.curvature.copy()
         steps[bend.first + 1 : bend.last + 1] *= factor
@@ -66,14 +70,16 @@ class Alignment:
         return replace(self, steps=steps, curvature=curvature)
 
     def shortened(self, bend: Bend, factor: float) -> Self:
-        """Multiplies the length of a bend at the same radius, so that it turns fewer degrees."""
+        """Returns a copy in which the length of a bend is multiplied by ``factor`` at the same radius. With a
+        factor below 1, the bend turns fewer degrees.
+        """
         steps = self.steps.copy()
         steps[bend.first + 1 : bend.last + 1] *= factor
         return replace(self, steps=steps)
 
     def eased(self, around: Bend, length: float) -> Self:
-        """Makes the curvature change more slowly around a bend: each value becomes the mean over ``length``
-        metres, from ``length`` before the bend to ``length`` behind it.
+        """Returns a copy in which the curvature changes more slowly around a bend: each value is replaced by
+        the mean over ``length`` metres, from ``length`` metres before the bend to ``length`` metres after it.
         """
         count = 2 * round(length / STEP / 2)
         padded = np.pad(self.curvature, count // 2, mode="edge")
@@ -84,7 +90,7 @@ class Alignment:
         return replace(self, curvature=curvature)
 
     def with_straight(self, bend: Bend, length: float) -> Self:
-        """Inserts a straight of ``length`` metres before a bend."""
+        """Returns a copy with a straight of ``length`` metres inserted before a bend."""
         count, at = round(length / STEP), bend.first
         straight = self.curvature.copy()
         straight[at] = 0.0
@@ -96,11 +102,11 @@ class Alignment:
         )
 
     def levelled(self, factor: float) -> Self:
-        """Multiplies all grades."""
+        """Returns a copy in which all grades are multiplied by ``factor``."""
         return replace(self, grade=self.grade * factor)
 
     def road(self, like: Road) -> Road:
-        """Builds the road, beginning at the place, in the direction and at the height of another one."""
+        """Builds the road, with the same start position, start heading and start height as ``like``."""
         x, y = like.plan.at(np.array(0.0))
         bends = self.curvature
         plan = PieceCurve(

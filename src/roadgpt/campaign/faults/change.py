@@ -1,7 +1,7 @@
 """Finds the smallest change that turns a road on which the car passed into one on which it fails.
 
 Delta debugging first finds a set of changed fields from which none can be left out (see ``minimise``).
-Halving then finds the smallest fraction of that change that still makes the car fail.
+Bisection then finds the smallest fraction of that change that still makes the car fail.
 """
 
 from collections.abc import Sequence
@@ -58,6 +58,7 @@ class SmallestChange:
     run: Run
     differences: tuple[Difference, ...]
     drives: int
+    """Number of drives that the search took."""
 
 
 def smallest_change(

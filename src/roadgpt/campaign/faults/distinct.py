@@ -2,8 +2,9 @@
 
 Two failures are alike if their lanes have similar curvature and grade from 30 m before the departure to 30 m
 after it. The lanes are aligned at the departures; the comparison allows a shift of up to 8 m. Clusters grow
-by complete linkage, so any two failures of one cluster are alike. Each cluster is a group of similar
-failures; several groups may be one fault, see ``told_apart``.
+by complete linkage, so any two failures of one cluster are alike; ``groups_of`` describes an exception for
+more than 1000 failures. Each cluster is a group of similar failures; several groups may be one fault, see
+``told_apart``.
 """
 
 from collections.abc import Sequence
@@ -75,9 +76,9 @@ def _smoothed(values: Array) -> Array:
 def distances(one: Surroundings, others: Sequence[Surroundings]) -> Array:
     """Returns the distances from one failure to n others, as an array of shape ``(n,)``.
 
-    A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade. Beyond its ends,
-    a road counts as straight and level. If two failures differ in ``kind``, their distance is infinite.
-    Distances are symmetric.
+    A distance of 1 is an RMS difference of ``BEND`` in curvature, or of ``GRADE`` in grade; the distance is
+    the root of the sum of both squares. Beyond its ends, a road counts as straight and level. If two failures
+    differ in ``kind``, their distance is infinite. Distances are symmetric.
     """
     return np.asarray(between([one], others)[0])
 

@@ -1,4 +1,4 @@
-"""Finds stored failures of a campaign or of runs, and where on its road each occurred; no road is driven."""
+"""Finds the stored failures of a campaign or of runs, and where each failure occurred; no road is driven."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -49,6 +49,8 @@ class Failures:
 
 def failures_of(folder: Path, most: int | None = None, cell: str = "") -> Failures:
     """Returns the failures of a run, of a folder of runs, or of a campaign, cell by cell.
+
+    Failures whose road is not stored, or cannot be built, are counted but not returned.
 
     Args:
         folder: the folder of the run, the runs or the campaign.

@@ -2,7 +2,8 @@
 
 Failures are first grouped by the road around them. Once some failures of each group were driven with small
 changes (``remedy_log``), the groups are joined into faults. Then further failures of each fault are driven
-with the changes, until ``CHECKED`` of them disappeared; the groups are joined anew with what these show.
+with the changes, until ``CHECKED`` of them have disappeared; each time, the groups are joined again, with the
+new results.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -27,7 +28,7 @@ GROUPED = (
     "bends and climbs alike from 30 m before the place to 30 m after it. Several groups may be one fault."
 )
 SENTENCES = {remedy.name: remedy.sentence for remedy in REMEDIES}
-MOST_FIRST = 8  # failures of a group that are tested before groups are joined; of n failures 1 + n // 4
+MOST_FIRST = 8  # of a group of n, 1 + n // 4 failures but at most so many are tested before groups are joined
 CHECKED = 12  # failures of a fault, besides those tested first, that must disappear when tested
 AT_A_TIME = 4  # failures of a fault that are tested before its groups are joined anew
 MOST_WAYS = 3  # ways of failing that a headline names
@@ -46,12 +47,13 @@ class Fault:
     """A fault, or a group of similar failures that belongs to no fault or was not tested."""
 
     number: int
-    """Number, from 1; the faults come before the groups, and the one with the most failures first."""
+    """Number, from 1. Faults come before groups; in both, those with the most failures come first."""
     members: tuple[LocatedFailure, ...]
-    """All failures of the fault, in the order of their tests."""
+    """All failures of the fault or group, in the order of their tests."""
     typical: tuple[LocatedFailure, ...]
-    """A few typical failures of the fault, starting with the one that is nearest to all others of the largest
-    group."""
+    """Up to three typical failures, the most typical one of the largest group first; see
+    ``distinct.typical``.
+    """
     remedy: str | None = None
     """Name of the small change that removes the failures; None if this is a group, not a fault."""
     tested_first: tuple[LocatedFailure, ...] = ()
@@ -78,9 +80,9 @@ class Faults:
     them: tuple[Fault, ...]
     """First the faults, then the groups."""
     is_tested: bool
-    """Whether small changes were tried on enough failures; otherwise all are groups."""
+    """Whether small changes were tried on enough failures; if not, ``them`` holds only groups."""
     to_test: tuple[LocatedFailure, ...]
-    """Failures to be driven with small changes next; empty if enough were."""
+    """Failures to be driven with small changes next; empty if enough failures were tested."""
     failures: int
     """Number of all failures in the folder, or in the cell that was chosen."""
     compared: int
@@ -159,7 +161,8 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
     Args:
         folder: the folder of the run, the runs or the campaign.
         most: maximum number of failures to compare, evenly spread over all; None: all failures. If small
-            changes were tried on failures of the folder, all are compared: a sample has other groups.
+            changes were tried on failures of the folder, ``most`` is ignored, because the stored results
+            belong to the groups of all failures.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:

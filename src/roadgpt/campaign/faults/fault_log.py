@@ -46,7 +46,7 @@ class FailureDrawing(Protocol):
     """A function that writes a picture of a failure to a file, such as ``report.fault.draw_fault``."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
-        """Writes a picture."""
+        """Writes a picture of a failing Run to ``path``, with ``more`` as an additional sentence."""
         ...
 
 

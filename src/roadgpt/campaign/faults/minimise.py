@@ -1,8 +1,8 @@
 """Simplifies a road on which the car fails; the cause and the side of the failure stay the same.
 
 The method is delta debugging: A. Zeller and R. Hildebrandt, Simplifying and Isolating Failure-Inducing Input,
-IEEE Transactions on Software Engineering 28 (2002). The simplified road is 1-minimal: any single further
-simplification makes the failure disappear.
+IEEE Transactions on Software Engineering 28 (2002). Unless the drives run out, the simplified road is
+1-minimal: any single further simplification makes the failure disappear.
 """
 
 from collections.abc import Sequence
@@ -45,7 +45,10 @@ class Simplest:
 
 
 class Trial:
-    """Drives simplified versions of one failing road, each at most once, and counts the drives."""
+    """Drives simplified versions of one failing road, each at most once, and counts the drives.
+
+    The constructor raises UsageError if the Run did not fail or has no Design.
+    """
 
     def __init__(self, failure: Run, brief: Brief | None, most: int) -> None:
         if failure.verdict is None or failure.verdict.kept or failure.plain_design is None:
@@ -62,7 +65,7 @@ class Trial:
 
     def fails(self, design: Design | None) -> Run | None:
         """Drives a road and returns its Run if the road is valid and the car fails on it as in the
-        original failure (same cause and side); else returns None.
+        original failure (same cause and side). Returns None otherwise, or if all drives are used up.
         """
         if design is None:
             return None
@@ -102,7 +105,7 @@ def _moved(design: Design, failure: Run) -> list[Design]:
 
 
 def simplest(failure: Run, brief: Brief | None = None, most: int = MOST_DRIVES) -> Simplest:
-    """Finds the simplest valid road on which the car fails for the same cause and on the same side.
+    """Simplifies a road such that the car still fails on it for the same cause and to the same side.
 
     Args:
         failure: a failing Run with a Design.

@@ -1,9 +1,9 @@
 """Explains in one sentence why a car left its lane: the bend, the speed and the slope where it happened.
 
 The friction coefficient that a bend requires is v^2 k / (g cos(grade) + v^2 c), with the speed v, the
-curvature k, and the vertical curvature c (negative on a crest). R. Rajamani, Vehicle Dynamics and Control,
-2nd ed., 2.6. Superelevation changes numerator and denominator, see ``road.speed_profile``. k is the curvature
-of the middle of the driven lane, not of the centre line.
+curvature k, and the vertical curvature c (negative on a crest); source: R. Rajamani, Vehicle Dynamics and
+Control, 2nd ed., 2.6. Superelevation changes numerator and denominator, see ``road.speed_profile``. k is the
+curvature of the middle of the driven lane, not of the centre line.
 """
 
 import math
@@ -29,8 +29,8 @@ GRAVITY = 9.81  # m/s^2
 BEFORE, AFTER = 25.0, 5.0  # m before and after the departure, where the bend is looked for
 ENTRY = 0.5  # share of a bend's curvature at which it begins
 JUST_BEFORE = 25.0  # m; if a bend to the other side was this near, a sentence names both
-HILL = 0.02  # of gravity that a crest takes or a dip adds, below which it is not mentioned
-SLOPE = 0.03  # of grade, likewise
+HILL = 0.02  # fraction of g that a crest takes or a dip adds; crests and dips below it are not mentioned
+SLOPE = 0.03  # grade as a ratio; grades below it are not mentioned
 
 
 class Manner(NamedTuple):
@@ -38,9 +38,11 @@ class Manner(NamedTuple):
 
     way: Way
     side: Literal["left", "right"] | None
-    """The side to which the road bends; None if the road is straight there."""
+    """The side to which the road bends; None if the road is straight there, or if the car stopped or was too
+    late.
+    """
     radius: float | None
-    """Smallest radius of the bend's centre line, metres; None if the road is straight there."""
+    """Smallest radius of the bend's centre line, metres; None if ``side`` is None."""
 
 
 @dataclass(frozen=True)
@@ -51,14 +53,18 @@ class FailureReason:
     sentence: str
     station: float
     radius: float | None
-    """Smallest radius of the bend's centre line, metres; None if the road is straight there."""
+    """Smallest radius of the bend's centre line, metres; None if ``side`` is None."""
     side: Literal["left", "right"] | None
-    """The side to which the road bends; None if the road is straight there."""
+    """The side to which the road bends; None if the road is straight there, or if the car stopped or was too
+    late.
+    """
     entered: float
-    """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier."""
+    """Speed, m/s, where the bend begins, or where the car left its lane if that was earlier; the last speed
+    if the car stopped or was too late.
+    """
     needed: float
-    """Largest friction coefficient required to follow the middle of the lane at the speeds driven; on
-    level ground, 0.93 means a lateral acceleration of 0.93 g.
+    """Largest friction coefficient required to follow the middle of the lane at the speeds driven; 0 if the
+    car stopped or was too late. On level ground, 0.93 means a lateral acceleration of 0.93 g.
     """
     friction: float
     """Friction coefficient of the road."""
@@ -94,8 +100,9 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
 
 
 def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
-    """Returns stations around a departure, the largest curvature of the lane at these stations, and the
-    station of this curvature."""
+    """Returns the stations around a departure, metres; the curvature of the lane where it is largest in
+    magnitude, 1/m, positive to the left; and the station of this curvature, metres.
+    """
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
     bends = lane_curvature(road, world, near)
     tightest = int(np.argmax(np.abs(bends)))

@@ -1,7 +1,7 @@
 """Tries small changes of the road around a failure, and finds which of them make the failure disappear.
 
 Failures that the same small change removes have the same cause, whatever their roads look like elsewhere. A
-failure has disappeared if the car passes the place of the departure by 30 m.
+failure has disappeared if the car passes the test, or fails more than 30 m after the place of the departure.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -18,7 +18,7 @@ from roadgpt.run import Run, prove
 from roadgpt.run.lost_drives import LostDrives
 
 NEAR = 40.0  # m; a bend farther from the failing one, or from the departure, is not changed
-HILLY = 0.01  # largest grade, as a ratio, from which a road counts as not level
+HILLY = 0.01  # as a ratio; a road whose steepest grade is above this is not level
 
 
 class FailurePlace(NamedTuple):
@@ -30,9 +30,11 @@ class FailurePlace(NamedTuple):
     bend: Bend | None
     """The bend at the departure; None if the road is straight there."""
     before: Bend | None
-    """The bend before; None if there is none within 40 m."""
+    """The bend before ``bend``, or before the departure if ``bend`` is None; None if none ends within 40 m
+    before that.
+    """
     after: Bend | None
-    """The bend after; None if none begins within 40 m after the departure."""
+    """The bend after ``bend``; None if none begins within 40 m after the departure."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ def _remedies(percent: int, metres: int, flatter: float, grades: str) -> Iterato
         percent: by how much a radius becomes larger, a bend shorter, and a speed limit lower.
         metres: length of a straight that is inserted, and over which curvature is averaged.
         flatter: factor of the grades.
-        grades: what this makes of them, as text.
+        grades: the size of the changed grades, as text: 'half' or 'no'.
     """
     more, less = 1 + percent / 100, 1 - percent / 100
 
@@ -117,11 +119,12 @@ KINDS = frozenset(remedy.kind for remedy in REMEDIES)
 
 
 def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
-    """Drives a failing Run's road with each change, and returns by name which make the failure disappear.
+    """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
-    Where a small change does so, the larger one of its kind counts as well and is not driven. The value is
-    None if a change does not apply, for example because there is no bend before. A road whose cross-section
-    is its own is changed nowhere, since the cross-section is given by station.
+    If a small change removes the failure, the larger change of the same kind is not driven and counts as
+    removing the failure, too. The value is None if a change does not apply, for example because there is no
+    bend before. No change applies to a road without a Design that has its own cross-section, because that
+    cross-section is given by station.
 
     Args:
         run: the Run of the failing test.

@@ -1,7 +1,7 @@
 """Stores which small changes remove a failure, so that no drive is repeated.
 
-DIR/faults/remedies/c01/0017.json    for each change whether the failure disappears with it; null: the change
-                                     does not apply to the road
+DIR/faults/remedies/c01/0017.json    for each change, whether it removes the failure; null: the change does
+                                     not apply to the road
 
 For a folder of runs, the level c01/ is left out.
 """
@@ -31,10 +31,12 @@ class RemedyTask(NamedTuple):
 
 
 def try_remedies(task: RemedyTask) -> NumberedTest:
-    """Drives the road of a failure with each small change and stores the results, unless they are stored.
+    """Drives the road of a failure with each small change and stores the results, unless they are stored
+    already; returns the name of the test.
 
     Raises:
         UsageError: the run or a stored file cannot be read, or a plug-in is not installed.
+        GivenUpError: the simulator failed three times in a row.
         RoadGPTError: a file cannot be written.
     """
     if stored_remedies(task) is None:

@@ -1,8 +1,8 @@
 """Joins groups of similar failures into distinct faults by the small changes that make them disappear.
 
-A fault is a set of failures that one small change removes, where this change leaves the other faults as they
-are. So two failures of one fault disappear with the same change, and two failures of different faults do not.
-Groups that no such change sets apart from the others belong to no fault.
+A fault is a set of failures that one small change removes, while this change leaves the failures of other
+faults as they are. So two failures of one fault disappear with the same change, and two failures of different
+faults do not. Groups for which there is no such change belong to no fault.
 """
 
 from collections import Counter
@@ -17,13 +17,13 @@ from roadgpt.campaign.faults.remedy import REMEDIES, Removed
 
 Array = NDArray[np.float64]
 
-WITHIN = 0.85  # share of pairs inside a fault that disappear with its change, at least
-JOINS = 0.7  # share of a group's tested failures that disappear with the change of its fault, above this
-ACROSS = 0.2  # share of pairs of two faults that disappear with the change of one of them, at most
+WITHIN = 0.85  # smallest share of the pairs of failures in one fault that its change removes
+JOINS = 0.7  # a group joins a fault if the fault's change removes more than this share of its tested failures
+ACROSS = 0.2  # largest share of the pairs of failures from two faults that the change of either removes
 MOST = 4  # faults of one driver in one world
-FEWEST = 2  # failures of a fault, unless there is but one group: one alone shows nothing about pairs
+FEWEST = 2  # smallest number of failures of a fault, unless there is only one group: one failure has no pairs
 SMALL = len(REMEDIES) // 2  # index of the first of the larger changes
-LARGER = 0.8  # of a failure: small changes say more about the cause
+LARGER = 0.8  # weight of a failure that needs a larger change: small changes say more about the cause
 EPS = 1e-9
 
 
@@ -37,11 +37,12 @@ class TriedGroup(NamedTuple):
 
 
 def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
-    """Returns for each group the name of the change that defines its fault; None if it belongs to no fault.
+    """Returns for each group the name of the change that defines its fault; None if the group belongs to no
+    fault.
 
-    Of all sets of changes whose faults keep to ``WITHIN`` and ``ACROSS``, the one is taken whose faults have
-    the most failures, where a failure that needs a larger change counts 0.8; of equal ones, the one with the
-    fewest and smallest changes.
+    A set of one to four changes is admissible if its faults keep to ``WITHIN``, ``ACROSS`` and ``FEWEST``. Of
+    the admissible sets, the function takes the one whose faults have the most failures; a failure that needs
+    a larger change counts 0.8. Of equal sets, it takes the one with the fewest and smallest changes.
     """
     shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
     best: list[int | None] = [None] * len(groups)

@@ -29,7 +29,7 @@ CROSSED = 0.6  # share of children with two parents; the others have one
 class Genetic:
     """A genetic algorithm with tournaments, crossover and mutation."""
 
-    goals: tuple[Goal, ...] = ("failures", "hardest")  # it compares only margins
+    goals: tuple[Goal, ...] = ("failures", "hardest")  # both need only a comparison of margins
 
     def __init__(self, cell: Cell) -> None:
         """Begins with an empty population.
@@ -42,7 +42,7 @@ class Genetic:
         self._fittest: list[tuple[float, int, Design]] = []
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes children of the fittest roads; proposes random drafts until it has the first results."""
+        """Proposes children of the fittest roads; until the first results arrive, proposes random drafts."""
         rng = batch_rng(self._cell, batch)
         tasks = [self._task(rng) for _ in range(n)]
         return proposals_of(self._cell, first, n, make_candidates(tasks, pool))

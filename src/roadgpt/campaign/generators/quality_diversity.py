@@ -39,8 +39,8 @@ from roadgpt.road import Design
 
 KINDS: tuple[Kind, ...] = ("vary", "cross", "wild")
 OFTEN = (0.7, 0.27, 0.03)  # share of sketches of each kind, once there are results
-OFTEN_AT_BOUNDARY = (0.97, 0.0, 0.03)  # a cross has hardly any relatives
-UNTAUGHT = 12  # sketches for each road as long as there are no results: every one needs a draft
+OFTEN_AT_BOUNDARY = (0.97, 0.0, 0.03)  # a crossover corresponds to hardly any other road (boundary_pairs)
+UNTAUGHT = 12  # sketches for each road as long as there are no results, when every sketch needs a draft
 SPARE = 6  # sketches that are kept for each road to drive, since some violate a requirement or a rule
 FAILED_PARENTS = 0.5  # share of parents drawn from failed elites; the others are drawn from all elites
 BISECTED = 0.6  # share of a batch that lies between two tests, if the goal is the boundary
@@ -49,12 +49,12 @@ CLOSE = 0.05  # distance up to which a pair is near enough (see boundary_pairs.d
 
 
 class QualityDiversity:
-    """A search towards a goal, with a map of elites and a surrogate model."""
+    """A search towards a goal, with one or two maps of elites and a surrogate model."""
 
     goals = GOALS
 
     def __init__(self, cell: Cell) -> None:
-        """Begins with an empty map.
+        """Begins with empty maps.
 
         Raises:
             UsageError: a setting cannot be used.

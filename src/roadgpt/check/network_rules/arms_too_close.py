@@ -1,9 +1,9 @@
 """Requires room for a kerb between neighbouring arms of a junction, and for a car between two junctions.
 
-The kerb is the largest circular arc that touches the edges of both arms no farther from the junction than
-where the arms begin. Its radius must be at least 1 m, the smallest that a design may ask for. Arms of
-different junctions are at least a car's length apart, along the road that joins them or, if no road does, in
-a straight line.
+The kerb is the largest circular arc that is tangent to the edges of both arms at points no farther from the
+junction than where the arms begin. Its radius must be at least 1 m, the smallest that a design may ask for.
+Arms of different junctions must be at least a car's length (4.7 m) apart: along the road that joins them or,
+if no road does, in a straight line.
 """
 
 import math
@@ -23,7 +23,7 @@ ROUNDING = 1e-9  # m
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports neighbouring arms that are too close to each other, and junctions too close to each other."""
+    """Reports each pair of neighbouring arms and each pair of junctions that are too close together."""
     found = []
     for junction in network.junctions:
         arms = junction.arms
@@ -45,7 +45,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 def _room(network: Network, one: Arm, other: Arm) -> float:
     """Returns the radius in metres of the largest kerb that fits between an arm and the next one
-    counter-clockwise; not positive if the arms overlap, infinite if they need no kerb.
+    counter-clockwise; zero or negative if the arms overlap, infinite if they need no kerb.
     """
     (here, width, heading), (there, other_width, other_heading) = (
         _outwards(network, arm.end) for arm in (one, other)
@@ -64,8 +64,8 @@ def _room(network: Network, one: Arm, other: Arm) -> float:
 
 
 def _outwards(network: Network, end: RoadEnd) -> tuple[EndPose, tuple[float, float], float]:
-    """Returns the pose at an end of a road, the offsets of the edges on the left and on the right of one who
-    leaves the junction there, and the heading out of the junction.
+    """Returns the pose at the end of an arm, the offsets in metres of the edges that are on the left and on
+    the right when leaving the junction, and the heading out of the junction in radians.
     """
     pose, member = footprint(network).ends[end], network.road(end.road)
     s = 0.0 if end.contact == "start" else member.road.length

@@ -1,5 +1,6 @@
-"""Requires all roads of a network to stay on or above the ground of the level, as the rule for single roads
-does.
+"""Requires all roads of a network to stay on or above the ground of the level.
+
+The limit is that of the rule ``below_floor`` for single roads.
 """
 
 from roadgpt.check.finding import Finding

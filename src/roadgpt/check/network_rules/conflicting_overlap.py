@@ -1,8 +1,8 @@
 """Requires that roads overlap only inside junctions, whatever their heights.
 
 Carriageways are compared as polygons. Folds and loops of one road are found as in the rule ``no_overlap`` for
-single roads. Connecting roads of one junction may overlap; those of two mouths of one roundabout are checked
-by ``ring_too_small``. Source: as for ``no_overlap``; an overlap outside junctions would be a crossing that no
+single roads. Connecting roads of one junction may overlap; roads of one roundabout are compared by the rule
+``ring_too_small``. Source: as for ``no_overlap``; an overlap outside junctions would be a crossing that no
 connection describes.
 """
 
@@ -15,7 +15,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each two roads or junctions that overlap, and each road that overlaps itself."""
+    """Reports each pair of roads or junctions that overlap, and each road that overlaps itself."""
     shapes, found = footprint(network), []
     worst: dict[tuple[str, str], Overlap] = {}
     for each in shapes.overlaps:

@@ -11,7 +11,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports the first road of which a number is not finite."""
+    """Reports the first road that has a number which is not finite."""
     for member in network.roads:
         if math.isfinite(_sum(member)):
             continue

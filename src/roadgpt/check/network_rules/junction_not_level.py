@@ -1,7 +1,8 @@
 """Requires the roads at a junction to lie in one plane.
 
-Where a connecting road begins or ends, its height is that of the arm within 1 mm. All contacts, and all
-points of the connecting roads, lie within 1 mm of one plane, and grades agree with that plane within 0.1 %.
+Where a connecting road begins or ends, its height must equal that of the arm within 1 mm. All ends of arms
+at the junction and all points of the connecting roads must lie within 1 mm of one plane, and their grades
+must agree with the slope of this plane within 0.1 %.
 Otherwise there would be steps where roads overlap inside a junction.
 """
 
@@ -16,8 +17,8 @@ from roadgpt.geometry import GradeProfile
 from roadgpt.network import Junction, Network, RoadEnd, Route
 from roadgpt.road import World
 
-MOST = 1e-3  # m, of a step
-MOST_GRADE = 1e-3  # ratio, between a road and the plane
+MOST = 1e-3  # m, largest step in height
+MOST_GRADE = 1e-3  # ratio, largest difference between the grades of a road and of the plane
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
@@ -65,8 +66,9 @@ def _unevenness(network: Network, junction: Junction) -> str | None:
 
 
 def _poses(network: Network, junction: Junction) -> list[EndPose]:
-    """Returns the poses of all arms at their contacts, and of all connecting roads at their ends and, unless
-    these are level, inside.
+    """Returns the poses of all arms at the junction and of all connecting roads at their ends.
+
+    For a connecting road that is not level, poses between its ends are included.
     """
     ends = footprint(network).ends
     found = [ends[arm.end] for arm in junction.arms]

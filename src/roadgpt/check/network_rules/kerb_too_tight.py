@@ -1,8 +1,8 @@
 """Requires the kerb between two neighbouring arms of a junction to have a radius of at least 3 m.
 
-The kerb is the right edge of the connecting road by which traffic turns right from one arm to the next (with
-traffic on the left, the left edge of that by which traffic turns left). Its
-smallest radius is measured, which is less than that of an arc with the same ends, because of the clothoids.
+The kerb is the right edge of the connecting road on which traffic turns right from one arm to the next. With
+traffic on the left, it is the left edge of the connecting road on which traffic turns left. The smallest
+radius of the kerb is measured; clothoids make it smaller than the radius of an arc with the same ends.
 Source: Urban Street Design Guide (NACTO, 2013), corner radii: standard curb radii are 10 to 15 ft.
 """
 
@@ -33,8 +33,9 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 
 def _kerbs(network: Network, number: int) -> list[float]:
-    """Returns the smallest radius in metres of each kerb of a junction that bends to the right, in a network
-    with traffic on the right.
+    """Returns the smallest radius in metres of each kerb of a junction; traffic must drive on the right.
+
+    A kerb that never bends to the right is left out.
     """
     junction = network.junction(number)
     ends = [arm.end for arm in junction.arms]

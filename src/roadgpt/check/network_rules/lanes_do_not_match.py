@@ -1,8 +1,8 @@
-"""Requires the lanes of connecting roads to meet those of the arms exactly where they are joined.
+"""Requires the lanes of connecting roads to continue the lanes of the arms without gaps or steps.
 
-Both edges of a lane must be at the same points within 1 mm. This also requires the same width, and the same
-heading within about a milliradian. The lanes that a connection names must exist. Source: OpenDRIVE 1.8, road
-linkage: linked lanes connect without gaps.
+Where two lanes are joined, both of their edges must be at the same points within 1 mm. This also requires the
+same width, and the same heading within about a milliradian. The lanes that a connection names must exist.
+Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps.
 """
 
 from roadgpt.check.finding import Finding
@@ -15,7 +15,7 @@ MOST = 1e-3  # m
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each connection that names a lane that does not exist, or whose lane does not meet an arm's."""
+    """Reports each lane link that names a missing arm or a missing lane, or joins lanes that do not meet."""
     found = []
     for junction in network.junctions:
         for each in junction.connections:

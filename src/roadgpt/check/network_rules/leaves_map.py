@@ -14,7 +14,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each road, junction or roundabout that leaves the map, with the farthest point outside."""
+    """Reports each road, junction or roundabout that leaves the map, with its point farthest outside."""
     size, bounds = world.site.map_size, footprint(network).bounds
     beyond = np.concatenate((SLACK - bounds[:, :2], bounds[:, 2:] - (size - SLACK)), axis=1)
     worst: dict[str, tuple[float, int]] = {}

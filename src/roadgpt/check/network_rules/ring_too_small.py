@@ -1,8 +1,8 @@
 """Requires roundabouts with an outer diameter of at least 13 m, and room between the mouths of their arms.
 
-The diameter is measured on the pieces of the ring: twice the radius of the reference line and the width of
-the lane outside it. Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabouts have
-13 m to 22 m.
+A mouth is the junction at which an arm meets the ring. The diameter is measured on the pieces of the ring: it
+is twice the sum of the radius of the reference line and the width of the lanes outside this line.
+Source: Merkblatt für die Anlage von Kreisverkehren (FGSV, 2006): mini roundabouts have 13 m to 22 m.
 """
 
 import math
@@ -16,7 +16,7 @@ from roadgpt.road import World
 
 LEAST = 13.0  # m, outer diameter
 OVERLAP = 1e-3  # m^2
-ONCE = 1e-6  # rad, by which the pieces of a ring may miss one full turn
+ONCE = 1e-6  # rad, largest deviation of the sum of the turns of a ring's pieces from one full turn
 ROUNDING = 1e-9  # m
 
 
@@ -39,9 +39,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
 
 
 def _diameter(member: NetworkRoad) -> float:
-    """Returns the outer diameter in metres of the tightest bend of a piece of a ring that is driven
-    counter-clockwise.
-    """
+    """Returns the outer diameter in metres of a piece of a ring at its tightest bend to the left."""
     plan = member.road.plan
     assert isinstance(plan, PieceCurve)
     bend = max(max(piece.k0, piece.k1) for piece in plan.pieces)
@@ -50,7 +48,7 @@ def _diameter(member: NetworkRoad) -> float:
 
 
 def _turning(network: Network, ring: Roundabout) -> float:
-    """Returns the angle in radians by which the pieces of the ring, and those in its mouths, turn."""
+    """Returns the angle in radians by which the ring turns in all, including its roads inside the mouths."""
     along = [
         each.road
         for number in ring.junctions
@@ -62,7 +60,7 @@ def _turning(network: Network, ring: Roundabout) -> float:
 
 
 def _overlaps(network: Network, ring: Roundabout) -> bool:
-    """Returns whether two roads of the ring or its mouths overlap that do not belong to the same mouth."""
+    """Returns whether two roads of a roundabout overlap, apart from roads of the same mouth."""
     return any(
         network.roundabout_of.get(each.one.id) is ring
         and network.roundabout_of.get(each.other.id) is ring

@@ -1,7 +1,7 @@
 """Requires crests and dips to cause a vertical acceleration of the car of at most 3 m/s^2.
 
 The limit and the expected speed are those of the rule for single roads. The route is checked as one road, so
-that a car is as fast as the turns at its junctions allow. On other roads a car starts from rest.
+the turns at its junctions limit the speed. On every other road the car starts from rest.
 """
 
 from roadgpt.check.finding import Finding
@@ -14,7 +14,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports the crest or dip of the route, and of each other road, that exceeds its limit most."""
+    """Reports the crest or dip that exceeds its limit most, on the route and on each other road."""
     found = [] if route is None else [*inspect_road(route, None, world)]
     driven = set() if route is None else {leg.road for leg in route.legs}
     for member in network.plain_roads:

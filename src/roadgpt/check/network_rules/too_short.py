@@ -1,7 +1,8 @@
 """Requires a route of more than 20 m, and room for a car on every road outside junctions and roundabouts.
 
-A car starts 2.5 m along the first road of a route and has arrived 8 m before the end of the last one, so that
-these two roads must be longer. The limit of the whole route is that of the SBFT competition.
+A road must be at least as long as the car, 4.7 m. The first road of a route needs 4.85 m, because the middle
+of the car starts 2.5 m along it. The last road needs 8 m, because the car has arrived 8 m before its end. The
+limit for the whole route is that of the SBFT competition.
 """
 
 from roadgpt.check.finding import Finding

@@ -1,7 +1,8 @@
-"""Requires a way into every junction to lead on, and every lane out of a junction to be reached.
+"""Requires a connection from every lane into a junction, and one to every lane out of a junction.
 
 A lane that ends at a junction without a connection would be a trap for traffic, and a lane that no connection
-reaches would stay empty. Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction.
+reaches would stay empty. In a network of several roads, each must meet a junction or another road.
+Source: OpenDRIVE 1.8, junctions: connections describe all ways through a junction.
 """
 
 from roadgpt.check.finding import Finding
@@ -12,7 +13,7 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each lane at a junction without a connection, and each road that meets no junction."""
+    """Reports each lane at a junction without a connection, and each road that joins no junction or road."""
     found = []
     for junction in network.junctions:
         left = {(each.incoming, lane) for each in junction.connections for lane, *_ in each.lanes}

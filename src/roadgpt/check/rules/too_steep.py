@@ -26,9 +26,10 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def steep_place(road: Road, world: World) -> tuple[float, str] | None:
-    """Returns the station in metres where the road is steepest, and what is wrong there.
+    """Returns the station in metres where the road is too steep, and what is wrong there.
 
-    The result is None if the grade satisfies the limit everywhere.
+    The station is the middle of the steepest 10 m or, if their mean grade satisfies the limit, the steepest
+    point. The result is None if both satisfy the limit.
     """
     for (s, grade), over in ((_over_a_window(road), f" over {WINDOW:.0f} m"), (steepest(road), "")):
         if abs(grade) > world.limits.max_grade + ROUNDING:

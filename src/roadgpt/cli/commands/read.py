@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from roadgpt.road import World
 
 FEW = whole(1, 10, "the number of readings")
-LEAST = 0.01  # chance of a reading that is listed
-TEMPERATURE = 1.3  # of readings beside the likeliest one
+LEAST = 0.01  # smallest chance of a reading that is listed
+TEMPERATURE = 1.3  # sampling temperature for the readings after the likeliest one
 
 
 OPTIONS = (

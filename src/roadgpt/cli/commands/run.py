@@ -41,7 +41,9 @@ class RunJob:
     world: "World"
     setup: "Setup"
     seed: int | None = None
+    """The seed; None: the seed stored in ``out`` or, if there is none, a random one."""
     out: Path | None = None
+    """The folder for the runs; None: a new one."""
     axes: "Scale" = "equal"
     pictures: "tuple[Format, ...]" = ("png",)
     """Formats of the pictures of each run; empty: no pictures are drawn."""
@@ -50,7 +52,7 @@ class RunJob:
     junit: Path | None = None
     """The JUnit file to write; None: none is written."""
     route: str = ""
-    """Where the route through a map goes, such as "left,straight"; empty: it is drawn."""
+    """Where the route through a map goes, such as "left,straight"; empty: the route is chosen at random."""
 
 
 OPTIONS = (
@@ -198,8 +200,8 @@ def understood(brief: "Brief", world: "World | None" = None, given: "World | Non
 def all_remarks(brief: "Brief", world: "World | None", given: "World | None") -> tuple[str, ...]:
     """Returns sentences that name what is not built, and how the World differs from what the user gave.
 
-    They also say if the World's friction does not match the surface in the description, or if a motorway does
-    not fit on the World's map. Without a World, neither is checked.
+    The sentences also say if the World's friction does not match the surface in the description, or if a
+    motorway does not fit on the World's map. Without a World, neither is checked.
     """
     from roadgpt.brief import remarks
     from roadgpt.design.room import lane_remarks, map_remark
@@ -260,9 +262,12 @@ def beside(pictures: "tuple[Format, ...]", axes: "Scale", formats: tuple[str, ..
     """Returns a function that adds pictures and road files to the folder of a run; None if neither is wanted.
 
     Args:
-        pictures: Formats of the pictures.
+        pictures: Formats of the pictures; empty: no pictures.
         axes: Axes of the pictures.
-        formats: Formats of the road files.
+        formats: Formats of the road files; empty: no road files.
+
+    Raises:
+        PartError: A format of road files is unknown.
     """
     draw = options.drawing_of(pictures, axes)
     if not formats:

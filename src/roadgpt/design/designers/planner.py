@@ -29,17 +29,20 @@ class Planner:
     def draft(
         self, brief: Brief, world: World, notes: tuple[str, ...], earlier: Sequence[Design], seed: int
     ) -> AnyDesign:
-        """Returns a Design that meets the Brief and is valid; that of a network if the Brief asks for one.
+        """Returns a valid Design that meets the Brief; a NetworkDesign or a MapDesign for a network.
 
         Args:
             brief: the requirements for the road.
             world: size of the map, and limits that the rules check, such as the steepest grade.
             notes: sentences about an earlier draft; only their number matters, as it changes the seed.
-            earlier: designs of the campaign so far; the new one differs from them as far as possible.
+            earlier: designs of the campaign so far; the new one differs from them as far as possible. For
+                networks, they are ignored.
             seed: seed of the random number generator.
 
         Raises:
             DesignError: no draft was accepted; the message says which requirement failed, and what to do.
+            BriefError: a junction cannot meet its requirements.
+            UsageError: the World has lanes or banked bends that a map of roads cannot have.
         """
         rng = np.random.default_rng([seed, len(notes)])
         if brief.is_of_network:

@@ -60,9 +60,10 @@ class BeamngLike:
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
-        edge_room: distance in metres that the right wheels keep from the right edge of the carriageway where
-            there is no shoulder (a floating mesh road). On a one-way road, the left wheels keep the same
-            distance from the left edge. With None the driver ignores the edges and may fall off.
+        edge_room: distance in metres that the outer wheels (right; left with traffic on the left) keep from
+            the outer edge of the carriageway where there is no shoulder (a floating mesh road). On a one-way
+            road, the other wheels keep the same distance from the other edge. With None the driver ignores
+            the edges and may fall off.
         assumed_friction: friction that the driver plans for; None for the friction of the world.
         wheelbase: wheelbase in metres.
     """
@@ -107,16 +108,20 @@ class BeamngLike:
         self._signs = StopSigns(road)
 
     def bend(self, road: "Road", world: "World") -> FloatArray:
-        """Returns the curvature of the lane's middle in 1/m at the stations of the line, smoothed so that
-        short bends vanish."""
+        """Returns the curvature of the lane's middle in 1/m at ``stations(road)``, shape ``(n,)``.
+
+        The curvature is smoothed over 10 m, so that short bends vanish.
+        """
         s = stations(road)
         bend = road.curvature(s)
         stretch = np.maximum(1 - world.profile_of(road).middle(s) * bend, TIGHTEST)
         return _smoothed(bend / stretch, float(s[1]))
 
     def offsets(self, road: "Road", world: "World") -> FloatArray:
-        """Returns the offsets of the planned line at its stations, in metres to the left of the road's centre
-        line."""
+        """Returns the offsets of the planned line at ``stations(road)``, shape ``(n,)``.
+
+        They are in metres to the left of the road's centre line.
+        """
         s, bend, profile = stations(road), self.bend(road, world), world.profile_of(road)
         middle = profile.middle(s)
         cut = self.cut * (world.limits.speed_limit / USUAL) ** self.eagerness

@@ -28,7 +28,7 @@ class LaneCentring:
     """Keeps to the middle of its lane with limited lateral acceleration; knows only what its camera sees.
 
     It stands for the lane centring and the adaptive cruise control of production cars (SAE level 2). It
-    imitates no car in particular, and was compared with none. docs/explanation/drivers.md says where each
+    imitates no particular car, and was not compared with any car. docs/explanation/drivers.md says where each
     value comes from.
 
     The camera sees the middle of the lane up to ``sight`` metres ahead, as far as it lies within ``aside``
@@ -38,8 +38,8 @@ class LaneCentring:
 
     Lane centring is not made for the turns of junctions (comma.ai's openpilot lists intersections among its
     limitations, because its steering torque is limited). So from 50 m before a junction or roundabout until
-    10 m behind it, the person at the wheel drives, as the driver ``reference`` does, and longer if the car is
-    too fast for the bends that the camera sees.
+    10 m behind it, the person at the wheel drives, as the driver ``reference`` does. The person drives on if
+    the car is still too fast for the bends that the camera sees.
 
     Args:
         strength: largest lateral acceleration that the steering gives, in m/s^2.
@@ -100,9 +100,9 @@ class LaneCentring:
         self._waiting: deque[float] = deque()
 
     def steer(self, view: View) -> Command:
-        """Steers for an image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
+        """Steers by the image of ``lag`` seconds ago, and drives as fast as the bends in sight allow.
 
-        Near junctions, returns what the person at the wheel does.
+        Near junctions, the person at the wheel steers and drives instead.
         """
         command = self._centred(view)
         is_near = any(first <= view.s <= last for first, last in self._by_person)

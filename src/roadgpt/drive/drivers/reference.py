@@ -34,9 +34,9 @@ class Reference:
             at 0.3 g.
         slip: slip angle of the rear axle per lateral acceleration, in rad per m/s^2.
         gain: steering angle per lateral error at the point ahead, in rad per metre.
-        ahead: distance in metres to the point ahead while the car is at rest; at speed it is ``ahead +
-            headway * speed``.
-        headway: increase of the distance ``ahead`` with speed, in metres per m/s.
+        ahead: distance in metres to the point ahead while the car is at rest; while the car moves, the
+            distance is ``ahead + headway * speed``.
+        headway: increase of this distance with speed, in metres per m/s.
         lag: steering delay in seconds. The driver steers for the curvature that the car will reach after this
             delay.
     """

@@ -29,7 +29,7 @@ from roadgpt.errors import DriverError, UsageError
 from roadgpt.road import Road, World  # now, and not while the driver's time counts
 
 LOOK = 1.0  # s between two checks that the parent process still exists
-ALONE = 90.0  # s that compiled code may keep Python from running these checks; longer than a driver may take
+ALONE = 90.0  # s without these checks, while compiled code blocks Python; longer than a driver may take
 STATION = View._fields.index("s")
 MOST_SAID, MOST_TRACE = 4_000, 40_000  # characters of an error's message and traceback
 

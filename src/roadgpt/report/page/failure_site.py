@@ -32,17 +32,17 @@ class FailureSite:
     """Markings between the lanes: the points of each, and whether it is a broken line."""
     right: Array
     path: Array
-    """Path of the car's centre up to the failure; empty if there is no drive."""
+    """Path of the car's centre of gravity up to the failure; empty if there is no drive."""
     car: Array | None
-    """Four corners of the car at the failure."""
+    """Four corners of the car at the failure; None if there is no drive."""
     at: Array
     """Position ``(2,)`` of the middle of the driven lane at the station of the failure."""
     heading: float
     """Heading, in radians, of the road shortly before the place of the failure; this direction points up in
     the picture."""
     rings: tuple[Array, ...] = ()
-    """The outlines of the paved area of a network, and of the holes in it; ``left`` and ``right`` are empty
-    then."""
+    """The outlines of the paved area of a network, and of the holes in this area; empty for a road without
+    junctions. For a network, ``left`` and ``right`` are empty instead."""
     arrows: tuple[Array, ...] = ()
     """The outlines of the arrows that are painted before the junctions of a network."""
 
@@ -103,7 +103,9 @@ def _step(drive: Drive, station: float) -> int:
 
 
 def draw_site(of: FailureSite, label: str) -> str:
-    """Returns the picture as SVG, rotated so that the road leads upwards to the failure."""
+    """Returns the picture as SVG, rotated so that the road leads upwards to the failure; ``label`` is for
+    screen readers.
+    """
     turned = np.pi / 2 - of.heading
     turn = np.array([[np.cos(turned), -np.sin(turned)], [np.sin(turned), np.cos(turned)]])
     size = SIDE / ACROSS

@@ -14,12 +14,14 @@ MILLIMETRES, FINE = 3, 5  # digits
 
 
 def road_columns(road: Road, profile: Profile, reach: float | None = None) -> dict[str, Any]:
-    """Returns the geometry of a road at stations, and its cross-section.
+    """Returns the geometry of a road at stations, and its cross-section. Values are in metres and radians;
+    the grade is a ratio.
 
     Args:
         road: The road.
-        profile: Its cross-section.
-        reach: The largest offset in metres of a line beside the road; None for that of the profile.
+        profile: The cross-section of the road.
+        reach: The largest offset, in metres, of any line that is drawn along the road; None: the profile's
+            ``reach``.
 
     Raises:
         UsageError: A number of the road is not finite.
@@ -64,5 +66,5 @@ def _offsets(t: Array) -> float | list[float]:
 
 
 def rounded(values: Array, digits: int) -> list[float]:
-    """Returns numbers with so many digits behind the point."""
+    """Returns the values as a list of numbers rounded to ``digits`` decimals."""
     return [round(float(value), digits) for value in values]

@@ -17,7 +17,7 @@ from roadgpt.road.profile import DASH, GAP, LINE
 from roadgpt.run import Run
 from roadgpt.verdict.severity import MOSTLY, SEVERITIES
 
-MOST_STEPS = 6000  # of a drive; 2 minutes are complete, longer ones are thinned
+MOST_STEPS = 6000  # of a drive; drives of up to 2 minutes are complete, longer drives are thinned
 DRIVE = {
     "time": 3,
     "x": MILLIMETRES,
@@ -39,7 +39,9 @@ WORLD = ("map_size", "friction", "speed_limit", "oob_tolerance", "z_floor")
 
 
 SCALE = {"mostly": MOSTLY, "colours": [SEVERE[name] for name in SEVERITIES[1:]], "failed": VERMILLION}
-"""The colours that show how far the car is outside its lane, and the share from which "mostly" is said."""
+"""The colours that show how far the car is outside its lane, and the share of the car outside from which the
+page says "mostly".
+"""
 
 
 def scene(run: Run) -> dict[str, Any]:

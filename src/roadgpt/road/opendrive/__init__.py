@@ -55,8 +55,9 @@ class ImportedRoad:
     road: Road
     """The road.
 
-    Its ``profile`` is None if the file describes the default cross-section of a World: one lane in each
-    direction, both of the same constant width, with shoulders of equal constant width.
+    Its ``profile`` is None if the file describes a cross-section like the default one of a World: one lane in
+    each direction, both of the same constant width, with shoulders of equal constant width and the default
+    markings.
     """
     id: str
     name: str
@@ -65,8 +66,9 @@ class ImportedRoad:
     shoulder: float
     """Width in metres of the shoulder on the right; the median if it varies."""
     speed_limit: float | None
-    """Speed limit in m/s; None if the file gives no speed limit."""
+    """Speed limit in m/s, limited to 5 to 300 km/h; None if the file gives no speed limit."""
     friction: float | None
+    """Friction coefficient of the driven lane, limited to 0.05 to 2; None if the file gives none."""
     remarks: tuple[str, ...]
     """Sentences about contents of the file that were changed, replaced or left out."""
 
@@ -89,8 +91,8 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
     Args:
         path: The file.
         road: Id of the road. None selects the longest road that has a driving lane and is not part of a
-            junction; if there is none, a road with a driving lane is preferred to others, then a road outside
-            junctions, then the longer one.
+            junction. If there is none, this is the longest road with a driving lane; if no road has one, the
+            longest road outside junctions or, failing that, the longest road.
 
     Raises:
         UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown

@@ -62,7 +62,9 @@ def received(line: bytes) -> Optional[Message]:
 
 
 def plain(value: Any) -> Any:
-    """Converts numbers and arrays of other libraries, such as numpy, to plain Python values."""
+    """Converts numbers and arrays of other libraries, such as numpy, to plain Python values, and any other
+    value to text.
+    """
     listed = getattr(value, "tolist", None)
     return listed() if callable(listed) else str(value)
 
@@ -162,7 +164,9 @@ class RoadGPTTestGenerator:
     designer: Optional[str] = None
     reader: Optional[str] = None
     search: Optional[bool] = None
-    """False: roads are drafted one after another, and outcomes change nothing."""
+    """False: roads are drafted one after another, without regard to outcomes. None: RoadGPT's default, a
+    search.
+    """
     python: Optional[str] = None
     """Path of the interpreter in which RoadGPT is installed; ROADGPT_PYTHON takes precedence."""
 

@@ -13,7 +13,7 @@ from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import StudyPartRecord
 from roadgpt.study.similarity import between
 
-MOST_BETWEEN = 40  # of a part that are compared with those of another one
+MOST_BETWEEN = 40  # roads of a study part that are compared with those of another part
 MOST_NAMED = 50
 MOST_DRAWN = 30  # parts whose distances are drawn
 

@@ -14,7 +14,7 @@ from roadgpt.study.chapters.wording import decimal, row
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord
 
 SHOWN = 3  # pictures of the first section
-SIDE = 3  # roads along each side of one of them
+SIDE = 3  # roads along each side of such a picture
 MOST, MOST_PARTS = 100, 30  # roads in one picture of all roads, and number of such pictures
 CELLS = 25  # along each side of a feature map
 MAPS = (("MAX_CURV", "DIR_COV"), ("STD_SA", "MEAN_LP"))

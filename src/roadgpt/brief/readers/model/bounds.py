@@ -14,7 +14,7 @@ from roadgpt.brief.readers.model.vocabulary import SLOT_TOKENS
 from roadgpt.brief.readers.model.word_set import word_set
 
 Bound = Literal["lo", "hi", "none"]
-"""'lo' is a lower bound, 'hi' an upper bound, 'none' certainly no bound ("60 m or so")."""
+"""'lo' is a lower bound, 'hi' an upper bound; 'none' means certainly no bound ("60 m or so")."""
 KEYS = frozenset(["deg=", "r=", "d=", "len=", "pct=", "steepest="])
 """Plan keys whose bounds are corrected. The climb is left out: downhill it is negative, so
 its lower and upper bounds change places."""
@@ -94,7 +94,7 @@ def _with_bound(amount: Sequence[str], words: list[str]) -> list[str]:
 
 
 def bound_before(words: Sequence[str], at: int) -> Bound | None:
-    """Returns the bound given by the words right before a number ("at least"); None if they give none."""
+    """Returns the bound that the words right before the number at index ``at`` give ("at least"), or None."""
     last = at - 1
     while last >= 0 and words[last] in FILLERS and at - 1 - last < MOST_FILLERS:
         last -= 1
@@ -118,7 +118,10 @@ def _sentence(words: Sequence[str], at: int) -> Sequence[str]:
 
 
 def bound_behind(words: Sequence[str], at: int) -> Bound | None:
-    """Returns the bound given by the words right after a number and its unit ("40 m or more"), or None."""
+    """Returns the bound that the words right after a number and its unit give ("40 m or more"), or None.
+
+    ``at`` is the index of the number.
+    """
     after = [word for word in words[at + 1 : at + 5] if word not in UNITS and not word.startswith("[unused2")]
     if len(after) < 2 or after[0] not in OR:
         return None

@@ -1,4 +1,6 @@
-"""Computes the confidence in a reading from how likely its plan is and how many numbers the plan lacks."""
+"""Computes the confidence in a reading from the probability of its plan and from the numbers of the text that
+the plan lacks.
+"""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -30,19 +32,19 @@ def is_denial(words: str) -> bool:
 
 def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
     """Returns the inputs of the confidence model by name: how likely the plan is, and how many numbers of the
-    text it lacks.
+    text the plan lacks.
     """
     return {**draft.features, "numbers": log1p(len(left_out(draft.tokens, text)))}
 
 
 def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:
-    """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts.
+    """Returns the estimated probability (0 to 1) that a reading is right.
 
-    A reading that ignores a negation gets DOUBT at most.
+    The confidence model was fitted on held-out texts. A reading that ignores a negation gets DOUBT at most.
 
     Args:
-        weights: the weights of the confidence model, and its bias.
-        found: the features of the reading.
+        weights: the weights of the confidence model by the names of the features, and its "bias".
+        found: the features of the reading, as ``features`` returns them.
         unused: the words that the plan does not depend on.
     """
     score = weights["bias"] + sum(weight * found[name] for name, weight in weights.items() if name != "bias")

@@ -10,7 +10,7 @@ keeps this number as its total number of turns. The contradiction is then report
 from collections.abc import Iterator
 from itertools import chain, combinations, pairwise
 
-from roadgpt.brief.model import Amount, Brief, Clause, exactly
+from roadgpt.brief.model import Amount, Brief, Clause, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, turns_of
 from roadgpt.brief.readers.model.nouns import LEFT, RIGHT, TURNS
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -28,7 +28,11 @@ MORE = word_set(
     "more further other others additional else otherwise weiteren weitere weiter anderen sonst autres",
     "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",
 )
-"""Words that limit "no turns" to turns other than the named ones, as in "no further turns"."""
+"""Words with which "no turns" excludes only turns that are not named, as in "no further turns"."""
+MOST = MORE | word_set(
+    "most mostly majority meist meisten mehr mehrzahl mehrheit plupart majorite mayoria maggioranza maggior",
+)
+"""Words with which most turns go to one side, as in "more lefts than rights"."""
 MOST_COUNTS = 8
 """The largest number of counts that are checked: eight counts already have 255 possible sums."""
 
@@ -36,14 +40,14 @@ MOST_COUNTS = 8
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief with its counts corrected to follow from the numbers in the text.
 
-    The counts of a route with junctions stay, because a number may count its turns or its junctions.
+    A route with junctions and a map are returned unchanged, because a number may count turns or junctions.
     """
     if brief.junctions or brief.map is not None:
         return brief
     words = {word.text for word in text.words}
     said = [int(word.text) for word in text.words if word.text.isdecimal() and word.written]
     brief = _without_more(brief, words)
-    sides = _sides_summed(brief, [*said, 1] if words & ONE else said, words)
+    sides = _majority(_sides_summed(brief, [*said, 1] if words & ONE else said, words), said, words)
     return _total_kept(_counts_summed(sides, said, words), text, {*said, 1})
 
 
@@ -70,6 +74,18 @@ def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
     if side == "left":
         return brief.model_copy(update={"left": exactly(number), "right": exactly(turns - number)})
     return brief.model_copy(update={"left": exactly(turns - number), "right": exactly(number)})
+
+
+def _majority(brief: Brief, said: list[int], words: set[str]) -> Brief:
+    """Corrects "at least n turns to one side" to more than half of the turns, if most go there and the words
+    do not give n."""
+    turns, named = _total(brief), (words & LEFT and words & RIGHT) or words & MOST - MORE
+    if turns is None or not words & MOST or not named:
+        return brief
+    for name, side, other in (("left", brief.left, brief.right), ("right", brief.right, brief.left)):
+        if other is None and side and side.hi is None and side.lo not in said and (side.lo or 0) > 1:
+            return brief.model_copy(update={name: at_least(turns // 2 + 1)})
+    return brief
 
 
 def _trusted(

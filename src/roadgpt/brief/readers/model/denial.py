@@ -1,4 +1,4 @@
-"""Whether a phrase of a description is denied, in five languages."""
+"""Finds out whether a phrase of a description is denied, in five languages."""
 
 import re
 
@@ -9,7 +9,9 @@ DENIED = re.compile(
 
 
 def is_denied(before: str) -> bool:
-    """Returns whether a word that denies something stands in the part of a sentence before a phrase.
+    """Returns whether a negation, such as "no" or "without", stands before a phrase.
+
+    The negation counts only if there is no punctuation mark between it and the phrase.
 
     Args:
         before: the text before the phrase, in lower case without accents.
@@ -18,5 +20,8 @@ def is_denied(before: str) -> bool:
 
 
 def says(pattern: re.Pattern[str], said: str) -> bool:
-    """Returns whether a text in lower case without accents has a phrase somewhere that is not denied."""
+    """Returns whether the pattern matches a phrase of the text that is not denied.
+
+    The text ``said`` must be in lower case without accents.
+    """
     return any(not is_denied(said[: found.start()]) for found in pattern.finditer(said))

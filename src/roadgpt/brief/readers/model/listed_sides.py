@@ -39,9 +39,10 @@ def listed_sides(text: SlottedText) -> tuple[str, ...]:
 
 
 def sides_of(brief: Brief) -> tuple[str | None, ...]:
-    """Returns the side of every turn in order; empty if the number of turns is not exact.
+    """Returns the side of every turn in order, None for a turn whose side is open.
 
-    Of a route, the sides to which it leaves its junctions are listed as well.
+    The result is empty if the number of turns is not exact, or if a feature has several turns, such as an
+    S-bend. For a route, the sides to which the route leaves its junctions are also listed.
     """
     if brief.junctions:
         return _along(brief)

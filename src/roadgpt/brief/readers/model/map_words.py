@@ -1,4 +1,6 @@
-"""What words say of maps without a route: that a map is meant, and how many dead ends or blocks it has."""
+"""Finds what words say about a map of roads: whether only a map is wanted, without a route, and how many dead
+ends or blocks the map has.
+"""
 
 import re
 from collections.abc import Sequence
@@ -37,7 +39,7 @@ ACROSS = re.compile(
     r"\b(?:by|across|columns?|rows|mal|auf|spalten?|reihen|colonn\w+|rangees|filas|righe|sur|por|per|"
     r"deep|high|north|south|each|long|len\w*|lang|x)\b"
 )
-"""Words of grids that may have more blocks than the number in the text."""
+"""Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
 SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)strassen?|rues? (?:laterale|secondaire|transversale)s?|"
     r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
@@ -54,12 +56,11 @@ def asks_for_map(text: SlottedText) -> bool:
 
 
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
-    """Returns a map with the numbers of blocks and dead ends that follow from the words; other Briefs as they
-    are.
+    """Returns the Brief of a map with the numbers of blocks and dead ends that follow from the words.
 
-    Of a map of junctions, the number of dead ends follows from that of blocks. A main street with side
-    streets that are dead ends encloses no block. Where the words give several numbers, or a bound, the plan
-    keeps its own.
+    For a map of junctions, the number of dead ends is computed from the number of blocks; a main street
+    whose side streets are dead ends encloses no block. If the words give several numbers, or if the Brief has
+    a bound or a range, the number in the Brief stays. A Brief without a map is returned unchanged.
     """
     asked = brief.map
     if asked is None:
@@ -114,7 +115,7 @@ def _arms(kind: str) -> int | None:
 
 
 def _number(found: Sequence[str]) -> int | None:
-    """Returns the only number that was found; None if there are none or several."""
+    """Returns the number that was found, 0 for "no"; None if no number or several numbers were found."""
     if len(found) != 1:
         return None
     return int(found[0]) if found[0].isdecimal() else int(re.fullmatch(ONE, found[0]) is not None)

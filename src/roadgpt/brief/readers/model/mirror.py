@@ -38,14 +38,14 @@ A_WAY = re.compile(
 )
 """Phrases in which "right" is certainly a side, and "droit" certainly none."""
 ONE_SIDED = re.compile(r"hand traffic|driv\w* on the|(?:links|rechts)verkehr|rechts vor", re.I)
-"""Texts that say on which side of the road to drive."""
+"""Phrases that say on which side of the road to drive."""
 UNSAFE_ON_ROUTES = re.compile(
     r"right[ -]of|right,? (?:before|then|so|ok)|hand (?:traffic|side of the road|drive)|driv\w+ on the|"
     r"rechts (?:vor|hat|haben|kommt|faehrt)|winklig|rechten winkel|verkehr|priorit.{1,3} [aà] (?:la )?dr|"
     r"precedenza a|preferencia (?:a|de)|from the right|von rechts|da destra|desde la derecha|\bde droite",
     re.I,
 )
-"""Texts in which right is not only the other side of left: right of way, traffic on the left."""
+"""Phrases in which left and right must not be swapped, such as right of way or traffic on the left."""
 SIDED = re.compile(r"left|right|link|recht|gauch|droit|izq|derech|destr|sinist", re.I)
 NO_SIDE = re.compile(r"(?:tout|todo) (?:droit|recto)|links?\b(?= (?:two|the|it|both))", re.I)
 IN_PLAN = re.compile(r"\b(?:left|right)(?:\+(?:left|right|straight))+|[a-z_]+")
@@ -55,7 +55,7 @@ MIRRORED_WORDS = {
     "slight_left": "slight_right", "slight_right": "slight_left",
     "left+straight": "right+straight", "right+straight": "left+straight",
 }  # fmt: skip
-"""Words and tokens of plans that name one side, with those for the other side."""
+"""Words and tokens of plans that name one side, each with the word or token for the other side."""
 TOKENS = {
     **{word: other for word, other in MIRRORED_WORDS.items() if word not in ("lefts", "rights")},
     "lefts=": "rights=",
@@ -68,11 +68,11 @@ SIDES_IN_PLAN = re.compile(r"(?<![a-z])(?:(?:sharp|slight)_)?(?:left|right)s?(?!
 
 
 def mirrored(text: str, plan: str) -> tuple[str, str] | None:
-    """Returns text and plan with left and right swapped; None if the plan names neither side, or a word is
-    ambiguous.
+    """Returns text and plan with left and right swapped; None if text or plan names neither side, if the plan
+    asks for traffic on the left, or if a word of the text is ambiguous.
 
-    In a route with junctions every side of the text must be one that a phrase certainly names. A direction
-    beside the number of an exit does not stand in the plan, so such texts are not swapped.
+    For a route with junctions, every word for a side must be certain to mean a side. If the text gives a
+    direction beside the number of an exit, the plan lacks this direction; the result is then None, too.
     """
     named = len(SIDES_IN_PLAN.findall(plan))
     if not named or "left_hand" in plan:

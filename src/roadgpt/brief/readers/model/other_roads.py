@@ -1,4 +1,6 @@
-"""What words say of the roads at a junction that the route does not take, and the network left out."""
+"""Adds to a Brief what the words say about roads at junctions that the route does not take, where the neural
+network left it out.
+"""
 
 import re
 
@@ -18,22 +20,23 @@ ONE_WAY_ONLY = re.compile(
     r"\b(?:solo (?:hay )?|todas las )(?:calles|carreteras) (?:son )?de sentido unico|"
     r"\b(?:solo |tutte le )strade (?:sono )?a senso unico"
 )
-"""All roads are one-way, those that the route does not take as well."""
+"""Phrases that say that all roads are one-way, including those that the route does not take."""
 STOP_SIGNS = re.compile(
     r"stop signs?|stopp?(?:schild|tafel|zeichen)|panneaux? (?:de )?stop|senal(?:es)? de (?:stop|alto)|"
     r"(?:cartell[oi]|segnal[ei]) di stop"
 )
 ONE_WAY = exactly(0)
-"""The oncoming lanes of a one-way road."""
+"""The number of oncoming lanes of a one-way road."""
 FROM: dict[Way, Way] = {"left": "right", "right": "left", "straight": "left"}
-"""The side from which traffic comes on a one-way road that the route crosses or turns into, by its take."""
+"""The side from which traffic comes on a one-way road that the route crosses or turns into, by ``take``."""
 
 
 def with_other_roads(brief: Brief, words: str) -> Brief:
-    """Returns a route with what the words say of the roads that it does not take.
+    """Returns the Brief of a route with what the words say about the roads that the route does not take.
 
-    If all streets are one-way, so are these. If the route has priority at one junction and stops at none, a
-    stop sign is that of the others.
+    If the words say that all streets are one-way, the roads of the route and the other roads at T-junctions
+    and crossroads become one-way. If the words name a stop sign, and the route has priority at exactly one
+    junction and stops at none, the other roads at this junction get the stop sign.
     """
     said, junctions, roads = plain(words), brief.junctions, brief.stretches
     if says(ONE_WAY_ONLY, said) and junctions:
@@ -52,7 +55,7 @@ def with_other_roads(brief: Brief, words: str) -> Brief:
 
 
 def _one_way(junction: JunctionClause) -> JunctionClause:
-    """Returns T-junctions and crossroads with one-way roads on the sides that the route does not take."""
+    """Returns a T-junction or crossroads with one-way roads on the sides that the route does not take."""
     take, is_open = junction.take, not (junction.only_in or junction.only_out)
     if junction.kind not in ("t_junction", "crossroads") or not is_open:
         return junction

@@ -1,4 +1,4 @@
-"""The lane in which the words say that the car begins, which is no change of lanes."""
+"""Removes the lane change that the network may write if words only name the lane in which the car begins."""
 
 import re
 
@@ -17,8 +17,10 @@ LEFT = ("left", "linken", "gauche", "izquierdo", "izquierda", "sinistra")
 
 
 def without_own_lane(brief: Brief, words: str) -> Brief:
-    """Returns a route without the lane change that the network writes where the words name the lane in which
-    the car begins: "start in the right lane, then change to the left one" has one change.
+    """Returns a route without its first lane change if this is only the lane in which the car begins.
+
+    "Start in the right lane, then change to the left one" has one lane change. Other Briefs are returned
+    unchanged.
     """
     begins = BEGINS.search(plain(words))
     if len(brief.junctions) < 2 or begins is None:

@@ -1,6 +1,6 @@
-"""Constrained decoding: the grammar of plans, so that the model can only write plans that can be read.
+"""Defines the grammar of plans for constrained decoding: the model can only write plans that can be read.
 
-Modifiers have a fixed order, the one in which ``brief.plan`` prints them. A measured number is either a slot
+Modifiers have the fixed order in which ``brief.plan`` prints them. A measured number is either a slot
 of the text with a suitable unit, or a number that a word implies ("right angle": 90).
 """
 
@@ -62,14 +62,14 @@ from roadgpt.brief.refusal import CLASHING, OF_CAUSES
 
 STRAIGHT_KINDS = ("straight", "crest", "dip")
 UNSAID = {"deg=": FIXED, "angle=": FIXED, "turning=": ("180",), "steepest=": ("4", "5"), "climb=": ("0",)}
-"""Numbers that a plan may contain although they are not in the text, by plan key."""
+"""Numbers that a plan may contain although they are not in the text, by plan key, if words imply them."""
 ALWAYS = {"angle": FIXED, "slope": ("1",), "climb=": ("0",)}
-"""Numbers that a plan may contain whatever the text says: a right angle, one percent."""
+"""Numbers that a plan may contain whatever the text says, by plan key: a right angle, one percent."""
 COUNTS = tuple(str(number) for number in range(LARGEST_SEEN + 1))
 LEAST = {"arms=": 3}  # "a two-lane roundabout" has no two arms
 END = "<end>"
 IN_WORDS = {"against": ONE_WAY, "len": HALFWAY}
-"""Words in place of an amount, by the key of a road."""
+"""Words that can replace a key and its amount, by the name of the key."""
 MOST_CLAUSES = 20
 MOST_JUNCTIONS = 9  # with merges and changes of lanes
 MOST_KINDS = 4  # of junctions on a map
@@ -82,12 +82,12 @@ WAYS = ("up", "down", "flat")
 
 
 class PlanAutomaton:
-    """The state of a plan that is being written token by token; knows which tokens may come next.
+    """The state of a plan that is written token by token; the state determines which tokens may come next.
 
     Args:
         slots: the numbers of the text.
         said: the words of the text.
-        evidence: what numbers the words may imply; None allows all.
+        evidence: which numbers the words may imply; None allows all numbers.
         is_change: whether the text is a change request instead of a description.
     """
 
@@ -243,7 +243,7 @@ def _road_key(key: str, numbers: Numbers) -> Symbol:
 
 
 def _route(road: Symbol, numbers: Numbers) -> tuple[Symbol, ...]:
-    """Returns the two ways in which a description begins: with a road or with a junction."""
+    """Returns the two forms of a road or a route: it begins with a road, or with a junction."""
     whole = Sequel(
         OneOf(("||",)),
         (InOrder((OneOf(("left_hand",)), Keyed("len=", numbers), _beside()), least=1),),
@@ -272,7 +272,7 @@ def _route(road: Symbol, numbers: Numbers) -> tuple[Symbol, ...]:
 
 
 def junction_tokens(numbers: Numbers) -> Symbol:
-    """Returns what a plan can say of a junction, a merge or a change of lanes, in the order of printing."""
+    """Returns the grammar of a junction, a merge, an exit or a lane change in a plan."""
     side, length = Sequel(OneOf(("side=",)), (OneOf(SIDES),)), Keyed("len=", numbers)
     takes, controls = OneOf((*SIDES, *TAKES)), OneOf(CONTROLS)
     flags = tuple(OneOf((flag,)) for flag in (*FLAGS, *NEWER_FLAGS))
@@ -378,7 +378,7 @@ def _open(symbol: Symbol) -> Symbol:
 
 
 def _value(name: str, numbers: Numbers) -> Symbol:
-    """Returns the ways to give a value: exactly, a bound, a difference, a factor, or more and less."""
+    """Returns the forms of a value: an exact number, a bound, a difference, a factor, or "more" or "less"."""
     found = OneOf(numbers.of(name))
     some, percents = bool(found.tokens), OneOf(numbers.percents())
     exact = [Sequel(OneOf((sign,)), (found,)) for sign in ("=", "..", "+", "-")] if some else []

@@ -20,21 +20,23 @@ ISLAND = re.compile(
 CORRECTED = re.compile(
     r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|pardon|scusa|perdon) (?:[,.;:!]|\[unused)"
 )
-"""What follows a length that the next words take back."""
+"""Matches the words behind a length that is taken back at once, as in "30 metres, no, 40"."""
 REACH = 4
 """The largest number of words between a length and a word such as "across"."""
 LEAST, MORE, FEW = 28.0, 8.0, 4
-"""The outer diameter in metres at which four arms and one lane have room, and how much more is needed for
-each further arm, and for two lanes.
+"""The outer diameter in metres at which FEW arms and one lane have room, the additional diameter for each
+further arm and for a second lane, and the number of arms FEW.
 """
 ROUNDABOUT = "roundabout"
 PARTS = ("//", "||")
 
 
 def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]:
-    """Returns the tokens of a plan with the sizes of its roundabouts as the text gives them in metres.
+    """Returns the tokens of a plan with the size words of its roundabouts, such as "mini", that follow from
+    the outer diameters in the text.
 
-    Nothing is changed unless there are as many outer diameters in the text as roundabouts without a radius.
+    Nothing is changed unless the text gives as many outer diameters as the plan has roundabouts without a
+    radius, or as many as the plan has such roundabouts with a size word.
     """
     out = list(tokens)
     for place, _, size in reversed(_sized_rings(tokens, text)):
@@ -50,9 +52,11 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
 def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Brief:
     """Returns a Brief with the outer diameters of its roundabouts as the text gives them in metres.
 
+    A diameter above 70 m, or with too little room for the arms and lanes, is not set.
+
     Args:
         brief: the Brief of a plan.
-        tokens: the tokens of the plan, with the sizes of ``with_ring_sizes``.
+        tokens: the tokens of the plan, as ``with_ring_sizes`` returns them.
         text: the description.
     """
     rings = [place for place, token in enumerate(tokens) if token == ROUNDABOUT]
@@ -69,8 +73,12 @@ def with_diameters(brief: Brief, tokens: Sequence[str], text: SlottedText) -> Br
 
 
 def least_diameter(ring: JunctionClause, roads: Sequence[Brief]) -> float:
-    """Returns the outer diameter in metres from which every draft of a roundabout has room for its arms; a
-    smaller one is read as its size only.
+    """Returns the least outer diameter in metres at which every draft of a roundabout has room for its arms
+    and lanes. Of a smaller diameter, only the size word is kept.
+
+    Args:
+        ring: the roundabout.
+        roads: the roads before and behind the roundabout.
     """
     arms = max(span(ring.arms).lo, span(ring.exit).lo + 1)
     lanes = [ring.lanes, *(each for road in roads for each in (road.lanes, road.against))]
@@ -92,7 +100,7 @@ def _sized_rings(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, in
 
 
 def used_diameters(tokens: Sequence[str], text: SlottedText) -> frozenset[int]:
-    """Returns the indices of the numbers of a text that are outer diameters and whose size the plan has."""
+    """Returns the indices of the outer diameters of 28 m or more in a text whose size word the plan has."""
     found = (index for index, size in _sizes(tokens, text) if size in tokens)
     return frozenset(index for index in found if text.slots[index].value >= LEAST)
 

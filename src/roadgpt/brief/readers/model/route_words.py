@@ -1,7 +1,7 @@
 """Finds the words that tell of junctions, ramps, lanes and maps, in five languages.
 
-A text without any of them is a single road, and the network for routes is not asked. A text with one of them
-may still be a single road ("no junctions, please"): the networks decide.
+A text without such a word describes a single road, and the network for routes does not read it. A text with
+such a word may still describe a single road ("no junctions, please"): the networks decide.
 """
 
 import re
@@ -11,7 +11,8 @@ from roadgpt.brief.readers.model.word_set import word_set
 TOLD_ON_ROUTES = frozenset(
     ["junction", "crossroads", "roundabout", "merge", "exit", "lane_change", "traffic_light", "sign", "lanes"]
 )
-"""What the networks for single roads name beside a road, or refuse, and what routes consist of."""
+"""Names of parts of routes that the networks for single roads give in ``beside(...)`` or as the cause of a
+refusal."""
 
 ENGLISH = (
     r"junction|intersect|cro+s+ro|cros+r[do]|\bx-?(?:ing|roads)|cross(?:ing|es|walk|-?street)?s?\b|"
@@ -89,10 +90,10 @@ COMPANIONS = word_set(
     "intersección cuadrícula",
     "bracci rami uscite isolati strada strade via vie cartello corsia corsie intersezione griglia",
 )
-"""Words that go with another one, which says what part of a route is meant ("T-junction", "four arms"): the
-plan stays the same without them."""
+"""Words beside which another word already says what is meant, such as "junction" in "T-junction" or "arms" in
+"four arms": the plan stays the same without them."""
 
 
 def may_tell_a_route(words: str) -> bool:
-    """Returns whether a description has a word that junctions, ramps, lanes or maps are told with."""
+    """Returns whether a description has a word that may tell of junctions, ramps, lanes or maps."""
     return TELLING.search(words) is not None

@@ -20,6 +20,7 @@ from roadgpt.brief.readers.model.measures import (
     take_unit_of_all,
     unit_at,
 )
+from roadgpt.brief.readers.model.multiples import with_multiples
 from roadgpt.brief.readers.model.numerals import plain, words
 from roadgpt.brief.readers.model.slope_angles import as_grade
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
@@ -38,7 +39,7 @@ from roadgpt.brief.readers.model.units import (
 )
 
 SLOTS = 12
-"""The largest number of slots in one description."""
+"""The largest number of slots in one description; the values of further numbers are lost."""
 SYMBOLS = str.maketrans({
     "–": "-", "—": "-", "−": "-", "’": "'", "‘": "'", "“": '"', "”": '"', "×": "x",
     "→": " then ", "½": " 0.5 ",
@@ -50,7 +51,7 @@ CHANGE = "[unused13]"
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
 FAR = 100
-"""The smallest unit, in metres, that means one such unit if it has no number, as in "mile and a half"."""
+"""A unit of at least this many metres means one such unit if it has no number, as in "mile and a half"."""
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
@@ -64,7 +65,11 @@ class Word:
 
 @dataclass(frozen=True, slots=True)
 class NumberSlot:
-    """A number that a slot stands for: its value in metres, degrees or percent, rounded to one decimal."""
+    """A number that a slot stands for.
+
+    The value is in metres, degrees or percent, rounded to one decimal; ``unit`` is empty if the text gives no
+    unit. A speed has the unit "kmh" and the value that the text gives, even in miles per hour.
+    """
 
     value: float
     unit: Unit
@@ -89,7 +94,7 @@ class SlottedText:
 
 
 def slotted(text: str, is_change: bool = False) -> SlottedText:
-    """Returns the text with its numbers replaced by slots; a change request gets a special first token."""
+    """Returns the text with its numbers replaced by slots; a change request gets CHANGE as its first word."""
     said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
     tokens = [plain(word) for word in said]
     numbers = _numbers(tokens)
@@ -100,17 +105,18 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     numbers = with_tolerances(numbers, tokens)
     for number in numbers:
         as_grade(number, tokens)
+    numbers = numbers if is_change else with_multiples(numbers, tokens)
     found = _replaced(tokens, said, numbers)
     return SlottedText((Word(CHANGE, ""), *found.words), found.slots) if is_change else found
 
 
 def slot_name(index: int) -> str:
-    """Returns the token that stands for a slot: one of BERT's unused vocabulary entries."""
+    """Returns the token for the slot with this index (from 0): one of BERT's unused vocabulary entries."""
     return f"[unused{index + 1}]"
 
 
 def language_of(tokens: Sequence[str]) -> str:
-    """Returns the language whose frequent words occur most often in the text; English if none occur."""
+    """Returns the code, such as "de", of the language with the most function words in the text; else "en"."""
     found = set(tokens)
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 

@@ -36,7 +36,9 @@ def unused_words(
     fillers: frozenset[str],
     meanings: Mapping[str, frozenset[str]],
 ) -> tuple[str, ...]:
-    """Returns the words that the plan does not depend on, as spelled in the text, each once, in text order.
+    """Returns the words that the plan does not depend on, and the numbers that the plan lacks.
+
+    They are spelled as in the text, each once, in text order.
 
     Args:
         network: the network that wrote the plan.
@@ -66,7 +68,7 @@ def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
 
 
 def passes_over_a_negation(unused: Sequence[str]) -> bool:
-    """True if the unused words include one that denies or limits something, such as "not" or "only"."""
+    """Returns whether an unused word denies or limits something, such as "not" or "only"."""
     return any(plain(word.removesuffix("'t")) in NEGATORS for word in unused)
 
 

@@ -37,7 +37,7 @@ PLACES = ["starts(", "ends("]
 FIXED = ("15", "30", "45", "60", "90", "120", "135", "180")
 """Angles in degrees that words imply without naming them: a kink, a dog-leg, a right angle."""
 NEWER = ("135",)
-"""Angles that were added later, and whose tokens therefore stand at the end."""
+"""Angles that were added later; their tokens therefore do not stand with those of the other numbers."""
 OLDER_NUMBERS = [
     *(str(number) for number in range(LARGEST_SEEN + 1)),
     *(number for number in FIXED if int(number) > LARGEST_SEEN and number not in NEWER),
@@ -101,11 +101,11 @@ NETWORKS = [
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
 OF_ROADS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
-"""All tokens of single roads and changes. Networks for these know no others, which shows that a plan is
-beyond them.
+"""All tokens of single roads and changes. Networks for single roads know no other tokens and cannot write a
+plan that needs one.
 """
 TOKENS: tuple[str, ...] = tuple(dict.fromkeys([*OF_ROADS, *NETWORKS]))
-"""All tokens; the weights know them by their positions, so new ones stand at the end."""
+"""All tokens. The weights know the tokens by their positions, so new tokens are added at the end."""
 NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 PIECE = re.compile(
     r"//|\|\||![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"

@@ -1,7 +1,7 @@
-"""What words say of a route, and the network left out.
+"""Adds to a Brief what the words say about a route or a map, where the neural network left it out.
 
-Of the whole route: traffic on the left, the centre line, lanes, and that cars from the right go first. Of a
-part: that a side street ends at a T-junction, and that a one-way road which the route takes goes on behind.
+For the whole route, these are traffic on the left, the centre line, the lanes, and priority to the right. For
+a part of it, these are the T-junction where a side street ends, and a one-way road that the route takes.
 """
 
 import re
@@ -42,7 +42,7 @@ PLACED = re.compile(
     r"bis|vor|nach|danach|dahinter|dann|"
     r"jusqu|avant|apres|puis|ensuite|hasta|antes|despues|luego|fino|prima|dopo|poi)"
 )
-"""Words that say on which part of the route a line is."""
+"""Words that limit a statement to a part of the route."""
 ALL_THE_WAY = re.compile(
     r"\b(?:all the way|throughout|everywhere|(?:the|my|our|this) (?:whole|entire|complete)(?! \d)|"
     r"from start to (?:finish|end)|(?:all|every|each)(?: of)?(?: the| my)? roads?|"
@@ -62,24 +62,24 @@ SIDE_STREET = re.compile(
     r"\b(?:de|desde) (?:una|la|mi) (?:calle|carretera|via) (?:lateral|secundaria)|"
     r"\bda(?:lla| una) (?:strada|via|stradina) (?:laterale|secondaria)"
 )
-"""The route begins on a side street: it ends at the next junction, which is then a T-junction."""
+"""Phrases for a route that begins on a side street, which ends at the next junction, a T-junction."""
 RIGHT_FIRST = re.compile(
     r"right[- ]?before[- ]?left|(?:priority|precedence) (?:to|from) the right|give[- ]way to the right|"
     r"rechts[- ]?vor[- ]?links|rechtsvor(?:tritt|rang)|priorite a (?:la )?droite|"
     r"(?:precedenza|priorita) a(?:lla)? destra|(?:preferencia|prioridad|preferente) (?:a|de|por) la derecha"
 )
-"""Cars from the right go first: the rule of junctions without signs."""
+"""Phrases for priority to the right, the rule at junctions without signs."""
 SIGNED = re.compile(
     r"\byields?\b|give[- ]way(?! to the right)|main road|\bgewahr|vorfahrt|wartepflicht|hauptstr|"
     r"\bced(?:er?|ere|ez|a|o|iamo)\b|principal|"
     r"\bd(?:o|are|ai|ando|ata?) (?:la )?precedenza(?! a(?:lla)? destra)"
 )
-"""Perhaps some junction has a sign to give way."""
+"""Words that suggest that some junction has a give-way sign."""
 INSTEAD = re.compile(
     r"\b(?:\w+n't|instead of|(?:an)?statt|au lieu de|en vez de|invece (?:di|della))(?: \w+)?\s*$"
 )
 UNSIGNED = (*RAMPS, *LANE_KINDS, "roundabout")
-"""Kinds at which cars from the right never go first."""
+"""The kinds of junctions that never have priority to the right."""
 AT_ALL = re.compile(
     r"\b(?:everywhere|throughout|all(?!['’])|both|every|each|uberall|alle[nrm]?|beide[nrm]?|jede[nrm]?|partout|tous|"
     r"toutes|chaque|tod[ao]s|amb[ao]s|cada|ovunque|dappertutto|tutt[ie]|entramb[ie]|ogni)\b"
@@ -89,11 +89,15 @@ AT_ALL = re.compile(
 def with_whole_drive(brief: Brief, words: str) -> Brief:
     """Returns the Brief with what the words say of the whole route, if the Brief lacks it.
 
-    A single road is returned as it is. A centre line is added where the words say one kind of line and no
-    place, no part of the plan has a line, and on every road that has oncoming traffic on the same
-    carriageway. Lines and lanes of some roads are those of all roads where the words say so. Junctions where
-    cars from the right go first get no sign to give way. A side street ends at a T-junction. A one-way road
-    on which the route goes on is that of the road behind the junction.
+    A single road is returned unchanged. These requirements are added:
+
+    - Traffic drives on the left, if the words say so.
+    - Every road with oncoming traffic on the same carriageway gets a centre line, if the words name one kind
+      of line without a place, and no road of the Brief has a line yet.
+    - All roads get the lanes or the centre line of some roads, if the words say that all are alike.
+    - Junctions with priority to the right get no give-way signs.
+    - A junction at the end of a side street is a T-junction.
+    - If the route takes a one-way road at a junction, the road behind the junction is one-way.
     """
     if not brief.junctions and brief.map is None:
         return brief
@@ -112,7 +116,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
 
 
 def _out_of_side_street(brief: Brief, words: str) -> Brief:
-    """Returns the Brief with a T-junction where a side street ends and the kind is left open."""
+    """Returns the Brief with a T-junction where a side street ends and the kind of the junction is open."""
     first = brief.junctions[0] if brief.junctions else None
     is_open = first is not None and first.kind == "junction" and first.take in ("left", "right")
     if first is None or not is_open or first.arms or not SIDE_STREET.search(plain(words)):
@@ -152,8 +156,8 @@ def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, .
 def _with_shared(
     roads: tuple[Brief, ...], names: tuple[str, ...], can_have: Callable[[Brief], bool]
 ) -> tuple[Brief, ...]:
-    """Returns the roads, those that have none of some fields, and can have them, with the values of the
-    others; as they are if these differ, or if they are one-way.
+    """Returns the roads; those that have no values in these fields, but can have some, get the values of the
+    other roads. If these values differ or ask for a one-way road, all roads are returned unchanged.
     """
     usual = Brief()
     values = [{name: getattr(road, name) for name in names} for road in roads]

@@ -1,6 +1,7 @@
 """Finds out whether a plan has what a word usually asks for.
 
-The network may be sure of a plan without a word because others say the same; then it is understood, too.
+The network may be sure of a plan without a word because other words say the same. If the plan has what the
+word usually asks for, the word counts as understood.
 """
 
 from collections import Counter
@@ -19,12 +20,12 @@ GROUPS: Mapping[str, frozenset[str]] = {
         }
     ),
 }
-"""Tokens of which some words ask for any one: "go" for a way, "where" for a junction."""
+"""Groups of tokens; a word can ask for any token of a group: "go" for a way, "where" for a junction."""
 ARMS: Mapping[str, str] = {"t_junction": "3", "y_junction": "3", "crossroads": "4"}
-"""The number of roads that a kind of junction implies."""
+"""The number of roads that meet at a kind of junction, as a token."""
 NAMED_IF_DENIED = frozenset({"centre=", "none"})
-"""What a word asks for whose denial stands in the plan: no centre line, no signs."""
-REACH = 3  # words between one that denies and what it denies, at most
+"""Tokens of things whose absence a plan states with "none": no centre line, no signs."""
+REACH = 3  # words after a negation that it can deny
 
 
 def with_groups(tokens: Iterable[str]) -> Counter[str]:
@@ -39,7 +40,7 @@ def with_groups(tokens: Iterable[str]) -> Counter[str]:
 def read_meanings(path: Path) -> dict[str, frozenset[str]]:
     """Returns the tokens that words usually ask for, from a file with a word and its tokens in each line.
 
-    There are none if there is no such file, as in readers that were exported before it existed.
+    The result is empty if the file is missing, as in readers that were exported before such files existed.
     """
     rows = [line.split() for line in read_text(path).split("\n")] if path.is_file() else []
     return {word: frozenset(tokens) for word, *tokens in rows}
@@ -52,8 +53,10 @@ def understood(
     meanings: Mapping[str, frozenset[str]],
     negators: Collection[str],
 ) -> frozenset[int]:
-    """Returns those places of words at which the plan has what the word asks for, as often as it is said, and
-    lacks what is denied; the word that denies it is understood with it.
+    """Returns the places of the words that the plan takes into account.
+
+    These are the given places whose word asks for a token that the plan has at least as often as the text has
+    the word. A negation and the words that it denies are added if the plan lacks what the words ask for.
 
     Args:
         text: the description.
@@ -95,7 +98,7 @@ def _is_absent(asked: Collection[str], there: Mapping[str, int]) -> bool:
 
 
 def _is_counted(number: str, tokens: Sequence[str], there: Mapping[str, int]) -> bool:
-    """Returns whether a plan has a number, has as many junctions of a kind, or a kind with as many roads."""
+    """Returns whether a plan has a number, as many junctions, or a kind of junction with as many roads."""
     kinds = GROUPS["@junction"]
     return (
         number in tokens

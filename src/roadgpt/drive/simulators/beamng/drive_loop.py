@@ -25,14 +25,16 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 FALLEN = 1.0  # m below the road's surface
-HALVINGS = 20  # of the time between two samples, to find a crossing
+HALVINGS = 20  # how often the time between two samples is halved to find the moment of an event
 
 AI = "beamng_ai"
 """Name of the driver when BeamNG's own AI drives."""
 
 
 class Sample(NamedTuple):
-    """The car at one time, and its position relative to the road."""
+    """The car at one time, and its position relative to the road: ``s`` and ``t`` in metres, and ``outside``,
+    the share of the car outside its lane. ``throttle`` and ``brake`` are 0 to 1.
+    """
 
     car: CarSample
     s: float
@@ -47,7 +49,7 @@ class DriveLoop:
     """Drives one road, step by step, and records the samples."""
 
     def __init__(self, loaded: LoadedRoad, road: "Road", world: "World", guard: DriverGuard | None) -> None:
-        """Prepares a drive; ``guard`` is None if BeamNG's AI drives."""
+        """Prepares a drive; ``guard`` asks the driver, and is None if BeamNG's AI drives."""
         self.loaded, self.road, self.world, self.guard = loaded, road, world, guard
         self.track = RoadTracker(road, world, loaded.body)
         self.monitor = DriveMonitor(road, world, loaded.body.box(LOCK))
@@ -57,6 +59,8 @@ class DriveLoop:
 
     def drive(self, keep_driving: bool) -> Ended:
         """Drives until the drive ends, and returns how it ended.
+
+        With ``keep_driving``, the drive goes on when the car leaves its lane.
 
         Raises:
             DriverError: the driver failed.
@@ -92,8 +96,8 @@ class DriveLoop:
             self._go_on(here)
 
     def _go_on(self, here: Sample) -> None:
-        """Makes one step. Only BeamNG's time counts against it: what RoadGPT computes may be compiled just
-        now, and the guard has its own clock."""
+        """Makes one step. The watchdog counts only BeamNG's time: RoadGPT may be compiling its functions, and
+        the guard has its own clock."""
         look()
         command = (0.0, 0.0, 0.0)
         loaded = self.loaded
@@ -135,8 +139,8 @@ class DriveLoop:
 
     def _cut(self, has_happened: Callable[[Sample], bool], keep: bool = False) -> None:
         """Finds by interpolation the moment between the last two samples at which ``has_happened`` became
-        true. A sample of this moment is inserted before the last one if ``keep``, else it replaces the last
-        one."""
+        true. With ``keep``, a sample of this moment is inserted before the last sample; otherwise it replaces
+        the last sample."""
         if len(self.samples) < 2 or has_happened(self.samples[-2]):
             return
         before, after = self.samples[-2:]

@@ -23,9 +23,10 @@ class BeamngSimulator:
     """Simulates an ETK 800 in BeamNG.tech on a mesh road; BeamNG's AI drives, or the driver is asked at every
     step.
 
-    Unless the setting ``imitation`` is true, BeamNG's own AI drives in place of the driver ``beamng_like``,
-    which imitates it; Drive.driver is then ``beamng_ai``. If BeamNG hangs, ends or loses its connection, the
-    road is tried once more with a new BeamNG process or connection; a second failure raises SimulatorError.
+    The driver ``beamng_like`` imitates BeamNG's own AI. If this driver is chosen, that AI itself drives, and
+    ``Drive.driver`` is ``beamng_ai``, unless the setting ``imitation`` is true. If BeamNG hangs,
+    ends or loses its connection, the road is tried once more with a new BeamNG process or connection; a
+    second failure raises SimulatorError.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.
@@ -33,7 +34,7 @@ class BeamngSimulator:
     single_roads_only = True
 
     def __init__(self, settings: BeamngSettings | None = None) -> None:
-        """Uses these settings; if they are None, reads the settings from the environment variables.
+        """Uses these settings, or those of the environment variables if ``settings`` is None.
 
         Raises:
             UsageError: an environment variable has an invalid value.

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from roadgpt.road import Road, World
 
 CONTROL = STEPS * STEP
-"""Seconds between two answers of the driver."""
+"""Length of a control step in seconds: the time between two commands of the driver."""
 SETTLED = 2e-4  # m/s and rad/s, below which all parts count as at rest
 LONGEST_SETTLING = 150  # control steps
 
@@ -51,7 +51,8 @@ class Vehicle:
         self._ground = ground
         self._state = np.zeros(STATE)
         self.wheels: FloatArray = np.zeros((4, WHEEL_STATE))
-        """The state of each wheel: slips, valves, station, load and forces; the indices are in `dynamics`."""
+        """The state of each wheel: slips, valves, station, load and forces. The column indices are in
+        `dynamics`."""
         scratch = (np.zeros((4, 2)), np.zeros((2, 16, 2)))
         car_state = CarState(self._state, self.wheels, hull_points(car), *scratch)
         self._parts = (_handles(self._model, self._data), *tables(car), ground, car_state)
@@ -72,10 +73,10 @@ class Vehicle:
         return cls(car, Ground(sampled, rims, beyond, world.site.friction, lane))
 
     def put(self, s: float, t: float, speed: float = 0.0) -> None:
-        """Places the car at station s and offset t, facing along the road, and sets its clock to 0.
+        """Places the car at station ``s`` and offset ``t`` in metres, facing along the road, at time 0.
 
-        If ``speed`` is 0, the brakes are applied and the car settles on its springs first. Otherwise it rolls
-        freely.
+        If ``speed`` (m/s) is 0, the car settles on its springs with the brakes applied. Otherwise the car
+        rolls freely at this speed.
         """
         car, data = self.car, self._data
         mujoco.mj_resetData(self._model, data)
@@ -109,7 +110,7 @@ class Vehicle:
         self.row[0] = round(self._data.time, 9)
 
     def see(self) -> dict[str, float]:
-        """Returns the current row of a Drive, as values by column name."""
+        """Returns the present state of the car as a dictionary with the names in COLUMNS as keys."""
         return dict(zip(COLUMNS, self.row.tolist(), strict=True))
 
     def _move(self, steer: float, throttle: float, brake: float, steps: int) -> None:

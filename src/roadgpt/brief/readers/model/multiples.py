@@ -1,0 +1,130 @@
+"""Computes figures that are said as a multiple of an earlier one: in "40 m, a bend, and a straight twice as
+long", the last straight is 80 m long.
+
+The network only copies numbers, so it cannot compute them. A multiple is left as it is if the words leave a
+choice, or say the figure as well ("twice as long, that is 80 m").
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from roadgpt.brief.readers.model.measures import Number, is_radius
+from roadgpt.brief.readers.model.units import Unit
+
+FACTORS = {
+    "half": 0.5, "twice": 2, "double": 2, "thrice": 3, "triple": 3,
+    "halb": 0.5, "halbe": 0.5, "halben": 0.5, "doppelt": 2, "doppelte": 2, "doppelten": 2, "zweimal": 2,
+    "dreimal": 3, "dreifach": 3, "dreifache": 3, "dreifachen": 3, "viermal": 4,
+    "moitie": 0.5, "mitad": 0.5, "meta": 0.5, "doble": 2, "doppio": 2, "triplo": 3,
+}  # fmt: skip
+LENGTHS = "long|length|lang|lange|langen|laenge|longue|longueur|larga|largo|longitud|lunga|lungo|lunghezza"
+ANGLES = "angle|winkel|angulo|angolo"
+GRADES = (
+    "steep|steeply|grade|gradient|slope|steil|steigung|gefaelle|raide|pente|empinada|empinado|pendiente|ripida"
+    "|ripido|pendenza"
+)
+SIZES = "far|weit|loin|lejos|much|big|large|viel|stark|gross|forte?|grande?"
+KINDS: tuple[tuple[str, Unit], ...] = ((LENGTHS, "metres"), (ANGLES, "degrees"), (GRADES, "percent"))
+NAMED = f"(?P<what>{LENGTHS}|{ANGLES}|{GRADES}|{SIZES})"
+TIMES = r"(?P<times>{[^}]*}) (?:times|mal|fois|veces|volte)"
+ONCE = r"(?P<once>twice|thrice|double|triple|half|halb|doppelt|zweimal|dreimal|viermal|dreifach)"
+WHOLE = "(?P<whole>doppelten?|halben?|dreifachen?|double|triple|moitie|mitad|doble|meta|doppio|triplo)"
+PHRASES = tuple(
+    re.compile(phrase)
+    for phrase in (
+        rf"(?<!\S)(?:{ONCE}|{TIMES}) (?:as|so) {NAMED}\b(?! again\b)",
+        rf"(?<!\S)(?P<once>half|twice|double|triple) the (?P<what>{LENGTHS}|{ANGLES}|{GRADES})\b",
+        rf"(?<!\S){TIMES} (?:the|plus|mas|piu) {NAMED}\b",
+        rf"(?<!\S)(?:der|die|den|dem|la|el|le|il) {WHOLE} (?:de )?(?P<what>{LENGTHS}|{ANGLES}|{GRADES})\b",
+        rf"(?<!\S)(?P<what>{LENGTHS}) (?:le|la|el|il) {WHOLE}\b",
+        rf"(?<!\S)(?:das|le|el|il) {WHOLE} (?=$|[.,;]|a |nach )",
+    )
+)
+"""Multiples as they are said in five languages, in words without accents; numbers stand in braces."""
+DENIALS = frozenset(["not", "no", "nicht", "keine", "pas", "ne", "non"])
+DENIED = 4  # words
+"""How far before a multiple it may be denied: "not really twice as long"."""
+EXPLAINED = 8  # words
+"""How far behind a multiple its figure may be said: "twice as long as the first one, that is 80 m"."""
+
+
+class Multiple(NamedTuple):
+    """A multiple in a text: the first and the last of its words, its factor, and what it measures."""
+
+    first: int
+    last: int
+    factor: float
+    what: str
+
+
+def with_multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
+    """Returns the numbers of a text, with a number for each multiple whose value the words leave no choice
+    about.
+
+    Args:
+        numbers: the numbers of the text with their units, in its order.
+        tokens: the words of the text, in lower case and without accents.
+    """
+    out = [*numbers]
+    for multiple in _multiples(numbers, tokens):
+        within = range(multiple.first, multiple.last + 1)
+        others = [number for number in out if number.first not in within]
+        base = _base([number for number in others if number.last < multiple.first], tokens, multiple.what)
+        is_denied = not DENIALS.isdisjoint(tokens[max(multiple.first - DENIED, 0) : multiple.first])
+        if base is None or is_denied or _is_explained(others, multiple.last, base.unit):
+            continue
+        value = round(base.value * multiple.factor, 1)
+        made = Number(value, multiple.first, multiple.last, base.unit, False)
+        out = sorted([*others, made], key=lambda number: number.first)
+    return out
+
+
+def _multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> Iterator[Multiple]:
+    """Yields the multiples of a text in its order, none within another."""
+    said = list(tokens)
+    for number in numbers:
+        if number.is_bare and number.first == number.last and number.value == int(number.value):
+            said[number.first] = f"{{{int(number.value)}}}"
+    text, starts = "", list[int]()
+    for word in said:
+        starts.append(len(text))
+        text += f"{word} "
+    found = sorted((m for phrase in PHRASES for m in phrase.finditer(text)), key=lambda m: m.start())
+    end = -1
+    for match in found:
+        first = starts.index(match.start()) if match.start() in starts else -1
+        last = first + match[0].strip().count(" ")
+        if first > end:
+            end = last
+            yield Multiple(first, last, *_factor(match))
+
+
+def _factor(match: re.Match[str]) -> tuple[float, str]:
+    """Returns the factor of a multiple, and the word for what it measures; empty if there is none."""
+    said = match.groupdict()
+    times = (said.get("times") or "").strip("{}")
+    factor = float(times) if times else FACTORS[said.get("once") or said.get("whole") or ""]
+    return factor, said.get("what") or ""
+
+
+def _base(numbers: Sequence[Number], tokens: Sequence[str], what: str) -> Number | None:
+    """Returns the number that a multiple is of; None if there is none, or if it is not clear which one.
+
+    It is the last measured number, which has to be of the kind that the multiple names, and if there are
+    several of this kind, all are equal.
+    """
+    unit = next((unit for names, unit in KINDS if what in names.split("|")), "")
+    units = {unit for _, unit in KINDS}
+    measured = [number for number in numbers if number.unit in units and not is_radius(tokens, number)]
+    if not measured:
+        return None
+    unit = unit or next((number.unit for number in reversed(measured) if number.unit != "percent"), "")
+    alike = [number for number in measured if number.unit == unit]
+    return alike[-1] if alike and len({number.value for number in alike}) == 1 else None
+
+
+def _is_explained(numbers: Sequence[Number], last: int, unit: Unit) -> bool:
+    """Returns whether a number of the same unit follows a multiple closely and may be its figure."""
+    behind = (number.first - last for number in numbers if number.first > last and number.unit in ("", unit))
+    return any(distance <= EXPLAINED for distance in behind)

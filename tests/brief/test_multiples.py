@@ -1,0 +1,63 @@
+"""Figures that are said as a multiple of an earlier one are computed, unless the words leave a choice."""
+
+import pytest
+
+from roadgpt.brief import read
+from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.slots import slotted
+
+SAID = [
+    ("40 m straight, a left, then a straight twice as long", [40, 80], "metres"),
+    ("40 m straight, a left, then a straight three times as long", [40, 120], "metres"),
+    ("a straight of 90 m, a right turn, then a third straight half the length", [90, 45], "metres"),
+    ("a left of 35 degrees, then a right that turns twice as far", [35, 70], "degrees"),
+    ("uphill at 8 %, then a bend, then down half as steeply", [8, 4], "percent"),
+    ("50 m geradeaus, Linkskurve, danach eine doppelt so lange Gerade", [50, 100], "metres"),
+    ("30 Grad nach links, dann dreimal so weit nach rechts", [30, 90], "degrees"),
+    ("60 m tout droit, un virage, puis une ligne droite deux fois plus longue", [60, 120], "metres"),
+    ("una recta de 50 m, una curva y una recta el doble de larga", [50, 100], "metres"),
+    ("un rettilineo di 40 m, una curva e un rettilineo lungo il doppio", [40, 80], "metres"),
+]
+LEFT_ALONE = [
+    "six turns of 30 degrees, twice as many lefts as rights",  # a count
+    "a straight of 40 m, a left, then one twice as long, that is 80 m",  # the figure is said
+    "a straight of 40 m, a left, then one that is not twice as long",  # denied
+    "40 m straight, a left, 60 m straight, a right, then a straight twice as long",  # of which one?
+    "a left, then a straight twice as long as the one of 35 m",  # said later
+    "a left with a radius of R25, then a right half as far",  # nothing to double but a radius
+    "a hill twice as steep",
+]
+
+
+@pytest.mark.parametrize(("text", "values", "unit"), SAID)
+def test_a_multiple_becomes_its_figure(text: str, values: list[float], unit: str) -> None:
+    slots = slotted(text).slots
+    assert [slot.value for slot in slots] == values
+    assert {slot.unit for slot in slots} == {unit}
+
+
+@pytest.mark.parametrize("text", LEFT_ALONE)
+def test_what_leaves_a_choice_stays_as_it_is(text: str) -> None:
+    found = slotted(text)
+    said = {float(word) for word in "".join(c if c.isdecimal() else " " for c in text).split()}
+    assert {slot.value for slot in found.slots} <= said
+    assert any(word in found.text for word in ("twice", "half"))
+
+
+def test_change_requests_have_multiples_of_their_own() -> None:
+    assert slotted("after 40 m make it twice as long", is_change=True).text.endswith("twice as long")
+
+
+@pytest.mark.parametrize(
+    ("text", "wanted"),
+    [
+        ("a 40 metre straight, a left turn, and then a straight three times as long",
+         "straight len=40; turn left; straight len=120"),
+        ("the first curve turns 40 degrees to the left, the second twice as much to the right",
+         "turn left deg=40; turn right deg=80"),
+        ("un rettilineo di 40 m, una curva a sinistra e un rettilineo lungo il doppio",
+         "straight len=40; turn left; straight len=80"),
+    ],
+)  # fmt: skip
+def test_the_reader_copies_the_figure(text: str, wanted: str) -> None:
+    assert plan(read(text)) == wanted
