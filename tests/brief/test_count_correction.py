@@ -17,6 +17,8 @@ from roadgpt.errors import BriefError
         ("five bends, the last three go right", "turn x3; turn x3 right", "turn x2; turn x3 right"),
         ("6 turns, 2 of them to the right", "turn x6 | rights=2", "turn x6 | lefts=4 rights=2"),
         ("5 turns, 3 left", "turn x5 | lefts=3 rights=3", "turn x5 | lefts=3 rights=2"),
+        ("4 turns, more of them to the left than to the right", "turn x4 | lefts=2..", "turn x4 | lefts=3.."),
+        ("sette curve, la maggioranza a destra", "turn x7 | rights=2..", "turn x7 | rights=4.."),
         ("cinq virages dont deux à gauche", "turn x5 | lefts=2 rights=2", "turn x5 | lefts=2 rights=3"),
     ],
 )
@@ -32,6 +34,8 @@ def test_sums_are_put_right(words: str, written: str, right: str) -> None:
         ("case 7: several turns", "| turns=3.."),
         ("straight: 120 m, right, radius:20", "straight len=120; turn right r=20"),
         ("4 turns and no lefts", "turn x4 | lefts=0"),
+        ("6 turns, 2 or more to the left", "turn x6 | lefts=2.."),
+        ("6 turns, some to the left and some to the right", "turn x6 | lefts=1.. rights=1.."),
         ("all of the five go left except one", "turn x5 | lefts=4 rights=1"),
         ("6 turns, twice as many lefts as rights", "turn x6 | lefts=4 rights=2"),
     ],

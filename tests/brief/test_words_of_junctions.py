@@ -4,9 +4,10 @@ import pytest
 
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.map_words import asks_for_map, with_counted_map
 from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import without_own_lane
+from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.slots import slotted
 
 
@@ -83,6 +84,18 @@ def test_the_network_writes_a_map_where_the_words_ask_for_one() -> None:
         ("map columns=2 rows=3", "two rows with three blocks in a row each", "map columns=2 rows=3"),
         ("map columns=4 rows=3", "four columns, three rows, 2x2 lanes", "map columns=4 rows=3"),
         ("map columns=3.. rows=2..", "at least three by two blocks", "map columns=3.. rows=2.."),
+        # a comb: each dead end leaves the street at a T-junction, and the street has two ends
+        (
+            "map columns=3 rows=1 dead_ends=3",
+            "a village with one through road and three cul-de-sacs off it",
+            "map t_junction x3 dead_ends=5",
+        ),
+        ("map junction x2", "ein Dorf, eine Hauptstraße, zwei Sackgassen", "map t_junction x2 dead_ends=4"),
+        (
+            "map crossroads x2 dead_ends=2",
+            "a main street over two crossroads, and two dead ends",
+            "map crossroads x2 dead_ends=2",
+        ),
     ],
 )
 def test_blocks_and_dead_ends_of_maps_follow_from_the_words(asked: str, words: str, line: str) -> None:
@@ -174,3 +187,58 @@ ONE_CHANGE = "lane_change left // crossroads left"
 )
 def test_the_lane_at_the_start_is_no_change(asked: str, words: str, line: str) -> None:
     assert plan(without_own_lane(read_plan(asked), words)) == line
+
+
+@pytest.mark.parametrize(
+    ("asked", "words", "line"),
+    [
+        (
+            4 * ["crossroads straight"],
+            "five crossroads, straight over all of them",
+            5 * ["crossroads straight"],
+        ),
+        (5 * ["roundabout exit=2"], "sechs Kreisverkehre, jeweils Ausfahrt 2", 6 * ["roundabout exit=2"]),
+        (3 * ["t_junction left"], "two T-junctions, left at both", 2 * ["t_junction left"]),
+        (3 * ["roundabout"], "three roundabouts", 3 * ["roundabout"]),
+        (2 * ["crossroads left"], "five crossroads, no, make that two", 2 * ["crossroads left"]),
+        (3 * ["roundabout"], "una rotonda, y luego otras dos rotondas", 3 * ["roundabout"]),
+        (3 * ["crossroads"], "two crossroads and then three more crossroads", 3 * ["crossroads"]),
+        (
+            ["crossroads left", "crossroads"],
+            "three crossroads, left first",
+            ["crossroads left", "crossroads"],
+        ),
+        (2 * ["merge main"], "four junctions of a motorway", 2 * ["merge main"]),
+    ],
+)
+def test_junctions_that_are_all_alike_are_counted(asked: list[str], words: str, line: list[str]) -> None:
+    brief = with_counted_junctions(read_plan(" // ".join(asked)), slotted(words))
+    assert plan(brief) == " // ".join(line)
+
+
+def test_roads_between_alike_junctions_are_alike_too() -> None:
+    asked = "crossroads // | len=100 // crossroads // | len=100 // crossroads"
+    brief = with_counted_junctions(read_plan(asked), slotted("four crossroads, 100 m apart"))
+    assert [each.length.lo for each in brief.stretches if each.length] == [100, 100, 100]
+    uneven = read_plan("crossroads // | len=100 // crossroads // | len=50 // crossroads")
+    assert with_counted_junctions(uneven, slotted("four crossroads, 100 m and 50 m apart")) == uneven
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        (
+            "| lanes=3 oneway // lane_drop // | lanes=1 oneway",
+            "| lanes=3 oneway // lane_drop // | lanes=2 oneway // lane_drop // | lanes=1 oneway",
+        ),
+        (
+            "| lanes=1 // lane_gain side=left // | lanes=3",
+            "| lanes=1 // lane_gain side=left // | lanes=2 // lane_gain side=left // | lanes=3",
+        ),
+        ("| lanes=2 // lane_drop // | lanes=1", "| lanes=2 // lane_drop // | lanes=1"),
+        ("| lanes=1 // lane_gain // | lanes=4", "| lanes=1 // lane_gain // | lanes=4"),  # refused elsewhere
+        ("| lanes=3 // lane_change left // | lanes=1", "| lanes=3 // lane_change left // | lanes=1"),
+    ],
+)
+def test_one_lane_ends_or_begins_at_a_time(asked: str, line: str) -> None:
+    assert plan(with_each_lane(read_plan(asked))) == line

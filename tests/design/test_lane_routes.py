@@ -282,6 +282,18 @@ def test_a_road_behind_a_junction_has_the_lanes_of_the_road_before() -> None:
     assert inspect(drafted(line, 1), read_plan(line), WIDE) == ()
 
 
+def test_roads_beyond_the_crossing_at_the_end_of_a_ramp_have_two_ways() -> None:
+    for seed in range(4):
+        route = drafted("| motorway // diverge ramp // t_junction left // roundabout exit=2 //", seed)
+        counts = [member.profile.count for _, member in route.roads]
+        assert counts == [(2, 0), (3, 0), (1, 0), (1, 1), (1, 1)]  # the second with the lane to the exit
+        crossing = next(each for each in route.network.junctions if each.kind == "t_junction")
+        ways = [route.network.road(arm.end.road).profile.count for arm in crossing.arms]
+        assert sorted(ways) == [(1, 0), (1, 1), (1, 1)]
+    route = drafted("crossroads left // merge ramp // | motorway", 1)
+    assert [member.profile.count for _, member in route.roads][:2] == [(1, 1), (1, 0)]  # the ramp
+
+
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
     for seed in range(3):
         route = drafted("merge ramp // | motorway", seed)

@@ -234,6 +234,12 @@ def test_a_wide_road_and_a_narrow_one_keep_apart_by_their_own_widths() -> None:
     assert inspect(drafted(line, 1, world), read_plan(line), world) == ()
 
 
+def test_wide_roads_find_a_place_around_a_roundabout() -> None:
+    line = "| lanes=2 divided // roundabout exit=2 // | lanes=2 divided // roundabout exit=1"
+    for seed in range(5):
+        assert inspect(drafted(line, seed), read_plan(line), USUAL) == ()
+
+
 def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
     small = World(site=Site(map_size=90))
     with pytest.raises(DesignError, match=r"3 junctions .* found no place on a map of 90 m; .*--map-size"):

@@ -120,12 +120,9 @@ class _Pen:
         here = [self._arrival]
         if junction.kind == "roundabout":
             around = np.exp(1j * np.linspace(0, 2 * pi, POINTS, endpoint=False))
-            here.append(
-                self._drawn(
-                    node + (junction.radius + ring_width(junction.radius, junction.ring_lanes) / 2) * around,
-                    max(arm.reach for arm in arms),
-                )
-            )
+            half = ring_width(junction.radius, junction.ring_lanes) / 2
+            shoulder = max(arm.shoulder_width for arm in arms)
+            here.append(self._drawn(node + (junction.radius + half) * around, half + shoulder))
         for n, arm in enumerate(junction.all_arms):
             out = way * cmath.exp(1j * radians(arm.angle))
             start = node + out * far[n + 1]

@@ -3,9 +3,9 @@
 Each format is a plug-in, for example:
 
     class Exporter:
-        name = "opendrive"                                     # of the format
-        suffix = ".xodr"                                       # of its file
-        holds_junctions = True                                 # optional: it can hold a network
+        name = "opendrive"                                     # name of the format
+        suffix = ".xodr"                                       # suffix of the exported file
+        holds_junctions = True                                 # optional: the format can hold networks
         def save(self, road, path, world, poses=None) -> None
 
 An exporter writes ``path``, and may write further files with the same stem to the same folder. The same
@@ -45,12 +45,12 @@ class Exporter(Protocol):
 
         Args:
             road: The road to export.
-            path: The file to write. Further files in the same folder must have names that begin with its
-                stem.
+            path: The file to write. Further files must be in the same folder, and their names must
+                begin with the stem of ``path``.
             world: The World, which defines friction, speed limit, and the lanes of a road without its own
                 cross-section.
-            poses: The motion of the car in a drive along the road; formats that cannot store a drive ignore
-                it.
+            poses: The motion of the car in a drive along the road; None if there is no drive. Formats that
+                cannot store a drive ignore it.
 
         Raises:
             ExportError: The format cannot hold this road, or a program that the exporter needs is missing or
@@ -89,13 +89,13 @@ def save(
         world: The World, which defines friction, speed limit, and the lanes of a road without its own
             cross-section.
         name: Name of the files without suffix.
-        poses: The motion of the car in a drive along the road, for formats that can hold it.
+        poses: The motion of the car in a drive along the road, for formats that can hold a drive.
 
     Raises:
         PartError: A format is unknown.
         UsageError: ``name`` cannot be the name of a file.
-        ExportError: A format cannot hold this road, or a file cannot be written. If a format cannot hold
-            junctions, no file is written.
+        ExportError: A format cannot hold this road, a program that an exporter needs is missing or fails, or
+            a file cannot be written. For a Route, if one format cannot hold junctions, no file is written.
     """
     parts = [exporter_of(format_) for format_ in dict.fromkeys(formats)]
     if not name or name == ".." or Path(name).name != name:
@@ -108,7 +108,7 @@ def save(
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for part in parts:
-            # in a folder of its own, so that nothing remains of an exporter that fails
+            # each exporter writes into a folder of its own, so that nothing remains if it fails
             with tempfile.TemporaryDirectory(dir=folder, prefix=".export-", suffix=".part") as draft:
                 part.save(road, Path(draft, name + part.suffix), world, poses)
                 written += _moved(Path(draft), folder)

@@ -20,8 +20,8 @@ from roadgpt.road.profile import Lane, Marking
 LENGTH = 50.0  # m, approximate length of a section
 LEAST = 1.0  # m, minimum length of a section
 DECIMALS = 4  # of a metre
-THIN = 0.05  # m; a lane that is nowhere wider in a section is left out of it
-ONLY = 0  # the number of a road that is no part of a network
+THIN = 0.05  # m; a lane that is nowhere wider than this in a section is left out of the section
+ONLY = 0  # id of a road that is not part of a network
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,17 +34,18 @@ class LaneletBound:
 
 @dataclass(frozen=True, eq=False)
 class LaneletSection:
-    """The driving lanes between two stations, from right to left. Lanes have their ids of OpenDRIVE."""
+    """The driving lanes between the stations ``start`` and ``end`` in metres, from right to left. The ids of
+    lanes are those of OpenDRIVE."""
 
     start: float
     end: float
     lanes: tuple[int, ...]
     bounds: tuple[LaneletBound, ...]
-    """The bounds of the lanes from right to left. There is one more bound than there are lanes, and another
-    one if there is a median.
+    """The bounds of the lanes from right to left: one more than there are lanes, or two more if there is a
+    median.
     """
     places: tuple[int, ...]
-    """For each lane, the index of its right bound; its left bound is the next one."""
+    """For each lane, the index of its right bound. The left bound has the next index."""
 
     def bounds_of(self, lane: int) -> tuple[LaneletBound, LaneletBound]:
         """Returns the bounds of a lane on the right and on the left, as seen along the road."""
@@ -54,28 +55,28 @@ class LaneletSection:
 
 @dataclass(frozen=True, eq=False)
 class Lanelet:
-    """A piece of a lane, as seen by those who drive on it."""
+    """A piece of a lane. Left, right, before and after are as seen by those who drive on the lane."""
 
     id: int
     road: int
-    """The id of its road."""
+    """The id of the road; ``ONLY`` for a road that is not part of a network."""
     lane: int
-    """The id of its lane."""
+    """The id of the lane, as in OpenDRIVE."""
     section: int
-    """The index of its section of the road."""
+    """The index of the section, counted from the start of the road."""
     left: LaneletBound
     right: LaneletBound
     is_along: bool
-    """Whether the points of its bounds are in the order in which one passes them."""
+    """Whether the lane is driven along the road. If not, the points of the bounds run against the traffic."""
     before: tuple[int, ...]
-    """The ids of the lanelets from which one comes."""
+    """The ids of the lanelets that lead to this lanelet."""
     after: tuple[int, ...]
-    """The ids of the lanelets to which one goes on."""
+    """The ids of the lanelets to which this lanelet leads."""
     is_followed_on_road: bool
-    """Whether its lane goes on in the next section of its road."""
+    """Whether the lane continues in the next section of the road, in driving direction."""
     beside: tuple[tuple[int, bool] | None, tuple[int, bool] | None]
-    """The lanelets on the left and on the right: the id, and whether traffic drives there in the same
-    direction.
+    """For the left and for the right side, the id of the neighbouring lanelet and whether its traffic drives
+    in the same direction; None if there is no neighbour.
     """
 
 
@@ -101,7 +102,7 @@ def leading_to(lanelets: Iterable[Lanelet], network: Network, end: RoadEnd) -> l
 
 
 class _NumberedLanelets:
-    """The sections of some roads, and the id of each lanelet by road, section and lane."""
+    """The sections of some roads, and the ids of all lanelets by road, section and lane."""
 
     def __init__(self, roads: Mapping[int, Road], world: World) -> None:
         self.sections = {number: lanelet_sections(road, world) for number, road in roads.items()}
@@ -116,7 +117,7 @@ class _NumberedLanelets:
         self.ids = {place: number for number, place in enumerate(places, 1)}
 
     def _lanes(self, road: int) -> list[int]:
-        """Returns the ids of the driving lanes of a road, first of those that lead along it."""
+        """Returns the ids of the driving lanes of a road, first those of the lanes along the road."""
         profile = self.profiles[road]
         return [*profile.along_ids, *profile.against_ids]
 
@@ -159,9 +160,10 @@ class _NumberedLanelets:
                     )
 
     def _beside(self, road: int, n: int, lane: int, step: int) -> tuple[int, bool] | None:
-        """Returns the lanelet that shares a bound with another one, and whether it leads in its direction.
+        """Returns the id of the lanelet beside another one, and whether both lead in the same direction.
 
-        ``step`` is 1 for the one on the left as seen along the road, -1 for the one on its right.
+        ``step`` is 1 for the neighbour on the left as seen along the road, and -1 for that on the right. None
+        is returned if no lanelet shares the bound on this side.
         """
         section, profile = self.sections[road][n], self.profiles[road]
         at = section.lanes.index(lane)

@@ -14,9 +14,9 @@ _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"}
 )
 
-_UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # what an escape may be needed for
+_UNUSUAL = re.compile(r'[^ -~]|[&<>"]').search  # finds characters that may need an escape
 
-MOST_TEXTS = 4096  # that are kept while a document is written
+MOST_TEXTS = 4096  # texts of attributes that are kept while a document is written
 
 Value = str | float | int
 
@@ -24,7 +24,7 @@ Value = str | float | int
 def number(value: float) -> str:
     """Returns the shortest decimal that can be read back as the same number.
 
-    Whole numbers are written without a decimal point.
+    Whole numbers below 1e15 are written without a decimal point.
 
     Raises:
         ExportError: The number is not finite.
@@ -47,7 +47,7 @@ def escaped(text: str) -> str:
 
 
 def _is_allowed(letter: str) -> bool:
-    """Implements production 2 of XML 1.0."""
+    """Returns whether XML 1.0 allows a character (production 2 of the standard)."""
     if letter < " ":
         return letter in "\n\t\r"
     return not "\ud800" <= letter <= "\udfff" and letter not in "\ufffe\uffff"
@@ -61,9 +61,9 @@ class XmlElement:
     attributes: Mapping[str, Value] = field(default_factory=dict)
     children: list["XmlElement"] = field(default_factory=list)
     raw: str = ""
-    """Content between the tags, already escaped. It is used instead of children."""
+    """Content between the tags, already escaped; ignored if there are children."""
     is_shared: bool = False
-    """Whether the element is in several places of a document. It must not be changed any more."""
+    """Whether the element may be in several places of a document, and so must not be changed any more."""
 
     def add(self, name: str, attributes: Mapping[str, Value] | None = None, raw: str = "") -> "XmlElement":
         """Adds a child with the given attributes and returns the child."""
@@ -79,8 +79,10 @@ class XmlElement:
     def to_text(self) -> str:
         """Returns the XML document with this element as its root, indented by two spaces per level.
 
-        An element that is in several places, such as equal lanes of many roads, is turned into text once per
-        level.
+        A shared element, such as equal lanes of many roads, is converted to text only once per level.
+
+        Raises:
+            ExportError: A number in the attributes is not finite.
         """
         lines = [DECLARATION]
         _write(self, "", lines, _Texts(), {})
@@ -88,7 +90,7 @@ class XmlElement:
 
 
 class _Texts(dict[Value, str]):
-    """The texts of the attributes of a document, by their values: most values are in it many times."""
+    """The texts of attributes by their values; most values occur many times in a document."""
 
     def __missing__(self, value: Value) -> str:
         if len(self) >= MOST_TEXTS:
@@ -98,7 +100,7 @@ class _Texts(dict[Value, str]):
 
 
 _Written = dict[tuple[int, str], str]
-"""The text of elements that are in several places, by the element and the indent."""
+"""The text of shared elements, by the id of the Python object and the indent."""
 
 
 def _write(element: XmlElement, indent: str, lines: list[str], texts: _Texts, written: _Written) -> None:
@@ -118,7 +120,7 @@ def _write(element: XmlElement, indent: str, lines: list[str], texts: _Texts, wr
 
 
 def _shared(element: XmlElement, indent: str, texts: _Texts, written: _Written) -> str:
-    """Returns the text of an element that is in several places."""
+    """Returns the text of a shared element."""
     key = (id(element), indent)
     if (text := written.get(key)) is None:
         own: list[str] = []

@@ -114,9 +114,10 @@ class CubicProfile:
             knots: One or more knots in metres.
 
         Raises:
-            ValueError: A station is less than the station before.
-            ZeroDivisionError: Two stations that follow each other are equal.
+            ValueError: A station is not greater than the station before.
         """
+        if any(s1 <= s0 for (s0, _), (s1, _) in pairwise(knots)):
+            raise ValueError("the stations of the knots must increase")
         rows = []
         for (s0, start), (s1, end) in pairwise(knots):
             n, change = s1 - s0, end - start

@@ -1,4 +1,4 @@
-"""Compiles the inner loops to machine code; plain Python would take minutes per image."""
+"""Compiles the inner loops of the renderer to machine code; plain Python would take minutes per image."""
 
 import warnings
 from collections.abc import Callable
@@ -33,10 +33,13 @@ SOURCES = _digest()
 
 
 def compiled(function: Function) -> Function:
-    """Returns the function as machine code, cached on disk for later processes if the folder is writable.
-    The compiler's fast-math option is off, so that the same inputs always give the same bytes."""
-    # Numba notices changes in the function's own file only, not in the files of functions that it calls; but
-    # the names of the files in its cache begin with this name.
+    """Returns the function as machine code. If the cache folder is writable, the code is cached on disk for
+    later processes.
+
+    The compiler's fast-math option is off, so that the same inputs always give the same bytes.
+    """
+    # Numba only notices changes in the function's own file, not in the files of functions that it calls. The
+    # names of the files in Numba's cache begin with this name, so the digest covers all those files.
     function.__qualname__ += f"-{SOURCES}"
     try:
         made: Function = NUMBA.njit(cache=True, nogil=True, error_model="numpy")(function)

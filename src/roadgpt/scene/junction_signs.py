@@ -11,7 +11,7 @@ from roadgpt.network.markings import JunctionSign
 
 SignColour = Literal["grey", "white", "red", "yellow", "green", "black"]
 
-POLE, POLE_SIDES = 0.04, 6  # m, radius of a post
+POLE, POLE_SIDES = 0.04, 6  # radius of a post in m, and number of its sides
 FOOT = 0.5  # m by which a post reaches into the ground
 LAYER = 0.012  # m between two colours of a sign
 MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.6}
@@ -34,7 +34,7 @@ class SignFace(NamedTuple):
 
 
 def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
-    """Yields the faces of a sign with its post. Those of the front come after those behind them."""
+    """Yields the faces of a sign and of its post. Faces of the front are yielded from back to front."""
     top = MIDDLE[sign.control]
     yield from _tube(sign, POLE, -FOOT, top)
     if sign.control == "lights":
@@ -62,7 +62,8 @@ def _polygon(angles: Array, radius: float) -> Array:
 
 
 def _placed(sign: JunctionSign, outline: Array, height: float, ahead: float) -> Array:
-    """Returns a polygon in a plane that faces the traffic; x of the outline is to the reader's right."""
+    """Returns a polygon in a plane that faces the traffic. The x axis of the outline points to the right as
+    drivers see it."""
     c, s = np.cos(sign.heading), np.sin(sign.heading)
     right, towards = np.array([s, -c, 0.0]), np.array([-c, -s, 0.0])
     up = np.array([0.0, 0.0, 1.0])
@@ -81,7 +82,7 @@ def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterato
 
 
 def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
-    """Yields a box with three lenses."""
+    """Yields the faces of a traffic light: a box with three lenses."""
     wide, high, deep = BOX
     x, y = np.array([-1, 1, 1, -1]) * wide / 2, np.array([-1, -1, 1, 1]) * high / 2
     front = _placed(sign, np.column_stack([x, y]), middle, deep)

@@ -1,9 +1,9 @@
 """Builds the meshes of a network: roads, level junctions, islands, lines, signs, and banks around them.
 
-The colours of asphalt and shoulders follow from two coordinates: a station s and an offset t, with the
-offsets of lane boundaries at each station. All roads of a network lie one after another on one axis of
-stations. Two more stretches of this axis stand for junctions: one has boundaries so far away that nothing is
-painted, and on the last one the carriageway ends at t = 0.
+The colours of asphalt and shoulders depend on a station s, an offset t, and the offsets of lane boundaries
+at this station. All roads of a network lie one after another on one axis of stations. The last two stretches
+of this axis are for junctions: on the first, boundaries are so far away that nothing is painted; on the
+second, the carriageway ends at t = 0.
 """
 
 import math
@@ -29,7 +29,7 @@ from roadgpt.scene.road_mesh import posts, slab, slope, stations_between, surfac
 from roadgpt.scene.surfaces import INSET, LINE, PERIOD, LaneBoundaries
 from roadgpt.scene.terrain import LitTerrain
 
-FAR = 1e4  # m, of boundaries that nothing comes near
+FAR = 1e4  # m, offset of boundaries that are too far away to be seen
 BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
 LIFT = 0.006  # m by which lines lie above the road
 KERB = 0.12  # m, height of a traffic island
@@ -41,7 +41,7 @@ COLOURS: dict[SignColour, int] = {
 
 
 def land_of(route: Route, world: World) -> Land:
-    """Returns the terrain around a network; it is flat if the roads have no shoulders."""
+    """Returns the terrain around a network; the terrain is flat if the roads have no shoulders."""
     parts = NetworkSurface.of(route.network)
     lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
     return Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
@@ -61,7 +61,7 @@ class StationAxis:
 
     @classmethod
     def of(cls, network: Network, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
-        """Returns the axis of some roads; ``widest`` is the extent in metres of the widest junction."""
+        """Returns the axis of some roads; ``widest`` is the greatest x extent of a junction in metres."""
         starts, rows, at = {}, [], 0.0
         for each in roads:
             # a broken line begins with a dash at the start of each road
@@ -74,7 +74,7 @@ class StationAxis:
         rows.append(np.tile([0.0, -FAR, -2 * FAR], (4, 1)))
         marks = np.array([1, 2, 1])
         offsets = np.ascontiguousarray(np.concatenate(rows))
-        # the marks of start and goal are drawn apart: none is near the ends of this axis
+        # the length is far beyond the axis, so that no goal is drawn at its end: see ``_start_and_goal``
         lanes = LaneBoundaries(offsets, marks, 1, 1.0, FAR * FAR)
         return cls(starts, plain, plain + wide, lanes)
 
@@ -82,7 +82,8 @@ class StationAxis:
 def _three(network: Network, member: NetworkRoad, s: Array) -> Array:
     """Returns the offsets ``(n, 3)`` of left edge, centre line and right edge.
 
-    The lines within a carriageway with other lanes are drawn apart; its centre line is the left edge.
+    If ``_has_broken_line_only`` is False, the lines within the carriageway are drawn as separate patches, and
+    the left edge takes the place of the centre line.
     """
     found = [t for _, t in member.profile.boundaries(s)]
     centre = np.zeros_like(s) if _has_broken_line_only(network, member) else found[0]
@@ -103,7 +104,7 @@ def _has_broken_line_only(network: Network, member: NetworkRoad) -> bool:
 def network_patches(
     route: Route, parts: NetworkSurface, axis: StationAxis, terrain: LitTerrain
 ) -> list[Patch]:
-    """Returns all patches that belong to a network."""
+    """Returns the patches of roads, junctions, lines, arrows and signs, and of the route's start and goal."""
     out: list[Patch] = []
     for member in parts.roads:
         out += _road(route, member, axis.starts[member.id], terrain, parts.shoulder > 0)

@@ -28,7 +28,8 @@ _COLOURS = {
     BLACK: (36, 38, 40),
 }
 PALETTE = np.array([[*linear(*_COLOURS[kind]), 0.0, 0.0, 0.0] for kind in sorted(_COLOURS)])
-"""Shape (n, 6): three columns of linear colour, and three of emitted light."""
+"""Shape (n, 6), one row for each type from PLAIN on: three columns of linear colour, and three of emitted
+light."""
 GLOSS = {PAINT: 1.0, GLASS: 1.0, TAIL: 0.6, HEAD: 0.9, RIM: 0.5, TRIM: 0.15}
-BRAKE = 0.03  # share of the pedal travel, above which the brake lights are on
+BRAKE = 0.03  # share of the pedal travel above which the brake lights are on
 SHINING = {TAIL - PLAIN: (0.85, 0.035, 0.02), HIGH - PLAIN: (0.95, 0.05, 0.03)}

@@ -15,13 +15,13 @@ from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
 from roadgpt.scene.palette import CONCRETE
 from roadgpt.scene.terrain import LitTerrain
 
-CHORD = 0.004  # m
-LONGEST = 4.0  # m between stations: light and texture follow crests
-BLOCK = 24  # stations of a patch
+CHORD = 0.004  # m, greatest distance between a curve and its polyline
+LONGEST = 4.0  # m between stations, so that light and texture follow crests
+BLOCK = 24  # steps from station to station in a patch
 THICK = 0.5  # m, thickness of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
-"""Distance between posts, their width and their height, metres. The distance is half of that on straight
-German roads, to give a better impression of speed."""
+"""Distance between posts, width of a post, and height of a post, in metres. The distance is half of that on
+straight German roads, to give a better impression of speed."""
 POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
@@ -37,7 +37,10 @@ def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
 
 
 def stations_between(road: Road, rim: float) -> Array:
-    """Returns stations, at most ``LONGEST`` apart, for lines up to ``rim`` metres beside the centre line."""
+    """Returns stations ``(n,)`` in metres for lines up to ``rim`` metres beside the centre line.
+
+    The stations are at most ``LONGEST`` apart.
+    """
     s = stations(road, rim, CHORD)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
     steps = np.repeat(np.diff(s) / parts, parts)
@@ -52,8 +55,8 @@ def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
 
 
 def surface(road: Road, profile: Profile, s: Array, start: float = 0.0) -> list[Patch]:
-    """Returns the surface from the right rim to the left one; the surface coordinates are ``start`` + s, and
-    t."""
+    """Returns the surface from the right rim to the left rim. The surface coordinates are ``start`` + s and t
+    in metres."""
     bounds = [t for _, t in reversed(profile.boundaries(s))]
     offsets = [bounds[0]]
     for one, other in pairwise(bounds):
@@ -93,7 +96,7 @@ def slope(bank: Embankment, terrain: LitTerrain) -> list[Patch]:
 
 
 def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
-    """Returns sides, underside and ends of a floating road."""
+    """Returns the sides, the underside and the ends of a floating road."""
     left, right = (line(road, s, t) for t in profile.edges(s))
     down = np.array([0.0, 0.0, -THICK])
     out = []
@@ -111,8 +114,8 @@ def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
 
 
 def posts(road: Road, profile: Profile, is_free: Callable[[Array], bool] = lambda place: True) -> list[Patch]:
-    """Returns the posts as upright boxes; the second surface coordinate is the height. A post is left out
-    where ``is_free`` of its place, shape ``(3,)``, is False."""
+    """Returns the posts as upright boxes; the second surface coordinate is the height in metres. A post is
+    left out if ``is_free`` returns False for its position ``(3,)``."""
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
     model, facing = _post()

@@ -29,12 +29,12 @@ from roadgpt.scene.trees import Trees, pictures, plant
 Image = NDArray[np.uint8]
 
 
-FARTHEST = 1e7  # m, and rad
+FARTHEST = 1e7  # m or rad; greatest number in a pose
 
 
 @dataclass(eq=False)
 class RenderBuffers:
-    """Working memory for one image; each thread has its own, so that several images can be drawn at once."""
+    """Working memory for one image. Each thread has its own buffers, so that threads can render at once."""
 
     depth: NDArray[np.float32]
     ids: NDArray[np.int32]
@@ -59,7 +59,9 @@ class Scene:
 
     @classmethod
     def of(cls, road: Road, world: World) -> "Scene":
-        """Builds the scene of a road; the same road and world always give the same images.
+        """Returns the scene of a road, or of the whole network of a route.
+
+        The same road and world always give the same images.
 
         Raises:
             ExportError: the road has a number that is not finite.
@@ -75,7 +77,7 @@ class Scene:
 
     @classmethod
     def _of_network(cls, route: Route, world: World) -> "Scene":
-        """Builds the scene of a route, with all roads of its network."""
+        """Returns the scene of a route, with all roads of its network."""
         parts, land = NetworkSurface.of(route.network), land_of(route, world)
         terrain = LitTerrain(land)
         widest = max([0.0, *(float(np.ptp(each.paved.bounds[::2])) for each in parts.areas)])
@@ -85,16 +87,16 @@ class Scene:
         return cls(route, world, land, ground, plant(lines[:, :2], parts.reach, land), axis.lanes)
 
     def render(self, camera: Camera, pose: Pose, out: Image | None = None, car: Pose | None = None) -> Image:
-        """Returns an RGB image ``(height, width, 3)`` of bytes from a camera on a car at ``pose``.
+        """Returns an RGB image ``(height, width, 3)`` of bytes, as the camera on a car at ``pose`` sees it.
 
         Args:
             camera: the camera.
             pose: pose of the car that carries the camera.
-            out: contiguous array to write the image to; None for a new array.
+            out: contiguous array of bytes to write the image to; None for a new array.
             car: pose of the car that is drawn, with its shadow; None to draw no car.
 
         Raises:
-            UsageError: a number of a pose is not finite, or ``out`` has another shape.
+            UsageError: a number of a pose is not finite or exceeds 1e7, or ``out`` has another shape or type.
         """
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
             raise UsageError("a number of a pose is not finite, or beyond 10,000 km")
@@ -146,7 +148,7 @@ class Scene:
 def _draw(
     mesh: Mesh, points: Array, attributes: Array, eye: Array, buffers: RenderBuffers, count: int
 ) -> int:
-    """Draws a mesh whose points may have moved, as those of a car have."""
+    """Draws a mesh and returns the new count. ``points`` differ from ``mesh.points`` for a car."""
     spheres = mesh.spheres
     if points is not mesh.points:
         middle = (points.min(axis=0) + points.max(axis=0)) / 2
@@ -158,7 +160,7 @@ def _draw(
 
 
 def _shade_of(car: Pose | None) -> NDArray[np.float64]:
-    """Returns the numbers of the car that its shadow depends on."""
+    """Returns the numbers ``(9,)`` that define the shadow of a car; zeros for None."""
     out = np.zeros(9)
     if car is not None:
         forward, _, up = axes_of(car.heading, car.pitch, car.roll)

@@ -1,5 +1,5 @@
-"""Computes linear colours in compiled code: those of the sky, and those of terrain and road before light and
-shadow are applied.
+"""Computes linear colours in compiled code: colours of the sky, and colours of terrain and road before light
+and shadow are applied.
 """
 
 import math
@@ -26,7 +26,7 @@ class LaneBoundaries(NamedTuple):
     offsets: Array
     """Offsets of the k boundaries in metres at each of n stations, (n, k)."""
     marks: NDArray[np.int64]
-    """Type of lane marking on each boundary, as a number, (k,)."""
+    """Type of lane marking on each boundary: NONE, SOLID or BROKEN, (k,)."""
     driven: int
     """Index of the left boundary of the lane in which the car drives."""
     spacing: float
@@ -36,7 +36,7 @@ class LaneBoundaries(NamedTuple):
 
     @classmethod
     def of(cls, profile: Profile, length: float) -> "LaneBoundaries":
-        """Returns the boundaries of a road's lanes."""
+        """Returns the boundaries of the lanes of a road of this length in metres."""
         s = np.linspace(0.0, length, max(1, math.ceil(length)) + 1)
         rows = profile.boundaries(s)
         marks = np.array([PAINT[mark] for mark, _ in rows])
@@ -46,12 +46,12 @@ class LaneBoundaries(NamedTuple):
 
 # Wider than the judged line (road.profile.LINE), and not at the very edge of the lane: the network of
 # examples/vision was trained on such images, and with judged lines drives 0.24 m farther to the right.
-LINE, INSET = 0.15, 0.10  # m: width of a line, and asphalt outside of an edge line
+LINE, INSET = 0.15, 0.10  # m: width of a line, and width of the asphalt outside an edge line
 PAINT = {"none": 0, "solid": 1, "broken": 2, "double": 1}
-"""How a boundary is drawn, by its marking; of a double line, one line."""
+"""How a boundary is drawn, by its marking; a double line is drawn as one line."""
 PERIOD = DASH + GAP  # m from one dash to the next
-WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m from the middle of a lane to its wheel tracks; where they fade out
-GRAVEL = 0.45  # m between asphalt and grass
+WHEEL, TRACK, OIL = 0.79, 0.55, 0.60  # m: from mid-lane to a wheel track; half widths of track, oil
+GRAVEL = 0.45  # m, width of the gravel between asphalt and grass
 STONE = 90.0  # texels of asphalt's grain to a metre
 RIDGES = SIDE / (2.0 * math.pi)  # texels of the far hills to a radian
 
@@ -84,8 +84,8 @@ def sky(tiles: Tiles, dx: float, dy: float, dz: float) -> Colour:
 
 @inlined
 def grass(tiles: Tiles, x: float, y: float, level: float) -> Colour:
-    """Returns the colour of grass at (x, y); ``level`` is the base-2 logarithm of the pixel's width in
-    metres."""
+    """Returns the colour of grass at (x, y) in metres. ``level`` is the base-2 logarithm of the pixel's width
+    in metres."""
     wide = plain_noise(tiles, CLOUD, 0, SIDE, x * 0.83, y * 0.83)
     blades = fine_noise(tiles, MEADOW, x * 31.0, y * 31.0, level + 4.95)
     dry = min(max(0.42 + 0.27 * wide + 0.06 * blades, 0.0), 1.0)
@@ -105,8 +105,10 @@ def _bound(lanes: LaneBoundaries, s: float, j: int) -> float:
 
 @inlined
 def asphalt(tiles: Tiles, s: float, t: float, lanes: LaneBoundaries, level: float) -> float:
-    """Returns the brightness of asphalt at station s and offset t (m): grain and patches, darker in the wheel
-    tracks and where oil drips."""
+    """Returns the brightness of asphalt at station s and offset t in metres, with grain and patches.
+
+    The wheel tracks and the oily middle of a lane are darker. ``level`` is as in ``grass``.
+    """
     grain = fine_noise(tiles, GRAIN, s * STONE, t * STONE, level + 6.5)
     patches = plain_noise(tiles, CLOUD, 0, SIDE, s * 1.3, t * 5.1)
     lane = WHEEL + TRACK  # m to the middle of the nearest lane
@@ -133,8 +135,10 @@ def _painted(mark: int, covered: float, s: float, wide_s: float, length: float) 
 def paved(
     tiles: Tiles, s: float, t: float, wide_s: float, wide_t: float, level: float, lanes: LaneBoundaries
 ) -> Colour:
-    """Returns the colour of the carriageway with its markings at station s and offset t, for a pixel of
-    ``wide_s`` by ``wide_t`` metres."""
+    """Returns the colour of the carriageway with its markings at station s and offset t in metres.
+
+    The pixel is ``wide_s`` metres long and ``wide_t`` metres wide. ``level`` is as in ``grass``.
+    """
     tone, length = asphalt(tiles, s, t, lanes, level), lanes.length
     r, g, b = tone, tone * 1.005, tone * 1.03
     paint, last = 0.0, lanes.offsets.shape[1] - 1
@@ -168,8 +172,8 @@ def paved(
 
 @inlined
 def shoulder(tiles: Tiles, x: float, y: float, beside: float, ragged: float, level: float) -> Colour:
-    """Returns the colour of the shoulder ``beside`` metres from the carriageway, where gravel turns into
-    grass."""
+    """Returns the colour of the shoulder at (x, y), ``beside`` metres from the carriageway: gravel that turns
+    into grass. ``ragged`` shifts this transition, and ``level`` is as in ``grass``."""
     r, g, b = grass(tiles, x, y, level)
     bare = 1.0 - smooth(0.1, 0.9, beside / GRAVEL + 3.5 * ragged)
     if bare > 0.0:
@@ -190,8 +194,9 @@ def road(
     level: float,
     lanes: LaneBoundaries,
 ) -> Colour:
-    """Returns the colour of the carriageway or the shoulder at station s and offset t; (x, y) is the same
-    point in world coordinates.
+    """Returns the colour of the carriageway or the shoulder at station s and offset t in metres.
+
+    (x, y) is the same point in world coordinates. The other arguments are as in ``paved``.
     """
     beside = max(t - _bound(lanes, s, 0), _bound(lanes, s, lanes.offsets.shape[1] - 1) - t)
     if beside < -0.3 - wide_t:

@@ -13,11 +13,11 @@ from roadgpt.road.land import Land
 from roadgpt.scene.light import SUN
 
 SEED = 11
-SIDE = 128  # texels, of a picture
-BROAD, CONIFERS = 3, 2  # pictures of each
+SIDE = 128  # texels; width and height of a picture
+BROAD, CONIFERS = 3, 2  # numbers of pictures of broad-leaved trees and of conifers
 CLEAR = 9.0  # m from the outer edge of the shoulder to the nearest tree
-EACH = 210.0  # m^2 of land per tree
-MOST = 900
+EACH = 210.0  # m^2 of land per tree, before trees near roads are removed
+MOST = 900  # trees
 BORDER = 4  # outermost rows and columns of the land on each side, where no trees stand
 
 
@@ -36,11 +36,11 @@ class Trees:
 
 
 def plant(line: Array, reach: float, land: Land) -> Trees:
-    """Places trees in loose groups on the terrain, except near roads.
+    """Returns trees in loose groups on the terrain, none of them near a road.
 
     Args:
         line: Points ``(n, 2)`` in metres on the centre lines of the roads.
-        reach: The distance in metres from the lines to the outer edges of the shoulders.
+        reach: The greatest distance in metres from a centre line to the outer edge of a shoulder.
         land: The terrain.
     """
     rng = np.random.default_rng(SEED)
@@ -63,8 +63,8 @@ def plant(line: Array, reach: float, land: Land) -> Trees:
 
 @cache
 def pictures() -> NDArray[np.float32]:
-    """Returns the tree pictures, shape (pictures, n, 4): each has n pixels, mipmap levels included, as RGBA
-    with premultiplied alpha."""
+    """Returns the tree pictures, shape (pictures, n, 4). The n pixels of a picture include its mipmap levels.
+    A pixel is RGBA with premultiplied alpha."""
     rng = np.random.default_rng(SEED)
     drawn = [_tree(*_crown(rng), rng, (0.085, 0.15, 0.035)) for _ in range(BROAD)]
     drawn += [_tree(*_cone(rng), rng, (0.035, 0.085, 0.035)) for _ in range(CONIFERS)]
@@ -81,8 +81,8 @@ def _halved(picture: Array) -> Array:
 
 
 def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns tufts of a broad-leaved tree: positions (x, y, z) in -1..1 and 0..1 upwards, normals, and
-    radii."""
+    """Returns the tufts of a broad-leaved tree: positions (x, y, z), normals, and radii. x and y are in
+    -1..1, z is in 0..1 upwards."""
     boughs = rng.normal(size=(14, 3))
     boughs *= (0.62 * rng.random(14) ** 0.4 / np.linalg.norm(boughs, axis=1))[:, None]
     tufts = boughs[rng.integers(14, size=420)]
@@ -93,7 +93,7 @@ def _crown(rng: np.random.Generator) -> tuple[Array, Array, Array]:
 
 
 def _cone(rng: np.random.Generator) -> tuple[Array, Array, Array]:
-    """Returns twigs of a conifer, in tiers that are wider below: positions, normals and radii."""
+    """Returns the twigs of a conifer, in tiers that are wider below: positions, normals, and radii."""
     up = 1.0 - rng.random(520) ** 0.62
     tier = 0.78 + 0.22 * (1.0 - (up * 9.0) % 1.0)
     turn = rng.uniform(0, 2 * np.pi, 520)

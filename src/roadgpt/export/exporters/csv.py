@@ -29,7 +29,7 @@ class Csv:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the road to ``path`` and the drive, if there is one, to NAME.drive.csv."""
+        """Writes the road to ``path``, and the drive to NAME.drive.csv unless ``poses`` is None."""
         of = road.sample(STEP)
         wide, shoulder = world.profile_of(road).width(of.s), world.profile_of(road).shoulder(of.s)
         columns = [of.s, of.x, of.y, of.z, of.heading, of.curvature, of.grade, wide, shoulder]

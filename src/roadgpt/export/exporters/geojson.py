@@ -15,7 +15,7 @@ from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 STEP = 1.0  # m
-SAME = 1e-6  # m, between two widths
+SAME = 1e-6  # m; a width that varies by less is taken as constant
 DECIMALS = 9  # of a degree: 0.1 mm
 HEIGHT_DECIMALS = 4  # of a metre
 
@@ -46,9 +46,10 @@ class GeoJson:
 
 
 def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
-    """Yields one polygon for each driving lane, from the centre line outwards, first on the right.
+    """Yields one polygon for each driving lane: first those on the right, then those on the left, each from
+    the centre line outwards.
 
-    If there are several lanes on a side, they are numbered from the centre line.
+    If there are several lanes on a side, their names contain numbers, from 1 at the centre line.
     """
     profile = world.profile_of(road)
     left, right = profile.lane_edges(s)
@@ -65,7 +66,7 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
 
 
 def _paved(route: Route, world: World) -> Iterator[dict[str, Any]]:
-    """Yields one polygon for each part of the paved area of a network; it has no heights."""
+    """Yields one polygon for each part of the paved area of a network, without heights."""
     from shapely import get_parts
     from shapely.geometry.polygon import orient
 

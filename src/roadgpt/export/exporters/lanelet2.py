@@ -22,9 +22,9 @@ from roadgpt.network.markings import line_to_stop_at, place_of_sign
 from roadgpt.road import Road, World
 from roadgpt.road.profile import Marking
 
-UTM_SCALE = 0.9996  # of lengths in the middle of a UTM zone
+UTM_SCALE = 0.9996  # scale of lengths at the central meridian of a UTM zone
 DEGREE_DECIMALS = 12  # a tenth of a micrometre
-SAME = 0.01  # m, within which the ends of bounds of two roads are one point
+SAME = 0.01  # m; ends of bounds that are closer together are one point
 TAGS: dict[Marking, dict[str, str]] = {
     "solid": {"type": "line_thin", "subtype": "solid"},
     "broken": {"type": "line_thin", "subtype": "dashed"},
@@ -84,7 +84,7 @@ def document(road: Road, world: World) -> XmlElement:
 
 
 class _MapBuilder:
-    """Collects nodes, ways, lanelets and traffic rules, each with a number of its own."""
+    """Collects nodes, ways, lanelets and traffic rules, each with its own number as id."""
 
     def __init__(self, limit: str) -> None:
         self.nodes: list[XmlElement] = []
@@ -95,7 +95,7 @@ class _MapBuilder:
         self._limit = limit
         self._numbers = count(1)
         self._ends: dict[Cell, list[tuple[Array, int]]] = {}
-        """The ends of all ways, each with its node, by the cell of a grid in which they lie."""
+        """The end points of all ways with the ids of their nodes, by the grid cell in which they lie."""
 
     def way(self, points: Array, tags: dict[str, str]) -> int:
         """Adds a way and returns its id.
@@ -112,7 +112,7 @@ class _MapBuilder:
         return self._way(nodes, tags)
 
     def _at(self, point: Array) -> int | None:
-        """Returns the node at the end of some way that lies at a point; None if there is none."""
+        """Returns the id of the nearest end node of a way within SAME of a point; None if there is none."""
         cells = {_cell(point + (x, y, 0)) for x in (-SAME, SAME) for y in (-SAME, SAME)}
         near = [
             (float(np.abs(place - point).max()), node)
@@ -131,8 +131,8 @@ class _MapBuilder:
         return number
 
     def _add_nodes(self, points: Array) -> list[int]:
-        """Adds nodes with positions in degrees, and also in metres, for programs that read local_x and
-        local_y; returns the ids of the nodes."""
+        """Adds nodes and returns their ids. Positions are in degrees, and also in metres, for programs that
+        read local_x and local_y."""
         longitude, latitude = degrees(points[:, 0] / UTM_SCALE, points[:, 1] / UTM_SCALE)
         numbers = [next(self._numbers) for _ in points]
         for number, lon, lat, (x, y, z) in zip(
@@ -144,7 +144,7 @@ class _MapBuilder:
         return numbers
 
     def lanelet(self, id_: int, left: int, right: int) -> None:
-        """Adds the lanelet between two ways, given by their ids; ``id_`` is that of ``lanelets_of``."""
+        """Adds the lanelet ``id_`` of ``lanelets_of``; ``left`` and ``right`` are the ids of its two ways."""
         lanelet = XmlElement("relation", {"id": next(self._numbers), **KEEP})
         for role, way in (("left", left), ("right", right)):
             lanelet.add("member", {"type": "way", "ref": way, "role": role})
@@ -153,8 +153,10 @@ class _MapBuilder:
         self.lanelets[id_] = _tagged(lanelet, kind | rules)
 
     def signal(self, network: Network, junction: Junction, arm: Arm, incoming: list[int]) -> None:
-        """Adds the sign or the light of an arm and the line at which one stops, as a rule for the lanelets
-        that lead into the junction, which are given by their ids of ``lanelets_of``.
+        """Adds the sign or light of an arm, with its stop line if it has one, as a traffic rule.
+
+        ``incoming`` holds the ids in ``lanelets_of`` of the lanelets for which the rule holds: they lead from
+        the arm into the junction.
         """
         member, heading = network.road(arm.end.road), arm.direction + pi
         foot = member.road.at(*place_of_sign(member, arm.end.contact)) + (0.0, 0.0, SIGN_HEIGHT)
@@ -169,7 +171,7 @@ class _MapBuilder:
         kind = "traffic_light" if arm.control == "lights" else "traffic_sign"
         self.rules.append(_tagged(rule, {"type": "regulatory_element", "subtype": kind}))
         for each in incoming:
-            # members stand before the tags
+            # members must come before the tags
             member_of = XmlElement(
                 "member", {"type": "relation", "ref": rule.attributes["id"], "role": "regulatory_element"}
             )

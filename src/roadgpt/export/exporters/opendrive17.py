@@ -20,7 +20,7 @@ class OpenDrive17:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file, and ``NAME.1.7.route.json`` with the roads and lanes to drive beside it.
+        """Writes the file, and beside it ``NAME.1.7.route.json`` with the roads and lanes to drive.
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
         """

@@ -1,5 +1,5 @@
-"""Exports roads and routes as ASAM OpenSCENARIO XML 1.2: a scenario on the road or in the network, and a
-drive as a trajectory.
+"""Exports roads and routes as ASAM OpenSCENARIO XML 1.2: a scenario in which a car drives the road or route,
+and a second one that replays a recorded drive.
 
 Source: ASAM OpenSCENARIO 1.2.0, user guide and XML schema. An entity's origin is the middle of its rear axle
 on the ground. Angles are right-handed, so pitch is positive nose down (ISO 8855).
@@ -23,7 +23,7 @@ from roadgpt.network import Route
 from roadgpt.road import Road, World
 
 EGO = "Ego"
-DATE = "2026-01-01T00:00:00"  # of every file, so that the same road gives the same bytes
+DATE = "2026-01-01T00:00:00"  # the same in every file, so that the same road gives the same bytes
 KEPT = 0.02  # m/s, or s: tolerance of the simplified speeds
 PATIENCE = 60.0  # s beyond the planned duration, after which a player stops
 STANDS = 0.01  # m; a car that has moved less is taken as standing
@@ -40,8 +40,9 @@ class OpenScenario:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scenario, an OpenDRIVE file with the road, and, if there is a drive, NAME.drive.xosc,
-        which replays it.
+        """Writes the scenario, and beside it NAME.xodr with the road and NAME.route.json.
+
+        If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive.
         """
         stem = path.name.removesuffix(self.suffix)
         map_ = path.with_name(stem + OpenDrive.suffix)
@@ -54,7 +55,7 @@ class OpenScenario:
 
 def scenario(road: Road, world: World, map_: str) -> XmlElement:
     """Returns a scenario in which the car starts from rest, slows down for bends, and drives to the end of
-    the road or of the route.
+    the road or of the route. ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
     """
     if isinstance(road, Route):
         return _along_route(road, world, map_)
@@ -121,8 +122,8 @@ def _stop_at(
     profile: SpeedProfile,
     also: Mapping[str, XmlElement] | None = None,
 ) -> None:
-    """Ends the scenario where the car is nearer to a position than ``near`` metres and other conditions hold,
-    or where it drives for too long.
+    """Ends the scenario when the car drives for too long, or when it is less than ``near`` metres from the
+    position ``end`` and the conditions ``also`` hold.
 
     ``measured`` holds the attributes that say how the distance is measured.
     """
@@ -146,8 +147,8 @@ def _of_ego(condition: XmlElement) -> XmlElement:
 
 
 def replay(road: Road, world: World, poses: Poses, map_: str) -> XmlElement:
-    """Returns a scenario in which the car replays a recorded drive, written as a trajectory with time
-    stamps.
+    """Returns a scenario in which the car replays a recorded drive as a trajectory with time stamps.
+    ``map_`` is the path of the OpenDRIVE file, relative to the scenario.
     """
     time = np.round(poses.time - poses.time[0], DECIMALS) + 0.0
     ground = on_the_ground(poses, CAR.rear_axle)
@@ -242,7 +243,7 @@ def _stop(root: XmlElement, *groups: Mapping[str, XmlElement]) -> None:
 
 
 def _trigger(name: str, *groups: Mapping[str, XmlElement]) -> XmlElement:
-    """Returns a trigger for which it is enough that all conditions of one group hold."""
+    """Returns a trigger that fires as soon as all conditions of at least one group hold."""
     out = XmlElement(name)
     for conditions in groups:
         group = out.add("ConditionGroup")

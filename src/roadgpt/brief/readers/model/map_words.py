@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import ARMS
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.slots import SlottedText
@@ -44,7 +44,15 @@ SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)strassen?|rues? (?:laterale|secondaire|transversale)s?|"
     r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
 )
+MAIN_STREET = re.compile(
+    r"\b(?:(?:main|through|high) (?:street|road)|(?:haupt|durchgangs)stra(?:ss|ß)e|"
+    r"rue principale|grand - rue|calle (?:principal|mayor)|(?:strada|via) principale)\b"
+)
 TREE = re.compile(rf"\b(?:{DEAD_END}|end dead)\b")
+MORE_KINDS = re.compile(
+    r"cross|junction|roundabout|kreuz|kreis|einmund|carrefour|croisement|rond|giratoire|cruce|glorieta|rotonda|"
+    r"incroc|rotatori|square|loop|ring|platz|place\b|plaza|piazza"
+)
 NOT_A_TREE = re.compile(
     rf"\b(?:none|not|nicht|pas|nessuna|ninguna?|keine[rs]?|aucune)\b[^.;]{{0,25}}{DEAD_END}\b"
 )
@@ -67,6 +75,9 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
         return brief
     said = _said(text)
     found = DEAD_ENDS.findall(said)
+    off_street = _off_main_street(said, found)
+    if off_street is not None:
+        return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update = {} if asked.junctions else _blocks(asked, said)
     if asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = _number(found) if found else _around_blocks(asked, said)
@@ -74,6 +85,20 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
         if dead_ends is not None and not is_vague:
             update["dead_ends"] = exactly(dead_ends)
     return brief.model_copy(update={"map": asked.model_copy(update=update)})
+
+
+def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] | None:
+    """Returns the junctions and dead ends of a map that is a main street with some dead ends off it.
+
+    Each of them leads off at a T-junction, and the main street itself has two ends. Returns None for any
+    other map.
+    """
+    number = _number(dead_ends)
+    is_more = BLOCKS.search(said) or BY.search(said) or SIDE_STREETS.search(said) or MORE_KINDS.search(said)
+    if not number or is_more or not MAIN_STREET.search(said):
+        return None
+    kinds = (JunctionCount(kind="t_junction", count=exactly(number)),)
+    return {"junctions": kinds, "columns": None, "rows": None, "dead_ends": exactly(number + 2)}
 
 
 def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:

@@ -1,7 +1,8 @@
-"""Removes the lane change that the network may write if words only name the lane in which the car begins."""
+"""Corrects places where lanes end, begin or are changed: the network may write one too many or too few."""
 
 import re
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -33,3 +34,22 @@ def without_own_lane(brief: Brief, words: str) -> Brief:
         return brief
     road = behind if before.is_open else before.model_copy(update={"length": before.length or behind.length})
     return brief.model_copy(update={"junctions": brief.junctions[1:], "stretches": (road, *roads)})
+
+
+def with_each_lane(brief: Brief) -> Brief:
+    """Returns a route on which one lane ends or begins at a time.
+
+    If the road behind such a place has two lanes more or fewer than the road before, there are two places.
+    """
+    junctions, roads = list(brief.junctions), list(brief.stretches)
+    for n in reversed(range(len(junctions))):
+        before, behind = roads[n].lanes, roads[n + 1].lanes
+        if before is None or behind is None or not (before.exact and behind.exact):
+            continue
+        change = (behind.lo or 0) - (before.lo or 0)
+        if (junctions[n].kind, change) not in (("lane_drop", -2), ("lane_gain", 2)):
+            continue
+        middle = Brief(lanes=exactly((before.lo or 0) + change / 2), against=roads[n].against)
+        roads.insert(n + 1, middle)
+        junctions.insert(n, junctions[n])
+    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})

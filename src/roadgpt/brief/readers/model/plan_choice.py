@@ -6,12 +6,13 @@ from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
-from roadgpt.brief.readers.model.own_lane import without_own_lane
+from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
@@ -52,7 +53,8 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, with what the words leave no choice about."""
-    brief = with_counted_map(with_checked_counts(read_plan(line), text), text)
+    brief = with_counted_junctions(with_checked_counts(read_plan(line), text), text)
+    brief = with_each_lane(with_counted_map(brief, text))
     return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
 
 

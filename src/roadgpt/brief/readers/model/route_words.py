@@ -30,7 +30,7 @@ ENGLISH = (
     r"(?:drive|driving|keep|traffic) on the left|change (?:to the )?(?:left|right)|freeway|motorway|"
     r"interstate|highway|branch|"
     r"\bwye\b|splits? in two|\bparts\b|\bplain \w* ?x\b|\bisland|\brobots?\b|get over to the|"
-    r"pull out|\bcircle|goes off to|ignor"
+    r"pull out|\bcircle|goes off to|ignor|dead[- ]ends\b|culs?-?[- ]de[- ]sacs"
 )
 GERMAN = (
     r"kreuz|einmünd|einmuend|mündet|gabl?el|gablung|verzweig|\bstern|fünfarm|kreisverk|kreisel|\bkvp|"
@@ -43,7 +43,7 @@ GERMAN = (
     r"markierung|"
     r"(?:straße|weg|diese?)[^.]{0,30} (?:aufhört|teilt|endet)|endet auch|\bendet\b|aufhört|"
     r"reißverschluss|wegscheide|strahlig|übernächste|end der straßn|ypsilon|ausfart|(?:rechts|"
-    r"links) ab\b|kommt rechts|kommt links"
+    r"links) ab\b|kommt rechts|kommt links|sackgassen"
 )
 FRENCH = (
     r"carrefour|croisement|intersection|rond-?s?[- ]?points?\b|giratoire|fourche|bifurc|embranch|étoile|"
@@ -53,7 +53,7 @@ FRENCH = (
     r"conduite à gauche|insère|déboît|dépass|toutes-directions|la route bute|"
     r"(?:première|2e|deuxième|troisième) à (?:droite|gauche)|"
     r"déport|rabat|se (?:partage|dédouble|scinde)|rejoint|\barrêt|échiquier|s'en va|lumière|"
-    r"prochaine|croisée|\bl'y\b|à la y\b|change (?:une|deux) fois"
+    r"prochaine|croisée|impasses\b|\bl'y\b|à la y\b|change (?:une|deux) fois"
 )
 SPANISH = (
     r"cruce|cruza|intersecci|glorieta|rotonda|óvalo|isleta|bifurca|horqueta|estrella|ramal|salida|"
@@ -63,7 +63,7 @@ SPANISH = (
     r"vía lateral|camino a la|(?:carretera|camino) (?:[^.,;]{0,20}(?:se parte|se divid|termina))|"
     r"transversal|\b(?:la|una|de) tes?\b|desemboca|desvi|\b(?:primera|segunda|tercera|próxima)\b|"
     r"y griega|encrucijada|redondel|rompoy|\balto\b|luces|focos|lateral|\bstops?\b|cremallera|"
-    r"esquina|desvía|otra carretera|llegue otra|se abre en|se parte|\bla y\b|va a dar a|sale otra"
+    r"esquina|desvía|otra carretera|llegue otra|se abre en|se parte|sin salida|\bla y\b|va a dar a|sale otra"
 )
 ITALIAN = (
     r"in?c?rocc?i|crocevia|quadrivio|rotatori|rotond|biforc|reticolo|\bnod[oi]\b|piazza|laterale|innest|"
@@ -75,6 +75,7 @@ ITALIAN = (
     r"(?:prima|seconda|terza) (?:via )?a (?:destra|sinistra)|guida a sinistra|"
     r"isola centrale|stradin|stradell|sbatt|spost|crocicchio|sdoppia|forcella|\bincr\b|"
     r"\binc[or]+ci|si apre|rondò|(?:terza|seconda|prima) strada|viuzz|si stacca|confluisc|laterali|"
+    r"vicoli ciechi|senza uscita|"
     r"in una strada|(?:rondò|la) (?:seconda|terza)\b"
 )
 TELLING = re.compile("|".join((ENGLISH, GERMAN, FRENCH, SPANISH, ITALIAN)), re.IGNORECASE)

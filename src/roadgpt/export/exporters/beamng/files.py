@@ -21,15 +21,16 @@ Item = dict[str, Any]
 
 NAMESPACE = uuid.UUID(
     "6f1d2c0e-5b0a-5c39-9d3e-0f3a52b1c7aa"
-)  # any fixed value, so that ids are always the same
+)  # arbitrary but fixed, so that ids are always the same
 ABOVE_GROUND = 0.5  # m above the road at which a car is put down
-# Least friction for each ground model of BeamNG.
+# Least friction coefficient for each ground model of BeamNG, in descending order.
 GROUNDS = ((0.8, "ASPHALT"), (0.45, "ASPHALT_WET"), (0.25, "SNOW"), (0.0, "ICE"))
 DECIMALS = 4
 
 
 def ground_model(friction: float) -> str:
-    """Returns the name of the BeamNG ground model with the friction closest to the given coefficient."""
+    """Returns the name of the first BeamNG ground model in GROUNDS whose least friction is not greater than
+    the given coefficient."""
     return next(name for least, name in GROUNDS if friction >= least)
 
 
@@ -151,9 +152,10 @@ def _player(level: str, scene: LevelRoad) -> Iterator[Item]:
 
 
 def rotation(heading: float, grade: float) -> Array:
-    """Returns the rotation matrix (3, 3) of a car with this heading and grade, row by row as in level files.
+    """Returns the rotation matrix (3, 3) of a car with this heading (in radians) and grade (a ratio).
 
-    Its rows point left, backwards and upwards from the car: unrotated, BeamNG's cars face -y.
+    The rows of the matrix point left, backwards and upwards from the car, because BeamNG's cars face -y if
+    they are not rotated. Level files contain the rows one after another.
     """
     size = np.hypot(1.0, grade)
     ahead = np.array([np.cos(heading), np.sin(heading), grade]) / size
@@ -162,7 +164,7 @@ def rotation(heading: float, grade: float) -> Array:
 
 
 def materials(world: World) -> Item:
-    """Returns the content of ``main.materials.json``: plain colours, and ground models for friction."""
+    """Returns the content of ``main.materials.json``: materials with a plain colour and a ground model."""
     ground = ground_model(world.site.friction)
     wanted = (
         (OWN.road, (0.16, 0.16, 0.17), ground),
@@ -210,7 +212,8 @@ def info(name: str, title: str, world: World) -> Item:
 
 
 def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
-    """Returns a scenario in which the car drives from start to goal, and the objects of its prefab file."""
+    """Returns the content of the scenario file, and the objects of the prefab file of the scenario. The car
+    drives from start to goal."""
     path = f"levels/{name}/scenarios/drive/drive.prefab.json"
     about = {
         "name": title,
@@ -226,7 +229,8 @@ def scenario(name: str, title: str) -> tuple[Item, list[Item]]:
 
 
 def car(name: str, scene: LevelRoad, model: str) -> Item:
-    """Returns the car at the start of the road, as an object for a prefab file."""
+    """Returns the car at the start of the road, as an object for a prefab file. ``model`` names a car model
+    of BeamNG."""
     start = (scene.start + [0, 0, ABOVE_GROUND]).round(DECIMALS).tolist()
     return _object(
         name,

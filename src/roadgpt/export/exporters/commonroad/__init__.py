@@ -27,7 +27,7 @@ STEP = 0.1  # s
 PATIENCE = 2.0  # times the duration of a calm drive to the end
 NOWHERE = -999  # GeoNames' number for no place
 MARKS: Mapping[Marking, str] = {"solid": "solid", "broken": "dashed", "none": "no_marking", "double": "solid"}
-SPEED_LIMIT = "274"  # the sign's number in Zamunda, CommonRoad's own country, as in Germany
+SPEED_LIMIT = "274"  # number of the sign in Germany and in Zamunda, CommonRoad's fictional country
 
 
 class CommonRoad:
@@ -65,7 +65,7 @@ def document(road: Road, world: World) -> XmlElement:
             "affiliation": "RoadGPT",
             "source": "generated",
             "benchmarkID": "ZAM_RoadGPT-1_1_T-1",
-            "date": "2026-01-01",  # the same road gives the same bytes
+            "date": "2026-01-01",  # fixed, so that the same road gives the same bytes
         },
     )
     location = root.add("location")
@@ -96,7 +96,7 @@ def _goal(road: Road, world: World, lanelets: Sequence[Lanelet]) -> int:
 
 
 def _lanelet(lanelet: Lanelet, sign: int, junctions: Crossings | None) -> XmlElement:
-    """Returns a lanelet as seen in its direction of driving; ``sign`` is the id of that with the limit."""
+    """Returns a lanelet, with left and right as seen by drivers; ``sign`` is the id of the speed limit."""
     out = XmlElement("lanelet", {"id": lanelet.id})
     for name, bound in (("leftBound", lanelet.left), ("rightBound", lanelet.right)):
         element = out.add(name)

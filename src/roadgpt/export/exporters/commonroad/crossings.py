@@ -1,7 +1,7 @@
 """Writes the junctions of a network for CommonRoad: intersections, with their signs, lights and stop lines.
 
-Signs are those of Zamunda, CommonRoad's own country, which has the German ones: 205 give way, 206 stop, 306
-priority road. Lights are green all the time, because there is no other traffic.
+Signs are those of Zamunda, CommonRoad's fictional country, with their German numbers: 205 give way, 206 stop,
+306 priority road. Lights are green all the time, because there is no other traffic.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,13 +18,13 @@ from roadgpt.network.markings import line_to_stop_at, place_of_sign
 
 SIGNS: dict[Control, str] = {"yield": "205", "stop": "206", "priority": "306"}
 LINES: dict[Control, str] = {"yield": "dashed", "stop": "solid", "lights": "solid"}
-"""The line at the end of an arm with this sign or light."""
-GREEN = 1000  # steps of the one phase of a light
+"""Type of the line at the end of an arm, by the sign or light of the arm."""
+GREEN = 1000  # time steps; duration of the only phase of a light
 ORDER: tuple[Way, ...] = ("right", "straight", "left")
 
 
 def point_element(values: Sequence[float]) -> XmlElement:
-    """Returns a point of a plan view, x and y in metres."""
+    """Returns the element ``point`` with x and y in metres."""
     out = XmlElement("point")
     for name, value in zip("xy", values, strict=True):
         out.add(name, raw=number(value))
@@ -32,10 +32,16 @@ def point_element(values: Sequence[float]) -> XmlElement:
 
 
 class Crossings:
-    """The junctions of a network as CommonRoad has them."""
+    """Creates the CommonRoad elements of a network's junctions."""
 
     def __init__(self, network: Network, lanelets: Sequence[Lanelet], first_free: int) -> None:
-        """Gives ids to signs, lights and intersections, from ``first_free`` on."""
+        """Prepares the elements of a network's junctions.
+
+        Args:
+            network: The network.
+            lanelets: All lanelets of the network.
+            first_free: The first id for signs, lights and intersections.
+        """
         self.network, self.first_free = network, first_free
         self.road_of = {each.id: each.road for each in lanelets}
         self.arms = [
@@ -47,7 +53,7 @@ class Crossings:
 
     @cached_property
     def _signed(self) -> dict[int, tuple[int, Junction, Arm]]:
-        """For each lanelet with a sign or light, the id of that, and the arm at which it stands."""
+        """The id of the sign or light of each lanelet that has one, with its junction and its arm."""
         signed = [each for each in self.arms if each[1].control != "none"]
         return {
             lanelet.id: (self.first_free + n, junction, arm)
@@ -56,8 +62,10 @@ class Crossings:
         }
 
     def line_of(self, lanelet: int) -> Iterator[XmlElement]:
-        """Yields the line at which traffic on a lanelet stops or gives way, if there is one. At a roundabout
-        it is the end of the lanelet.
+        """Yields the element ``stopLine`` of a lanelet on which traffic stops or gives way; nothing for any
+        other lanelet.
+
+        At a roundabout, the element has no points, which means that the line is at the end of the lanelet.
         """
         if lanelet not in self._signed:
             return
@@ -72,14 +80,14 @@ class Crossings:
         yield out
 
     def references(self, lanelet: int) -> Iterator[XmlElement]:
-        """Yields the reference of a lanelet to its sign or light; nothing if it has none."""
+        """Yields the element that assigns its sign or light to a lanelet; nothing if the lanelet has none."""
         if lanelet in self._signed:
             id_, _, arm = self._signed[lanelet]
             name = "trafficLightRef" if arm.control == "lights" else "trafficSignRef"
             yield XmlElement(name, {"ref": id_})
 
     def elements(self) -> Iterator[XmlElement]:
-        """Yields the signs, the lights and the intersections, in the order that the format asks for."""
+        """Yields the signs, the lights and the intersections, in the order that the format requires."""
         placed = [(arm, self._signed[own[0].id][0]) for _, arm, own in self.arms if own[0].id in self._signed]
         yield from (self._sign(arm, id_) for arm, id_ in placed if arm.control != "lights")
         yield from (self._light(arm, id_) for arm, id_ in placed if arm.control == "lights")
@@ -93,7 +101,7 @@ class Crossings:
             free += len(own) + 1
 
     def _way_in(self, junction: Junction, arm: Arm, incoming: Sequence[Lanelet], id_: int) -> XmlElement:
-        """Returns one way into a junction, with the lanelets on which one goes on."""
+        """Returns the element ``incoming`` of an arm, with the lanelets that lead on to each side."""
         out = XmlElement("incoming", {"id": id_})
         for lanelet in incoming:
             out.add("incomingLanelet", {"ref": lanelet.id})
@@ -109,8 +117,10 @@ class Crossings:
         return out
 
     def _side(self, junction: Junction, way: Connection) -> Way:
-        """Returns the side to which a way leads; those that stay on a ring lead straight on, and a ramp leads
-        to its side however little it turns.
+        """Returns the side to which a connection leads.
+
+        A connection that stays on the ring of a roundabout leads straight on. At a diverge, a connection that
+        turns by more than 1 degree leads to the side of this turn.
         """
         ring = self.network.roundabout_of.get(junction.id)
         if ring is not None and {way.incoming.road, way.outgoing.road} <= {*ring.ring}:

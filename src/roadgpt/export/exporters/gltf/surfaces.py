@@ -18,7 +18,7 @@ from roadgpt.road import Profile, Road, World
 from roadgpt.road.land import FAR, Land
 from roadgpt.road.profile import DASH, GAP
 
-THICKNESS = 0.5  # m, of the slabs
+THICKNESS = 0.5  # m, thickness of the slabs
 PAINT = 0.005  # m by which markings lie above the road; less would flicker at a coarse depth resolution
 PATH = 0.02  # m by which the path lies above the road
 PATH_WIDTH = 0.3  # m
@@ -27,7 +27,9 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def meshes(road: Road, world: World, poses: Poses | None = None) -> list[TriangleMesh]:
-    """Returns all meshes of the scene.
+    """Returns the meshes of a road: slabs, lines, the path and, if the road has shoulders, the ground.
+
+    The path is the drive ``poses``, or the middle of the driven lane if ``poses`` is None.
 
     Raises:
         ExportError: The road has a number that is not finite.
@@ -56,7 +58,7 @@ def _ground(road: Road, world: World, s: Array) -> TriangleMesh:
     """Returns the land around the road, and the embankments from the edges and ends of the road down to the
     land."""
     land = Land.around(road, world)
-    near = slice(len(FAR), -len(FAR))  # the rest is only for the horizon
+    near = slice(len(FAR), -len(FAR))  # the outer rows and columns are only for the horizon
     x, y = np.meshgrid(land.x[near], land.y[near])
     slope_y, slope_x = np.gradient(land.heights[near, near], land.y[near], land.x[near])
     up = np.stack([-slope_x, -slope_y, np.ones_like(slope_x)], axis=-1).reshape(-1, 3)
@@ -113,7 +115,7 @@ def _path(road: Road, s: Array, world: World, poses: Poses | None) -> TriangleMe
         return _strip("path", "path", road, part, middle + half, middle - half, PATH)
     moved = np.r_[
         True, np.hypot(np.diff(poses.x), np.diff(poses.y)) > 1e-6
-    ]  # a single point where the car stands
+    ]  # keeps a single point where the car stands
     ground = on_the_ground(poses, 0.0)[moved] + PATH * UP
     heading = poses.heading[moved]
     if len(ground) < 2:

@@ -1,5 +1,5 @@
-"""Exports roads as ASAM OpenDRIVE 1.8, with only those elements that version 1.7 also defines, except for
-the boundaries of junctions.
+"""Exports roads and networks as ASAM OpenDRIVE 1.8. Except for the boundaries of junctions, only elements
+that version 1.7 also defines are written.
 
 Source: ASAM OpenDRIVE 1.8.1, user guide and XML schema.
 """
@@ -15,7 +15,7 @@ from roadgpt.export.poses import Poses
 from roadgpt.network import Route
 from roadgpt.road import Road, World
 
-ROAD = 1  # id of the one road in the file
+ROAD = 1  # id of the road if the file has only one
 ROUTE = ".route.json"
 """Suffix of the file that names the roads and lanes of a route: ``{"route": [[road, lane], ...]}``."""
 
@@ -28,7 +28,7 @@ class OpenDrive:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the file, and ``NAME.route.json`` with the roads and lanes to drive beside it.
+        """Writes the file, and beside it ``NAME.route.json`` with the roads and lanes to drive.
 
         ``poses`` is ignored, because OpenDRIVE cannot hold a drive.
         """
@@ -41,8 +41,9 @@ def write(road: Road, path: Path, world: World, revision: int = REVISION) -> Non
     Args:
         road: The road, or the route through a network.
         path: The file to write.
-        world: The World.
-        revision: The minor revision of OpenDRIVE 1.
+        world: The World, which defines friction, speed limit, and the lanes of a road without its own
+            cross-section.
+        revision: The minor revision of OpenDRIVE 1: 7, or 8 with the boundaries of junctions.
 
     Raises:
         ExportError: The road has a number that is not finite.
@@ -62,8 +63,7 @@ def _legs(road: Road, world: World) -> dict[str, list[list[int]]]:
 def document(road: Road, world: World, revision: int = REVISION) -> XmlElement:
     """Returns the XML document of a road, or of the network of a route.
 
-    Raises:
-        ExportError: The road has a number that is not finite.
+    If a number of the road is not finite, ``to_text`` of the document raises ExportError.
     """
     if isinstance(road, Route):
         return network_document(road.network, world, revision)

@@ -10,11 +10,11 @@ from roadgpt.network.arrows import LENGTH, PaintedArrow
 
 WORDS = {"left": "Left", "straight": "Straight", "right": "Right"}
 ORDER = ("straight", "left", "right")
-"""The order of ways in the name of a subtype, such as ``arrowStraightLeft``."""
+"""The order of the directions in the name of a subtype, such as ``arrowStraightLeft``."""
 
 
 def arrow_object(arrow: PaintedArrow, number: int) -> XmlElement:
-    """Returns the element ``object`` of an arrow, with the id ``number``; its heading is that of traffic."""
+    """Returns the element ``object`` of an arrow, with the id ``number`` and the heading of the traffic."""
     at_end = arrow.end.contact == "end"
     made = XmlElement(
         "object",

@@ -1,12 +1,12 @@
 """Writes the boundary of a junction: across the lanes of each arm, and along the kerbs between two arms.
 
 Source: ASAM OpenDRIVE 1.8.1, junction boundary. The segments are in counter-clockwise order and close the
-boundary. A segment of type "joint" leads across an arm from one lane to another, from outer edge to outer
-edge; a segment of type "lane" leads along the outer edge of a lane. Lane 0 has no width, so its edge is the
-line between the lanes of both directions, at which a connecting road begins.
+boundary. A segment of type "joint" leads across an arm, from the outer edge of one lane to the outer edge of
+another lane. A segment of type "lane" leads along the outer edge of a lane. Lane 0 has no width, so its edge
+is the line between the two directions of an arm, or the left edge of a connecting road.
 
-With traffic on the left, the boundary is that of the mirror image, mirrored: followed backwards, with left
-and right exchanged.
+With traffic on the left, the boundary is computed for the mirrored network, whose traffic is on the right. It
+is then mirrored back: the segments are followed in reverse order, with left and right exchanged.
 """
 
 from collections.abc import Iterator, Mapping
@@ -20,7 +20,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network, RoadEnd
 from roadgpt.network.building import width_at
 
-ROUNDABOUT_WAYS = 3  # of a junction of a roundabout at a road with both directions
+ROUNDABOUT_WAYS = 3  # number of ways through a roundabout's junction with a two-way road
 
 
 def boundary(network: Network, junction: Junction) -> XmlElement:
@@ -36,13 +36,14 @@ class BoundarySegment(NamedTuple):
 
     road: int
     first: tuple[int, Value]
-    """The id of the lane at whose outer edge it begins, and the contact or the station there."""
+    """The id of the lane at whose outer edge the segment begins, and the position along the road: "start",
+    "end" or a station in metres."""
     last: tuple[int, Value]
-    """The id of the lane at whose outer edge it ends, and the contact or the station there."""
+    """Where the segment ends, in the same form as ``first``."""
     is_across: bool
 
     def mirrored(self) -> "BoundarySegment":
-        """Returns its mirror image, in the other direction."""
+        """Returns the mirror image of the segment, followed in the opposite direction."""
         (lane, start), (other, end) = self.first, self.last
         return self._replace(first=(-other, end), last=(-lane, start))
 
@@ -79,7 +80,7 @@ def _segments(network: Network, junction: Junction) -> Iterator[BoundarySegment]
 
 
 def _needs_outline(junction: Junction) -> bool:
-    """Returns whether any way may be the outermost one: several lanes meet, or one-way roads."""
+    """Returns whether any way may be the outermost one, because several lanes or one-way roads meet."""
     if junction.kind in RAMPS:
         return False
     count = len(junction.arms)
@@ -118,9 +119,10 @@ def _corner(network: Network, junction: Junction, end: RoadEnd, which: int) -> A
 def _between(
     network: Network, ways: Mapping[tuple[RoadEnd, RoadEnd], Connection], end: RoadEnd, after: RoadEnd
 ) -> Iterator[BoundarySegment]:
-    """Yields the segments between two neighbouring arms which no way joins, as at a merge or an exit.
+    """Yields the segments between two neighbouring arms that no way joins, as at a merge or an exit.
 
-    They lead along the ways from both arms to a third one, or from a third arm to both, to where these meet.
+    Two ways join both arms to a third arm, or lead from a third arm to both. The segments follow one
+    way from the first arm to the third arm, and the other way on to the second arm.
     """
     for third in dict.fromkeys(each for way in ways for each in way):
         if (end, third) in ways and (after, third) in ways:
@@ -138,7 +140,7 @@ def _right(network: Network, way: Connection) -> BoundarySegment:
 
 
 def _across(junction: Junction, end: RoadEnd) -> BoundarySegment:
-    """Returns the segment across those lanes of an arm which lead on in the junction.
+    """Returns the segment across those lanes of an arm that continue in the junction.
 
     Seen from inside the junction, it leads from right to left: from the lanes that lead out of the junction
     to those that lead into it. Shoulders end at the junction.

@@ -10,20 +10,21 @@ from roadgpt.geometry.pieces import advance
 from roadgpt.road import Profile
 from roadgpt.road.profile import Width
 
-APART_ON_BENDS = 1.0  # m, at most, between two points of a bend
+APART_ON_BENDS = 1.0  # m, greatest distance between two points of a bend
 
 
 def bounds_of(
     roads: Sequence[Sequence[Start]], sides: Sequence[tuple[float, float]]
 ) -> tuple[float, float, float, float]:
-    """Returns the smallest x and y and the largest x and y in metres that lanes have.
+    """Returns the box around all lanes: smallest x, smallest y, largest x and largest y, in metres.
 
-    No lane lies outside. The box is too large by at most 3 cm for each metre by which the lanes reach beyond
-    a bend of a radius of 6 m.
+    No lane lies outside the box. If no bend has a radius below 6 m, and all widths and lane offsets are
+    constant, the box is too large by at most 2.1 cm, plus 0.35 cm for each metre of the greatest distance in
+    ``sides``.
 
     Args:
         roads: The lines, arcs and spirals of each reference line.
-        sides: For each road, what ``reaches`` returns of it.
+        sides: For each road, the result of ``reaches``.
     """
     starts = [start for own in roads for start in own]
     left, right = np.repeat(np.array(sides), [len(own) for own in roads], axis=0).T
@@ -50,7 +51,7 @@ def bounds_of(
 def reaches(profile: Profile) -> tuple[float, float]:
     """Returns the distances in metres from the reference line to the outermost edges, on the left and right.
 
-    Where widths vary, they are upper bounds.
+    Where widths vary, the distances are upper bounds.
     """
     left, right = (sum(_widest(lane.width) for lane in side) for side in (profile.left, profile.right))
     (low, high), begin = profile.offset_range, profile.begins

@@ -12,8 +12,8 @@ from roadgpt.geometry.curve import Array
 from roadgpt.road import Road
 
 TOLERANCE = 1e-4  # m, between heights and their cubics
-SAME = 1e-5  # m
-EQUAL = 1e-12  # of the coefficients of two cubics
+SAME = 1e-5  # m; a cubic this close to the continuation of the previous one is left out
+EQUAL = 1e-12  # greatest difference between the coefficients of two cubics that are taken as equal
 
 
 def elevations(road: Road) -> list[XmlElement]:
@@ -23,7 +23,11 @@ def elevations(road: Road) -> list[XmlElement]:
 
 
 def level_height(road: Road) -> float | None:
-    """Returns the height in metres of a level road, such as those of junctions; None for any other road."""
+    """Returns the height in metres of a road with a grade of 0 throughout, such as a road in a junction.
+
+    None is returned for any other road, and for a level road whose elevation is not a GradeProfile with two
+    stations.
+    """
     profile = road.elevation
     if isinstance(profile, GradeProfile) and len(profile.stations) == 2 and not any(profile.grades):
         return profile.z0
@@ -62,8 +66,8 @@ def _elements(name: str, station: str, stations: Array, table: Array) -> list[Xm
 
 
 def _table(road: Road) -> tuple[Array, Array]:
-    """Returns stations ``(n,)``, and for each station the four coefficients ``(n, 4)`` of the height as a
-    cubic of the distance from it."""
+    """Returns stations ``(n,)`` and coefficients ``(n, 4)``. From each station on, the height is a cubic of
+    the distance from that station."""
     profile, length = road.elevation, road.length
     if (level := level_height(road)) is not None:
         return np.zeros(1), np.array([[level, 0.0, 0.0, 0.0]])

@@ -1,4 +1,4 @@
-"""Writes a network: its roads, its junctions, roundabouts, signs and lights.
+"""Writes a network: roads, junctions, roundabouts, signs and lights.
 
 Source: ASAM OpenDRIVE 1.8.1, junctions.
 """
@@ -72,13 +72,13 @@ def _links(network: Network, member: NetworkRoad) -> Iterator[XmlElement]:
 
 @lru_cache(maxsize=1024)
 def _to_road(name: str, end: RoadEnd) -> XmlElement:
-    """Returns the link to the end of a road, which all ways from there or to there have in common."""
+    """Returns the link to the end of a road. All roads that are joined to this end share the element."""
     link = {"elementType": "road", "elementId": str(end.road), "contactPoint": end.contact}
     return XmlElement(name, link, is_shared=True)
 
 
 def _continued_lanes(network: Network, member: NetworkRoad) -> LaneLinks:
-    """Returns the lanes that continue those of a road outside junctions."""
+    """Returns the links from the lanes of a road to the lanes that continue them outside junctions."""
     before: dict[int, int] = {}
     after: dict[int, int] = {}
     for end, links in ((RoadEnd(member.id, "start"), before), (RoadEnd(member.id, "end"), after)):

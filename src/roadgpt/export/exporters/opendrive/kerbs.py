@@ -14,9 +14,9 @@ from roadgpt.geometry import Piece, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Connection, Junction, Network
 
-EARLIER = 0.1  # m, by which a way must bend earlier than another one
-LEAST = 0.001  # m; a smaller distance between two edges is left out
-STEP = 0.1  # m, between two points of an edge
+EARLIER = 0.1  # m by which a way must bend earlier than the way along the kerb
+LEAST = 0.001  # m; a smaller distance between two edges is ignored
+STEP = 0.1  # m, approximate distance between two points of an edge
 
 
 class Stretch(NamedTuple):
@@ -31,12 +31,12 @@ class Stretch(NamedTuple):
 
 
 def outermost(network: Network, junction: Junction, right: Connection) -> list[Stretch]:
-    """Returns the ways with the outermost right edge, in driving order.
+    """Returns the parts of ways whose right edge is the outermost one between two arms, in driving order.
 
     Args:
-        network: The network.
-        junction: A junction of it.
-        right: The way from an arm to the next one counter-clockwise.
+        network: The network, with traffic on the right.
+        junction: A junction of the network.
+        right: The way from one of the two arms to the next arm counter-clockwise.
     """
     before = [c for c in junction.connections if c.incoming == right.incoming and c is not right]
     behind = [c for c in junction.connections if c.outgoing == right.outgoing and c is not right]
@@ -55,7 +55,7 @@ def outermost(network: Network, junction: Junction, right: Connection) -> list[S
 def _before(
     network: Network, ways: Sequence[Connection], right: Connection, sense: int
 ) -> tuple[int, float, float] | None:
-    """Returns the way that leads farthest beyond the edge of another way where both begin or end.
+    """Returns the way that leads farthest beyond the edge of the way ``right`` where both begin or end.
 
     Args:
         network: The network.
@@ -64,8 +64,9 @@ def _before(
         sense: 1 where the ways begin, -1 where they end.
 
     Returns:
-        The id of the connecting road, and the distances in metres from the common end of both ways, along
-        either of them, to the point at which their edges cross. None if no way leads beyond the edge.
+        The id of the connecting road, and two distances in metres from the common end of both ways to the
+        point at which their edges cross: along the found way and along ``right``. None if no way leads beyond
+        the edge.
     """
     line = _straight(network, right, sense)[0] - EARLIER
     if line <= 0:
@@ -92,9 +93,10 @@ def _straight(network: Network, way: Connection, sense: int) -> tuple[float, boo
 def _crossing(
     network: Network, way: Connection, right: Connection, sense: int
 ) -> tuple[float, float, float] | None:
-    """Returns how far a way leads beyond the edge of another one, and the distances to the crossing.
+    """Returns how far a way leads beyond the edge of ``right``, and the distances to where the edges cross.
 
-    All are in metres; None if it leads nowhere beyond it, by ``LEAST``.
+    All values are in metres. None is returned if the way leads less than ``LEAST`` beyond the edge, or if the
+    edges do not cross.
     """
     s, x, y = _edge(network, way, sense)
     s2, x2, y2 = _edge(network, right, sense)
@@ -114,8 +116,9 @@ def _crossing(
 def _edge(network: Network, way: Connection, sense: int) -> tuple[Array, Array, Array]:
     """Returns points of the right edge of a way as far as it turns by less than a right angle.
 
-    Distances from the end of the way, and coordinates in metres along the way and to the left of it there,
-    each of shape ``(n,)``. Where a way ends, they are those of the same way seen in a mirror, backwards.
+    The result is three arrays ``(n,)`` in metres: the distance from the start of the way, and the coordinates
+    ahead of this start and to its left. With ``sense`` -1, the way is mirrored and followed backwards, so
+    that its end is the start.
     """
     road = network.road(way.road).road
     assert road.profile is not None

@@ -20,12 +20,12 @@ NO_SHOULDER = 1e-3  # m; narrower shoulders are left out
 
 
 LaneLinks = Mapping[int, tuple[int | None, int | None]]
-"""For the id of a lane, the ids of the lanes of other roads before and after it; None for none."""
+"""Maps the id of a lane to the ids of the lanes of other roads before and after it; None if there is none."""
 
 
 @dataclass(frozen=True)
 class RoadParts:
-    """Writes what many roads of one file have in common. Equal elements are made once and shared."""
+    """Creates the XML elements that roads of one file share. Equal elements are created only once."""
 
     world: World
     _made: dict[object, XmlElement] = field(default_factory=dict)
@@ -39,7 +39,7 @@ class RoadParts:
         return made
 
     def heights(self, road: Road) -> XmlElement:
-        """Returns the element ``elevationProfile`` of a road."""
+        """Returns the element ``elevationProfile`` of a road. Level roads of one height share one element."""
         level = level_height(road)
         if level is None or level not in self._level:
             made = XmlElement("elevationProfile", is_shared=level is not None).extended(*elevations(road))
@@ -53,9 +53,9 @@ class RoadParts:
 
         Args:
             road: The road.
-            links: The links of its lanes to lanes of other roads.
-            is_inside: Whether the road is a connecting road in a junction, where it is stated that there are
-                no markings.
+            links: The links from lanes of the road to lanes of other roads; None if there are none.
+            is_inside: Whether the road is a connecting road in a junction. Lanes without a marking then get
+                the marking "none".
         """
         profile = self.world.profile_of(road)
         length = None if _is_constant(profile) else road.length
@@ -85,7 +85,7 @@ class RoadParts:
     def _side(
         self, side: Sequence[Lane], first: int, length: float, links: LaneLinks, is_inside: bool
     ) -> Iterator[XmlElement]:
-        """Yields the lanes of one side from the centre line outwards; the first one has this id."""
+        """Yields the lanes of one side from the centre line outwards; the first lane has the id ``first``."""
         kept = [lane for lane in side if isinstance(lane.width, CubicProfile) or lane.width >= NO_SHOULDER]
         for index, lane in enumerate(kept):
             number = first + index if first > 0 else first - index
@@ -119,8 +119,8 @@ def _is_constant(profile: Profile) -> bool:
 
 
 def lateral_profile(road: Road) -> list[XmlElement]:
-    """Returns the element ``lateralProfile`` with the superelevation, in a list that is empty for a road
-    without superelevation.
+    """Returns a list with the element ``lateralProfile``; an empty list for a road without
+    superelevation.
     """
     angle = road.profile.superelevation_angle if road.profile is not None else None
     if angle is None:
@@ -136,8 +136,8 @@ def _lane(number: int, kind: str) -> XmlElement:
 def _mark(kind: Marking, is_inside: bool) -> tuple[XmlElement, ...]:
     """Returns the road marking at the outer edge of a lane.
 
-    Where there is none, nothing is returned; inside junctions, the marking "none" is written, because some
-    programs would draw a line there.
+    A lane without a marking has no such element. Only inside junctions, the marking "none" is written for
+    this lane, because some programs would draw a line there.
     """
     if kind == "none":
         blank: dict[str, Value] = {"sOffset": 0, "type": "none", "color": "standard"}

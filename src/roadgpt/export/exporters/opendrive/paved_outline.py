@@ -1,6 +1,7 @@
 """Follows the outline of the paved area of a junction from one arm to the next, along the edges of its ways.
 
-It is used where roads with several lanes or one-way roads meet: there, any way may be the outermost one.
+The outline is used where roads with several lanes or one-way roads meet, because any way may be the outermost
+one there.
 """
 
 from collections.abc import Iterator
@@ -17,9 +18,9 @@ from roadgpt.network.paved import outline_of, paved_by, stations_of
 if TYPE_CHECKING:
     from shapely import LinearRing
 
-NEAR = 0.005  # m, between the outline and the edge that it follows: both are polygons
-ROUNDING = 0.01  # m, from a station to the end of a road, which is then named
-SHORT = 0.02  # m; shorter pieces of the outline come from rounding
+NEAR = 0.005  # m, between the outline and the edge that it follows: both are polylines
+ROUNDING = 0.01  # m; a station this close to an end of its road is written as "start" or "end"
+SHORT = 0.02  # m; shorter pieces of the outline come from rounding and are left out
 
 
 @dataclass(frozen=True)
@@ -29,14 +30,14 @@ class Edge:
     road: int
     """The id of the connecting road."""
     lane: int
-    """The lane whose outer edge it is; 0 for the left edge."""
+    """The id of the lane whose outer edge this is; 0 for the left edge of the road."""
     s: Array
-    """Stations ``(n,)`` in metres."""
+    """Increasing stations ``(n,)`` in metres."""
     points: Array
-    """Points ``(n, 2)`` in metres."""
+    """Points ``(n, 2)`` in metres at these stations."""
 
     def station(self, point: Array) -> float:
-        """Returns the station of the point of the edge that is nearest to a point."""
+        """Returns the station in metres at which the edge is nearest to a point ``(2,)``."""
         import shapely
 
         line = shapely.LineString(self.points)
@@ -44,7 +45,7 @@ class Edge:
         return float(np.interp(shapely.line_locate_point(line, shapely.Point(point)), along, self.s))
 
     def named(self, s: float) -> Value:
-        """Returns a station as it is written: the start and the end of the road have names."""
+        """Returns "start" or "end" for a station near an end of the road, and any other station unchanged."""
         if s < ROUNDING:
             return "start"
         return "end" if s > float(self.s[-1]) - ROUNDING else s
@@ -59,7 +60,7 @@ class PavedOutline:
 
     @classmethod
     def of(cls, network: Network, junction: Junction) -> "PavedOutline":
-        """Returns the outline of a junction of a network."""
+        """Returns the outline of a junction of a network with traffic on the right."""
         import shapely
 
         roads = [network.road(each.road) for each in junction.connections]
@@ -73,9 +74,10 @@ class PavedOutline:
         return cls(shapely.LinearRing(outline_of(paved)), tuple(edges))
 
     def between(self, start: Array, end: Array) -> Iterator[tuple[Edge, Value, Value]]:
-        """Yields the edges from one point of the outline to another, each with the stations of its part.
+        """Yields the edges that the outline follows from one of its points ``(2,)`` to another.
 
-        A left edge is followed against its road.
+        With each edge come the stations at which the outline joins and leaves this edge, as ``Edge.named``
+        returns them. A left edge is followed from higher to lower stations.
         """
         import shapely
 

@@ -1,4 +1,4 @@
-"""Writes the reference line: lines, arcs and spirals exactly, splines as cubics."""
+"""Writes the reference line: lines, arcs and spirals exactly, all other curves as cubics."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -26,7 +26,7 @@ SHORTEST = 1e-6  # m; a shorter piece is left out, and the next one starts in it
 
 
 class Start(NamedTuple):
-    """Where a line, an arc or a spiral begins."""
+    """Where a line, an arc or a spiral begins; x and y are in metres."""
 
     s: float
     """The station in metres."""
@@ -42,7 +42,7 @@ def geometries(plan: PlanCurve, starts: Sequence[Start] | None = None) -> Iterat
 
     Args:
         plan: The curve.
-        starts: The starts of its pieces, if they have been computed already: see ``starts_of``.
+        starts: The starts of the curve's pieces, as ``starts_of`` returns them; None to compute them.
     """
     if isinstance(plan, PieceCurve):
         return _pieces(plan, starts)
@@ -50,7 +50,10 @@ def geometries(plan: PlanCurve, starts: Sequence[Start] | None = None) -> Iterat
 
 
 def starts_of(plans: Sequence[PieceCurve]) -> list[list[Start]]:
-    """Returns the starts of the pieces of many curves, computed together, which is faster than one by one."""
+    """Returns one list for each curve, with the starts of its pieces.
+
+    All curves are computed together, which is faster than one after another.
+    """
     rows = np.array([(p.length, p.k0, p.k1) for plan in plans for p in plan.pieces])
     length, k0, k1 = rows.T
     turns = (length * (k0 + k1) / 2).tolist()
@@ -107,7 +110,10 @@ def _pieces(plan: PieceCurve, starts: Sequence[Start] | None) -> Iterator[XmlEle
 
 
 def _is_tellable(piece: Piece) -> bool:
-    """Returns whether other programs accept a piece: see ``_tellable``. Its comparison is numpy's."""
+    """Returns whether other programs accept a piece: see ``_tellable``.
+
+    The comparison is that of numpy's ``isclose``.
+    """
     k0, k1 = piece.k0, piece.k1
     return k0 == k1 or not math.isfinite(k1) or not abs(k0 - k1) <= CLOSE + NEARLY * abs(k1)
 

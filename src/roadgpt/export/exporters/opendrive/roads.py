@@ -17,7 +17,7 @@ REVISION = 8  # ASAM OpenDRIVE 1.8
 
 
 def header(bounds: Sequence[float], revision: int = REVISION) -> XmlElement:
-    """Returns the header: revision, bounds and georeference. It has no date.
+    """Returns the element ``header`` with revision, bounds and georeference, but without a date.
 
     Args:
         bounds: The smallest x and y and the largest x and y of all lanes, in metres.
@@ -47,13 +47,13 @@ class RoadPlace:
     """Where a road is in a network."""
 
     links: Sequence[XmlElement] = ()
-    """The elements of the roads or junctions before and after it."""
+    """The elements ``predecessor`` and ``successor``: the roads or junctions before and after the road."""
     junction: int = -1
     """The id of the junction to which a connecting road belongs; -1 for any other road."""
     lane_links: LaneLinks | None = None
-    """The links of its lanes to lanes of other roads."""
+    """The links from lanes of the road to lanes of other roads."""
     starts: Sequence[Start] | None = None
-    """The starts of the pieces of its reference line, if they have been computed already."""
+    """The starts of the pieces of the reference line; None if they have not been computed yet."""
 
 
 def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | None = None) -> XmlElement:
@@ -61,8 +61,8 @@ def road_element(road: Road, number: int, parts: RoadParts, place: RoadPlace | N
 
     Args:
         road: The road.
-        number: Its id.
-        parts: What writes the parts that roads of the file have in common.
+        number: The id of the road.
+        parts: Creates the elements that the roads of the file share.
         place: Where the road is in its network; None for a single road.
     """
     body = XmlElement(

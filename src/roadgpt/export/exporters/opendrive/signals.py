@@ -24,9 +24,9 @@ NAMES = {
     "lights": "traffic light",
 }
 SIZES = {"stop": (0.9, 0.9), "yield": (0.9, 0.9), "priority": (0.6, 0.6), "lights": (0.9, 0.3)}
-"""Height and width of each sign in metres."""
+"""Height and width in metres of each sign and of a light."""
 HEIGHTS = {"stop": 2.0, "yield": 2.0, "priority": 2.0, "lights": 2.1}
-"""Height in metres of the lower edge above the road."""
+"""Height in metres of the lower edge of each sign and of a light above the road."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Signals:
     network: Network
     them: tuple[_Signal, ...]
     first_free: int
-    """The first id behind those of all signals."""
+    """The first id after the ids of all signals."""
     arrows: tuple[PaintedArrow, ...]
     """The arrows before all junctions."""
 
     @classmethod
     def of(cls, network: Network) -> "Signals":
-        """Returns the signals of a network; their ids follow those of its roads and junctions."""
+        """Returns the signals of a network. Their ids follow the ids of its roads and junctions."""
         arms = [
             (junction.id, arm)
             for junction in network.junctions
@@ -63,7 +63,7 @@ class Signals:
         return cls(network, them, first + len(arms), arrows(network))
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
-        """Yields the elements ``objects`` and ``signals`` of a road; nothing if it has none."""
+        """Yields the elements ``objects`` and ``signals`` of a road, each only if the road has any."""
         if objects := self._objects.get(road):
             yield XmlElement("objects", children=objects)
         if own := self._of_road.get(road):
@@ -71,7 +71,7 @@ class Signals:
 
     @cached_property
     def _of_road(self) -> dict[int, list[_Signal]]:
-        """The signals of each road that has some."""
+        """The signals of each road that has any, by the id of the road."""
         found: dict[int, list[_Signal]] = {}
         for signal in self.them:
             found.setdefault(signal.arm.end.road, []).append(signal)
@@ -79,7 +79,10 @@ class Signals:
 
     @cached_property
     def _objects(self) -> dict[int, list[XmlElement]]:
-        """What is painted on each road: lines at signals, crosswalks, arrows. Ids are in this order."""
+        """What is painted on each road, by the id of the road: lines at signals, crosswalks, arrows.
+
+        A line has the id of its signal. Crosswalks and then arrows have the ids from ``first_free`` on.
+        """
         found: dict[int, list[XmlElement]] = {}
         for signal in self.them:
             found.setdefault(signal.arm.end.road, []).extend(self._line(signal))
@@ -92,7 +95,7 @@ class Signals:
         return found
 
     def controllers(self) -> Iterator[XmlElement]:
-        """Yields a controller for the lights of each junction that has some; its id is the junction's."""
+        """Yields the controller of each junction with lights; a controller has the id of its junction."""
         for junction in self._lit:
             controller = XmlElement("controller", {"id": str(junction), "name": f"lights {junction}"})
             for signal in self.them:
@@ -101,7 +104,7 @@ class Signals:
             yield controller
 
     def of_junction(self, junction: int) -> Iterator[XmlElement]:
-        """Yields the reference to the controller of a junction; nothing if it has no lights."""
+        """Yields the reference to the controller of a junction; nothing if the junction has no lights."""
         if junction in self._lit:
             yield XmlElement("controller", {"id": str(junction), "type": "0", "sequence": 0})
 
