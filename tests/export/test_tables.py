@@ -10,7 +10,7 @@ import pytest
 from exported import ROADS, WORLD, drive
 from roadgpt.export import save
 from roadgpt.export.georeference import FLATTENING, LATITUDE, LONGITUDE, SEMI_MAJOR, degrees
-from roadgpt.road import read_road
+from roadgpt.road import Profile, read_road
 
 
 def test_the_table_has_the_road_every_metre(tmp_path: Path) -> None:
@@ -55,6 +55,15 @@ def test_geojson_has_the_lanes_the_right_way_round(tmp_path: Path) -> None:
         assert ring[0] == ring[-1]
         assert (x[:-1] * y[1:] - x[1:] * y[:-1]).sum() > 0  # counter-clockwise, RFC 7946
     assert len(features["drive"]["properties"]["time_s"]) == len(drive(road))
+
+
+def test_geojson_counts_lanes_on_the_side_where_they_are(tmp_path: Path) -> None:
+    """On the left: two lanes along the road and their shoulder; on the right: one lane against it."""
+    profile = Profile.of(2, 1, 4.0, 1.0).mirrored
+    (file,) = save(ROADS["arcs"].with_profile(profile), tmp_path, ["geojson"], WORLD)
+    lanes = [each["properties"] for each in json.loads(file.read_text())["features"][1:]]
+    assert [lane["name"] for lane in lanes] == ["right lane", "left lane 1", "left lane 2"]
+    assert {lane["width_m"] for lane in lanes} == {4.0}
 
 
 def test_the_corner_of_the_map_is_the_place() -> None:

@@ -53,7 +53,8 @@ def _lanes(road: Road, world: World, s: Array) -> Iterator[dict[str, Any]]:
     """
     profile = world.profile_of(road)
     left, right = profile.lane_edges(s)
-    for side, outer, count in zip(("right", "left"), (right, left), profile.count, strict=True):
+    counts = profile.count[::-1] if profile.left_hand else profile.count
+    for side, outer, count in zip(("right", "left"), (right, left), counts, strict=True):
         for n in range(count):
             inner = outer[n - 1] if n else np.zeros(len(s))
             width = np.abs(outer[n] - inner)
