@@ -2,6 +2,7 @@
 
 from contextlib import suppress
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -299,3 +300,47 @@ def test_the_two_tightest_are_two() -> None:
     old, new = seen(ROADS["r12"]).turns, seen(changed("r12", "turn sharpest x2: radius slightly more")).turns
     wider = {i for i, (a, b) in enumerate(zip(old, new, strict=True)) if b.radius > 1.05 * a.radius}
     assert wider == set(sorted(range(len(old)), key=lambda i: old[i].radius)[:2])
+
+
+@pytest.mark.parametrize("name", sorted(ROADS))
+def test_a_reversed_road_is_the_same_line_driven_back(name: str) -> None:
+    before, after = build(ROADS[name]), build(changed(name, "road: reverse"))
+    assert after.length == pytest.approx(before.length, abs=0.01)
+    s = np.linspace(0, before.length, 100)
+    back = before.at(before.length - s)
+    assert np.hypot(*(after.at(s) - back)[:, :2].T).max() < 0.15  # designs round to centimetres
+    rise = (after.at(s) - back)[:, 2]
+    assert np.abs(rise[[0, -1]]).max() < 0.01
+    assert np.abs(rise).max() < 2.0  # the grade changes where a segment begins, which is now its other end
+    assert any("former end" in sentence for sentence in edited(ROADS[name], "road: reverse").changes)
+
+
+def test_only_the_whole_road_is_reversed() -> None:
+    with pytest.raises(EditError, match="only the whole road can be reversed"):
+        changed("h05", "turn 1: reverse")
+
+
+@pytest.mark.parametrize(("plan", "metres"), [("=6", 6.0), ("=-4", -4.0), ("=0", 0.0)])
+def test_the_road_climbs_as_many_metres_as_asked(plan: str, metres: float) -> None:
+    for name, design in ROADS.items():
+        height = (
+            build(changed(name, f"road: climb {plan}")).centreline()[:, 2] if _can(design, metres) else None
+        )
+        if height is not None:
+            assert height[-1] - height[0] == pytest.approx(metres, abs=0.35)
+
+
+def _can(design: Design, metres: float) -> bool:
+    return (
+        abs(metres) / build(design).length < 0.9 * WORLD.limits.max_grade and design.segments[0].incline != 0
+    )
+
+
+def test_a_climb_is_changed_by_metres_and_too_much_is_refused() -> None:
+    before = build(ROADS["h05"]).centreline()[:, 2]
+    after = build(changed("h05", "road: climb +3")).centreline()[:, 2]
+    assert after[-1] - after[0] == pytest.approx(before[-1] - before[0] + 3, abs=0.35)
+    with pytest.raises(EditError, match="steeper than the"):
+        changed("h05", "road: climb =200")
+    with pytest.raises(EditError, match="no climb in metres"):
+        changed("h05", "road: climb more")

@@ -229,6 +229,20 @@ LANGUAGES = [
     ("la strada dovrebbe essere in piano", "road: slope flat"),
 ]
 
+HEIGHTS_AND_REVERSAL = [
+    ("reverse the road", "road: reverse"),
+    ("Please drive it the other way round.", "road: reverse"),
+    ("Kehre die Fahrtrichtung um", "road: reverse"),
+    ("parcours la route en sens inverse", "road: reverse"),
+    ("intercambia la salida y la meta", "road: reverse"),
+    ("inverti il senso di marcia", "road: reverse"),
+    ("make the last straight climb 10 m", "straight -1: climb =10"),
+    ("it should climb 8 m in all", "road: climb =8"),
+    ("raise the end by 5 m", "road: climb +5"),
+    ("die Straße soll insgesamt 6 m ansteigen", "road: climb =6"),
+    ("the road should lose 6 m of height", "road: climb =-6"),
+]
+
 REFUSED = [
     "   ",
     "42",
@@ -242,12 +256,10 @@ REFUSED = [
     "make the third straight twice as long as the second",
     "remove the road",
     "remove a turn",
-    "reverse the road",
     "rotate the road by 90 degrees",
     "a flat road with 3 turns",
     "no more than three turns",
     "raise the start by 5 m",
-    "make the last straight climb 10 m",
     "swap the first and the last turn",
     "merge the last two turns",
     "make the road wider",
@@ -262,6 +274,28 @@ ROWS = sorted(
         *((row["request"], row["plan"]) for row in requests()),
     }
 )
+
+
+@pytest.mark.parametrize(("words", "plan"), HEIGHTS_AND_REVERSAL)
+def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> None:
+    assert read(words) == plan
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "reverse the slope",  # up and down
+        "reverse the road and make turn 1 sharper",
+        "reverse the second turn",
+        "make the road 8 m longer",
+        "the last straight shall lose 10 m",  # of its length
+        "raise the start by 5 m",
+        "climb no more than 8 m",
+    ],
+)
+def test_rules_leave_other_requests_to_the_network(words: str) -> None:
+    assert "reverse" not in read(words)
+    assert "climb" not in read(words)
 
 
 def read(words: str) -> str:

@@ -180,10 +180,12 @@ def _continued(brief: Brief) -> list[Brief]:
     roads, places = list(brief.roads), brief.junctions
     for n, place in enumerate(places):
         if _is_one_road(place):
-            roads[n + 1] = _of_same_road(roads[n], roads[n + 1])
+            roads[n + 1] = _of_same_road(roads[n], roads[n + 1], place)
+        elif _leads_straight_on(place) and _may_have_centre(roads[n + 1]):
+            roads[n + 1] = roads[n + 1].model_copy(update={"centre": roads[n].centre})
     for n, place in reversed(list(enumerate(places))):
         if _is_one_road(place):
-            roads[n] = _of_same_road(roads[n + 1], roads[n])
+            roads[n] = _of_same_road(roads[n + 1], roads[n], place)
     for n, place in enumerate(places):
         following = places[n + 1].kind if n + 1 < len(places) else None
         if _keeps_lanes(place, roads[n]) and following not in (*RAMPS, "roundabout"):
@@ -202,11 +204,23 @@ def _is_one_road(place: JunctionClause) -> bool:
     return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
 
 
-def _of_same_road(known: Brief, road: Brief) -> Brief:
-    """Returns the requirements for a part of a road; what is left open is as on another part of it."""
+def _may_have_centre(road: Brief) -> bool:
+    """Returns whether the requirements leave the centre line of a road open, and the road can have one."""
+    is_one_way = road.against is not None and span(road.against).hi == 0
+    return road.centre is None and not (is_one_way or road.divided or road.motorway)
+
+
+def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
+    """Returns the requirements for a part of a road; what is left open is as on another part of it.
+
+    The number of lanes along the road is left open as well if ``place``, which is between the parts, changes
+    it.
+    """
     says_against = road.against is not None or road.divided
+    keeps_lanes = place.kind in RAMPS and road.lanes is None
     return road.model_copy(
         update={
+            "lanes": known.lanes if keeps_lanes else road.lanes,
             "against": road.against if says_against else known.against,
             "divided": road.divided if says_against else known.divided,
             "centre": known.centre if road.centre is None else road.centre,

@@ -86,24 +86,30 @@ class _Pen:
         self.joined: list[tuple[int, int]] = []
         self.nodes: list[tuple[complex, float]] = []
         self._arrival, self._end, self._way = 0, complex(line.z[-1]), _way(line.z)
+        self._before: int | None = None  # the part that the last one continues
 
     def go_on(self, line: PlanLine, reach: float) -> None:
         """Draws a road that continues the one on which the route has arrived."""
-        before, way = self._arrival, self._way
+        way, here = self._way, self._continued()
+        self._before = self._arrival
         self._arrival = self._drawn(self._end + way * _thinned(line.z), reach)
         self._end, self._way = self._end + way * complex(line.z[-1]), way * _way(line.z)
-        self.joined.append((before, self._arrival))
+        self.joined += [(part, self._arrival) for part in here]
+
+    def _continued(self) -> list[int]:
+        """Returns the last part and the one before that it continues, which may be short."""
+        return [self._arrival, *([] if self._before is None else [self._before])]
 
     def pass_ramp(self, ramp: RampDesign, line: PlanLine, profiles: tuple[Profile, Profile]) -> None:
         """Draws a merge or an exit, the road that the route does not take there, and its next road."""
-        first = self._arrival
+        here = self._continued()
         on_route, beside = lines_at_ramp(ramp)
         at, way = self._end, self._way
         widest = max(profile.reach for profile in profiles)
         parts = [self._drawn(at + way * np.array(each), widest) for each in (on_route, beside)]
-        self._arrival, self._end = parts[0], at + way * on_route[-1]
+        self._before, self._arrival, self._end = self._arrival, parts[0], at + way * on_route[-1]
         self._way = way * (on_route[-1] - on_route[-2]) / abs(on_route[-1] - on_route[-2])
-        here = [first, *parts]
+        here += parts
         self.go_on(line, profiles[1].reach)
         here.append(self._arrival)
         self.joined += [(a, b) for a in here for b in here]
@@ -133,6 +139,7 @@ class _Pen:
             else:
                 stub = start + out * np.arange(0.0, arm.length or STUB, STEP)
                 here.append(self._drawn(stub, arms[n + 1].reach))
+        self._before = None
         self.pairs += [(a, b) for a in here for b in here]
 
     def _drawn(self, z: NDArray[Any], reach: float) -> int:

@@ -79,6 +79,7 @@ def _straightest(brief: Brief) -> float:
             run += length_at_ramp(drawn_ramp(place, ACCELERATION))
         run += _least(road) or USUAL_ROAD
         straights = [span(each.length).lo for each in road.clauses if each.kind == "straight"]
+        straights += [_least(road)] if road.turns is not None and span(road.turns).hi == 0 else []
         is_beside = place is not None and place.kind in (*RAMPS, *LANE_KINDS)
         longest = max(longest, run if is_beside else 0.0, *(s for s in straights if s < inf), 0.0)
     return longest

@@ -183,7 +183,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
 
     - as many lanes as the ring at a roundabout,
     - else as many as the road that the route takes, if the arm lies opposite this road and the road has more
-      than two lanes in a direction: otherwise some of its lanes would lead nowhere,
+      than two lanes in a direction, or more than one if the road of arrival is one-way: otherwise some of its
+      lanes would lead nowhere,
     - else as many as the road of arrival, if the arm lies straight ahead,
     - else one.
 
@@ -206,7 +207,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         for n, arm in enumerate(junction.all_arms)
     ]
     opposite = _continuing(junction)
-    if opposite is not None and max(after.count) > USUALLY_FED:
+    fed = USUALLY_FED if before.count[1] else 1  # no lane leads to a one-way road of arrival
+    if opposite is not None and max(after.count) > fed:
         out, into = (max(count, 1) for count in after.count[::-1])
         found[opposite] = Profile.of(out, into, width, shoulder)
     for n, arm in enumerate(junction.all_arms):

@@ -23,6 +23,7 @@ from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
+REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
 class Edited(NamedTuple):
@@ -87,6 +88,8 @@ def edit(
         road, draft, idle = made(design, elements, found, changes, world, geometry)
         unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
+    if not asks and any(change.change.what == "reverse" for change in changes):
+        told = (REVERSED, *told)
     told = (*told, *(f"'{change.words}' was so already" for change in idle))
     return Edited(road.design, told, unused, sure)
 

@@ -12,7 +12,7 @@ from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, Range
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.slopes import bounded_slopes, road_slope_candidates, slope_steps
+from roadgpt.design.edit.slopes import bounded_slopes, climb_candidates, road_slope_candidates, slope_steps
 from roadgpt.design.edit.steps import (
     Adjust,
     Become,
@@ -78,6 +78,8 @@ def change_candidates(
             return road_slope_candidates(change, elements, found, world)
         case "slope":
             return _together(slope_steps(change, element, found, world) for element in elements)
+        case "climb":
+            return climb_candidates(change, elements, world)
         case "side":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")

@@ -43,8 +43,10 @@ ENDS: dict[str, Literal["start", "end", "middle"]] = {
     "at_end": "end",
     "at_middle": "middle",
 }
-MEASURES = ("angle", "radius", "length", "slope")
-ALONE = ("straighten", "remove", "mirror", "alternate")
+MEASURES = ("angle", "radius", "length", "slope", "climb")
+ALONE = ("straighten", "remove", "mirror", "reverse", "alternate")
+OF_ROAD = ("mirror", "reverse")
+"""Wishes of the whole road."""
 DOSES = {"slightly": SLIGHTLY, "much": MUCH}
 PAGE = "the page 'Plans' of the reference describes the language"
 
@@ -182,7 +184,9 @@ class _Parser:
     def _wish(self, target: Target) -> Change:
         what = self._word()
         if what in ALONE:
-            whole = what == "mirror" and target.noun == "road"
+            if what == "reverse" and target != Target("road", words="road"):
+                raise EditError("only the whole road can be reversed; write: road: reverse")
+            whole = what in OF_ROAD and target.noun == "road"
             return Change(cast(Any, what), None if whole else target)
         if what == "side":
             side = self._word()

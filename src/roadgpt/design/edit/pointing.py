@@ -42,7 +42,7 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
     out = []
     for change in changes:
         place = change.place
-        if change.what == "mirror":
+        if change.what in ("mirror", "reverse"):
             out.append(PlacedChange(change, elements))
         elif change.what != "add":
             assert change.target is not None

@@ -11,12 +11,14 @@ What = Literal[
     "radius",  # tighter, wider, metres
     "length",
     "slope",
+    "climb",  # metres of height that a part of the road gains
     "side",
     "shape",  # a hairpin, a gentle turn
     "straighten",  # a straight in the place of a turn
     "add",
     "remove",
     "mirror",
+    "reverse",  # the whole road, from its end to its start
     "alternate",
 ]
 Way = Literal["up", "down", "flat"]

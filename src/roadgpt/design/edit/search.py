@@ -20,6 +20,7 @@ from roadgpt.design.edit.candidates import alternating_candidates, change_candid
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import PlacedChange
 from roadgpt.design.edit.request import Change, What
+from roadgpt.design.edit.reversal import Reverse, started_at_end
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
@@ -74,8 +75,8 @@ def made(
     if road is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
         raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
-    is_mirrored = any(change.what == "mirror" for change, _ in rows)
-    if road.design.segments == design.segments and not is_mirrored:
+    is_of_road = any(change.what in ("mirror", "reverse") for change, _ in rows)
+    if road.design.segments == design.segments and not is_of_road:
         raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
     return Made(road, draft, idle)
 
@@ -89,6 +90,8 @@ def _ways(
             if not any(element.is_turn for element in elements):
                 raise EditError("the road has no turn, so its mirror image is the same")
             return ((Mirror(),),)
+        case "reverse":
+            return ((Reverse(),),)
         case "add":
             return insertion_candidates(placed, elements, world, number)
         case "remove":
@@ -133,7 +136,12 @@ def _fitted(
     for steps in islice(_combined(changes), MOST_TRIALS):
         try:
             after = _applied(elements, steps, world)
-            started = _started(design, after, elements, world, Mirror() in steps)
+            is_reversed = Reverse() in steps
+            started = (
+                started_at_end(design, joined(after))
+                if is_reversed
+                else _started(design, after, elements, world, Mirror() in steps)
+            )
             frozen = {element.name for element in after if not _may_change(element)}
             trial = fit(started, after, _requirements(steps, design, world, geometry), frozen)
         except UsageError as error:
@@ -194,7 +202,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     after = elements
     for step in steps:
         after = step.apply(after, world)
-    after = with_room(after, elements)
+    after = with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
     after = numbered(after)
     count = len(joined(after))
     if not 1 <= count <= MAX_SEGMENTS:

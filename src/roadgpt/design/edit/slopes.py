@@ -112,3 +112,28 @@ def road_slope_candidates(
         shares = [1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15)]
         slopes = [SlopeOfAll(names, times=times) for times in shares]
     return tuple((slope,) for slope in slopes)
+
+
+def climb_candidates(
+    change: Change, elements: Sequence[RoadElement], world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidate with which some elements together gain other metres of height.
+
+    Their grades are scaled if all climb, or all fall, as the new climb does; otherwise they become equal.
+
+    Raises:
+        EditError: the wish has no figure, or the grade is steeper than the rules allow.
+    """
+    length = sum(element.length for element in elements)
+    rises = [segment.incline * segment.distance / 100 for each in elements for segment in each.segments]
+    now = sum(rises)
+    if change.bound or (change.to is None and change.by is None and change.times is None):
+        raise EditError(f"'{change.words}' gives no climb in metres; write for example: road: climb =5")
+    aim = now + change.more * change.by if change.by is not None else now * (change.times or 1.0)
+    aim = change.to if change.to is not None else aim
+    grade = 100 * aim / length
+    _refuse_too_steep(abs(grade), 100 * world.limits.max_grade)
+    names = frozenset(element.name for element in elements)
+    if aim and all(rise * aim > 0 for rise in rises):
+        return ((SlopeOfAll(names, times=aim / now),),)
+    return ((SlopeOfAll(names, least=abs(grade), most=abs(grade), sign=1 if aim >= 0 else -1),),)

@@ -21,12 +21,14 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
+from roadgpt.brief.readers.model.height_words import height_wish
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.ordinary_numbers import with_ordinary_numbers
 from roadgpt.brief.readers.model.plan_choice import brief_of, can_be_kept, most_plausible
+from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
@@ -44,6 +46,9 @@ MEANINGS = "meanings.txt"
 """The file with what words usually ask for: in each line a word and tokens of plans."""
 FILES = ("encoder.onnx", "decoder.onnx", "pieces.txt", "words.txt", "settings.json")
 NOT_ONE_ROAD = "this could not be read as one road; use shorter sentences"
+REVERSED = "road: reverse"
+CERTAIN = 0.97
+"""The confidence in a change request that a rule reads."""
 ALMOST = 2.0  # difference of score
 NEVER = 2.0  # a probability that no refusal reaches
 SECOND = "_2"
@@ -131,10 +136,14 @@ class ModelReader:
         Raises:
             BriefError: the network wrote no plan that can be read.
         """
+        if asks_to_reverse(words):
+            return ChangeReading(REVERSED, CERTAIN, ())
         text = slotted(words, is_change=True)
         found = scored_plans(self.roads.networks, words, self.roads.refuse_from, key=key)
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
+        if (climb := _climb(text, found[0].line)) is not None:
+            return ChangeReading(climb, CERTAIN, ())
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
         draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
         found_in = features(draft, text)
@@ -320,6 +329,20 @@ class ModelReader:
     def _settings(self) -> dict[str, Any]:
         settings: dict[str, Any] = read_json(self.folder / "settings.json")
         return settings
+
+
+def _climb(text: SlottedText, line: str) -> str | None:
+    """Returns the plan of a change request that asks for a climb in metres; None for other requests.
+
+    The place is the one in ``line``, the plan that the network wrote, or the road if no part is named.
+    """
+    wish = height_wish(text)
+    if wish is None:
+        return None
+    is_one = not line.startswith(("!", "add ")) and ";" not in line
+    if ";" in line or (wish.names_a_part and not is_one):
+        return None
+    return f"{line.partition(':')[0].strip() if wish.names_a_part else 'road'}: climb {wish.value}"
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:

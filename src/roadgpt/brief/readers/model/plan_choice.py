@@ -1,6 +1,7 @@
 """Chooses among the plans that the networks wrote, and makes a Brief of one."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief
@@ -18,6 +19,7 @@ from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.errors import BriefError
 
+LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
 
 
@@ -54,8 +56,22 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, with what the words leave no choice about."""
     brief = with_counted_junctions(with_checked_counts(read_plan(line), text), text)
-    brief = with_each_lane(with_counted_map(brief, text))
+    brief = _with_listed_hills(with_each_lane(with_counted_map(brief, text)))
     return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
+
+
+def _with_listed_hills(brief: Brief) -> Brief:
+    """Returns the Brief without "hilly" where all slopes of a straight road are listed and change less."""
+    parts = tuple(_with_listed_hills(each) for each in brief.stretches)
+    brief = brief.model_copy(update={"stretches": parts}) if parts != brief.stretches else brief
+    slopes = [clause.slope for clause in brief.clauses]
+    steep = [slope for slope in slopes if slope and slope not in LEVEL]
+    is_listed = bool(slopes) and None not in slopes and all(each.kind == "straight" for each in brief.clauses)
+    hills, turns = brief.hills, brief.turns
+    if not is_listed or hills is None or hills.hi is not None or turns is None or turns.hi != 0:
+        return brief
+    changes = sum(("up" in one) != ("up" in other) for one, other in pairwise(steep))
+    return brief.model_copy(update={"hills": None}) if changes < (hills.lo or 0) else brief
 
 
 def can_be_kept(line: str) -> bool:

@@ -1,0 +1,64 @@
+"""Reads metres of height in change requests ("it should climb 8 m"), for which the network has no word."""
+
+import re
+from typing import NamedTuple
+
+from roadgpt.brief.readers.model.slots import SlottedText
+
+UP = (
+    r"climbs?|climbing|rises?|ascends?|goes? up|(?:an)?steigen|(?:an)?steigt|montent|monte|monter|grimpe\w*|"
+    r"suban?|salga|salgano|salire"
+)
+DOWN = r"descends?|goes? down|abfallen|abfaellt|descende|descendent|descendre|bajan?|bajen?|scenda|scendere"
+RAISED = (
+    r"raised?|lift(?:ed)?|higher|hoher|anheben|angehoben|rehauss\w*|relev\w*|plus haut\w*|mas alt[ao]|"
+    r"alza\w*|rialza\w*|piu in alto"
+)
+LOWERED = r"lower(?:ed)?|tiefer|absenken|abgesenkt|abaiss\w*|plus bas\w*|mas baj[ao]|abbassa\w*|piu in basso"
+BY_HEIGHT = (
+    ("=", r"gains?|gagn\w*|gan[ae]\w*|guadagn\w*|gewinn\w*"),
+    ("=-", r"falls?|drops?|loses?|perd\w*|pierd\w*|verlier\w*"),
+)
+"""Verbs that may mean a length as well; they count if the request names height."""
+HEIGHT = re.compile(
+    r"\b(?:height|altitude|elevation|hohe\w*|hauteur|denivele\w*|altura|desnivel|quota|dislivello)\b"
+)
+OTHER = re.compile(
+    r"\b(?:long|longer|short|shorter|length|radius|tighter|wider|lang\w*|kurz\w*|radien|longueur|court\w*|"
+    r"rayon|larg\w*|longitud|cort\w*|radio|lung\w*|raggio|add|insert|como|at least|at most|below|under|"
+    r"mindestens|unter|hochstens|nicht|moins|plus de|menos|sotto|meno|not|no|non|pas|start|beginning|anfang|"
+    r"beginn|debut|depart|inicio|comienzo|principio|inizio|partenza)\b"
+)
+"""Words with which the metres may be a length or a limit, or may concern the start of the road."""
+NAMED = re.compile(
+    r"\b(?:turn|bend|curve|corner|hairpin|straight|stretch|part|half|kurve\w*|kehre\w*|gerade\w*|stueck|abschnitt\w*|"
+    r"teil\w*|virage\w*|epingle\w*|droite|partie|troncon|curva\w*|horquilla\w*|recta\w*|tramo\w*|tornant\w*|"
+    r"rettiline\w*|tratt\w*)\b"
+)
+"""Words for parts of a road."""
+
+
+class HeightWish(NamedTuple):
+    """A climb in metres that a change request asks for."""
+
+    value: str
+    """The value as in a plan of changes: "=8", "=-3", "+5" or "-2"."""
+    names_a_part: bool
+    """Whether the request names a part of the road."""
+
+
+def height_wish(text: SlottedText) -> HeightWish | None:
+    """Returns the climb that a change request asks for; None if it asks for none or for more than that.
+
+    The metres have to be the only number with a unit, and no word may speak of a length.
+    """
+    said = " ".join(word.text for word in text.words if word.written)
+    metres = [slot.value for slot in text.slots if slot.unit == "metres"]
+    if len(text.slots) != 1 or len(metres) != 1 or OTHER.search(said):
+        return None
+    verbs = [("=", UP), ("=-", DOWN), ("+", RAISED), ("-", LOWERED)]
+    verbs += BY_HEIGHT if HEIGHT.search(said) else ()
+    found = [sign for sign, words in verbs if re.search(rf"\b(?:{words})\b", said)]
+    if len(found) != 1:
+        return None
+    return HeightWish(f"{found[0]}{metres[0]:g}", NAMED.search(said) is not None)
