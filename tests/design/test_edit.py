@@ -318,6 +318,8 @@ def test_a_reversed_road_is_the_same_line_driven_back(name: str) -> None:
 def test_only_the_whole_road_is_reversed() -> None:
     with pytest.raises(EditError, match="only the whole road can be reversed"):
         changed("h05", "turn 1: reverse")
+    with pytest.raises(EditError, match="in a request of its own"):
+        changed("h05", "road: reverse; turn 1: radius more")
 
 
 @pytest.mark.parametrize(("plan", "metres"), [("=6", 6.0), ("=-4", -4.0), ("=0", 0.0)])
@@ -344,3 +346,23 @@ def test_a_climb_is_changed_by_metres_and_too_much_is_refused() -> None:
         changed("h05", "road: climb =200")
     with pytest.raises(EditError, match="no climb in metres"):
         changed("h05", "road: climb more")
+
+
+def test_two_turns_change_places_with_all_their_values() -> None:
+    checked = 0
+    for design in ROADS.values():
+        before = seen(design).turns
+        if len(before) < 3 or before[0].side == before[1].side or before[1].side == before[2].side:
+            continue
+        with suppress(EditError):  # there may be no room for the other order
+            after = edited(design, "turn 1,3: swap")
+            if any("to keep it valid" in sentence for sentence in after.changes):
+                continue
+            turns = seen(after.design).turns
+            for was, now in ((before[0], turns[2]), (before[2], turns[0]), (before[1], turns[1])):
+                assert (now.side, now.degrees) == (was.side, pytest.approx(was.degrees, abs=3))
+                assert now.radius == pytest.approx(was.radius, rel=0.15)
+            checked += 1
+    assert checked >= 3
+    with pytest.raises(EditError, match="two turns can change places"):
+        changed("h05", "road: swap")

@@ -229,7 +229,7 @@ LANGUAGES = [
     ("la strada dovrebbe essere in piano", "road: slope flat"),
 ]
 
-HEIGHTS_AND_REVERSAL = [
+BY_RULES = [
     ("reverse the road", "road: reverse"),
     ("Please drive it the other way round.", "road: reverse"),
     ("Kehre die Fahrtrichtung um", "road: reverse"),
@@ -241,6 +241,11 @@ HEIGHTS_AND_REVERSAL = [
     ("raise the end by 5 m", "road: climb +5"),
     ("die Straße soll insgesamt 6 m ansteigen", "road: climb =6"),
     ("the road should lose 6 m of height", "road: climb =-6"),
+    ("swap the first and the last turn", "turn 1,-1: swap"),
+    ("turns 2 and 3 should trade places", "turn 2,3: swap"),
+    ("Tausch bitte die erste mit der dritten Kurve", "turn 1,3: swap"),
+    ("échange les virages 1 et 4", "turn 1,4: swap"),
+    ("scambia le due curve", "turn all: swap"),
 ]
 
 REFUSED = [
@@ -260,7 +265,6 @@ REFUSED = [
     "a flat road with 3 turns",
     "no more than three turns",
     "raise the start by 5 m",
-    "swap the first and the last turn",
     "merge the last two turns",
     "make the road wider",
     "make the kerb longer",
@@ -276,7 +280,7 @@ ROWS = sorted(
 )
 
 
-@pytest.mark.parametrize(("words", "plan"), HEIGHTS_AND_REVERSAL)
+@pytest.mark.parametrize(("words", "plan"), BY_RULES)
 def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> None:
     assert read(words) == plan
 
@@ -291,11 +295,15 @@ def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> 
         "the last straight shall lose 10 m",  # of its length
         "raise the start by 5 m",
         "climb no more than 8 m",
+        "swap left and right",
+        "exchange the radii of turns 1 and 2",
+        "swap turns 2 and 3 for hairpins",
     ],
 )
 def test_rules_leave_other_requests_to_the_network(words: str) -> None:
     assert "reverse" not in read(words)
     assert "climb" not in read(words)
+    assert "swap" not in read(words)
 
 
 def read(words: str) -> str:

@@ -14,15 +14,16 @@ from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.pointing import placed
+from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest
 from roadgpt.design.edit.search import made
-from roadgpt.design.road_elements import elements_on_road
+from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
+REORDERS = ("reverse", "swap")
 REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
@@ -88,10 +89,22 @@ def edit(
         road, draft, idle = made(design, elements, found, changes, world, geometry)
         unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
-    if not asks and any(change.change.what == "reverse" for change in changes):
-        told = (REVERSED, *told)
+    if not asks:
+        told = (
+            *(_reordering(change, elements) for change in changes if change.change.what in REORDERS),
+            *told,
+        )
     told = (*told, *(f"'{change.words}' was so already" for change in idle))
     return Edited(road.design, told, unused, sure)
+
+
+def _reordering(change: PlacedChange, elements: RoadElements) -> str:
+    """Returns a sentence on a change that only reorders elements."""
+    if change.change.what == "reverse":
+        return REVERSED
+    turns = [element.name for element in elements if element.is_turn]
+    one, other = (turns.index(element.name) + 1 for element in change.elements)
+    return f"turn {one} and turn {other} have changed places; they are named as before"
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

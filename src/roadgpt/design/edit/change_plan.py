@@ -44,7 +44,7 @@ ENDS: dict[str, Literal["start", "end", "middle"]] = {
     "at_middle": "middle",
 }
 MEASURES = ("angle", "radius", "length", "slope", "climb")
-ALONE = ("straighten", "remove", "mirror", "reverse", "alternate")
+ALONE = ("straighten", "remove", "mirror", "reverse", "swap", "alternate")
 OF_ROAD = ("mirror", "reverse")
 """Wishes of the whole road."""
 DOSES = {"slightly": SLIGHTLY, "much": MUCH}
@@ -147,6 +147,8 @@ def read_change_plan(line: str) -> EditRequest:
     changes = tuple(_Parser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
+    if len(changes) > 1 and any(change.what == "reverse" for change in changes):
+        raise EditError("a road is reversed in a request of its own; leave the other changes out")
     return EditRequest(line, changes)
 
 

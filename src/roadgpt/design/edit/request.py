@@ -18,6 +18,7 @@ What = Literal[
     "add",
     "remove",
     "mirror",
+    "swap",  # two turns change places
     "reverse",  # the whole road, from its end to its start
     "alternate",
 ]

@@ -19,8 +19,8 @@ from roadgpt.check.measures import Measures
 from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.reordering import Reverse, started_at_end, swap_of
 from roadgpt.design.edit.request import Change, What
-from roadgpt.design.edit.reversal import Reverse, started_at_end
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
@@ -92,6 +92,8 @@ def _ways(
             return ((Mirror(),),)
         case "reverse":
             return ((Reverse(),),)
+        case "swap":
+            return ((swap_of(placed.elements),),)
         case "add":
             return insertion_candidates(placed, elements, world, number)
         case "remove":

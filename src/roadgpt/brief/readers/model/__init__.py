@@ -32,6 +32,7 @@ from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
+from roadgpt.brief.readers.model.swap_words import turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
@@ -142,8 +143,9 @@ class ModelReader:
         found = scored_plans(self.roads.networks, words, self.roads.refuse_from, key=key)
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
-        if (climb := _climb(text, found[0].line)) is not None:
-            return ChangeReading(climb, CERTAIN, ())
+        known = _climb(text, found[0].line) or _swap(text, found[0].line)
+        if known is not None:
+            return ChangeReading(known, CERTAIN, ())
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
         draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
         found_in = features(draft, text)
@@ -343,6 +345,12 @@ def _climb(text: SlottedText, line: str) -> str | None:
     if ";" in line or (wish.names_a_part and not is_one):
         return None
     return f"{line.partition(':')[0].strip() if wish.names_a_part else 'road'}: climb {wish.value}"
+
+
+def _swap(text: SlottedText, line: str) -> str | None:
+    """Returns the plan of a change request that asks two turns to change places; None for other requests."""
+    place = turns_to_swap(text) if line.startswith("!") else None
+    return f"{place}: swap" if place else None
 
 
 def _lost_numbers(draft: ScoredPlan, text: SlottedText) -> tuple[str, ...]:

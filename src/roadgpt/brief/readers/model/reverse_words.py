@@ -14,6 +14,7 @@ ENGLISH = (
     r"(?: of (?:the )?(?:road|route|travel|driving))?|"
     r"reverse the (?:driving|travel) direction|"
     r"(?:swap|exchange|switch) (?:the )?(?:start|beginning) and (?:the )?(?:end|finish)|"
+    r"(?:let )?(?:the )?start and (?:the )?(?:end|finish) (?:should |shall )?(?:change|trade|swap) places|"
     r"(?:drive|run|take|make|do)(?: it| this| the (?:road|route))?"
     r" (?:backwards|in reverse|the other way(?: a?round)?|in the (?:other|opposite|reverse) direction|"
     r"from (?:the )?(?:end|finish) to (?:the )?(?:start|beginning))"

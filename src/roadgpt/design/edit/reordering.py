@@ -1,10 +1,12 @@
-"""Reverses a road, so that it leads from its end to its start."""
+"""Reorders the elements of a road: reverses the whole road, or lets two turns change places."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
 
 from roadgpt.design.edit.steps import flipped
 from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build
 
 DECIMALS = 6  # of the start and its direction
@@ -17,6 +19,31 @@ class Reverse:
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements from the last to the first, each reversed."""
         return tuple(map(_reversed, reversed(elements)))
+
+
+@dataclass(frozen=True, slots=True)
+class Swap:
+    """Lets two elements change places; each keeps its angle, radius, side and grade."""
+
+    one: str
+    other: str
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements in their new order."""
+        by_name = {element.name: element for element in elements}
+        places = {self.one: by_name[self.other], self.other: by_name[self.one]}
+        return tuple(places.get(element.name, element) for element in elements)
+
+
+def swap_of(elements: Sequence[RoadElement]) -> Swap:
+    """Returns the step that lets two turns change places.
+
+    Raises:
+        EditError: these are not two turns.
+    """
+    if len(elements) != 2 or not all(element.is_turn for element in elements):
+        raise EditError("two turns can change places; name two, for example: swap turns 1 and 3")
+    return Swap(elements[0].name, elements[1].name)
 
 
 def _reversed(element: RoadElement) -> RoadElement:

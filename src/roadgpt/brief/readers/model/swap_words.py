@@ -1,0 +1,58 @@
+"""Recognises change requests that only ask two turns to change places, for which the network has no word."""
+
+import re
+
+from roadgpt.brief.readers.model.slots import SlottedText
+
+TURNS = (
+    r"(?:turns?|bends?|curves?|corners?|kurven?|kehren?|bogen|virages?|courbes?|curvas?|curve?|tornanti|"
+    r"giros?)"
+)
+ORDINALS = {
+    word: number
+    for number, words in {
+        1: "first erste ersten premier premiere primera primero prima primo",
+        2: "second zweite zweiten deuxieme second seconde segunda segundo seconda secondo",
+        3: "third dritte dritten troisieme tercera tercero terza terzo",
+        4: "fourth vierte vierten quatrieme cuarta cuarto quarta quarto",
+        5: "fifth funfte funften cinquieme quinta quinto",
+        -1: "last letzte letzten dernier derniere ultima ultimo",
+    }.items()
+    for word in words.split()
+}
+NUMBER = rf"(?:(?:the|die|der|le|la|les|las|el|il) )?(\d|{'|'.join(ORDINALS)})(?:st|nd|rd|th| \.|e|eme|a)?"
+AND = r"(?:and|with|und|mit|et|avec|y|con|e)"
+TWO = re.compile(
+    rf"\b{TURNS} (?:no |nr |number )?{NUMBER} {AND} (?:{TURNS} )?{NUMBER}\b|"
+    rf"\b{NUMBER} (?:{TURNS} )?{AND} {NUMBER} {TURNS}\b"
+)
+BOTH = re.compile(
+    rf"\b(?:the (?:two|2|both)|both|die (?:2|zwei|beiden)|les (?:2|deux)|las (?:2|dos)|le (?:2|due)) "
+    rf"{TURNS}\b"
+)
+SWAP = re.compile(
+    r"\b(?:swap|exchange|switch|interchange|trade places|change places|(?:ver)?tausch\w*|echang\w*|"
+    r"intervert\w*|permut\w*|intercambi\w*|scambi\w*|invertendo di posto)\b"
+)
+MORE = re.compile(
+    r"\b(?:left|right|links|rechts|gauche|droite|izquierda|derecha|sinistra|destra|start|end|finish|anfang|ziel|"
+    r"for|directions?|sides?|richtung\w*|sens|sentido\w*|"
+    r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
+)
+"""Words with which something other than the places of two turns is exchanged, or nothing."""
+WORDS = 12  # words of a request at most
+
+
+def turns_to_swap(text: SlottedText) -> str | None:
+    """Returns the turns that a change request asks to change places, as a place of a plan; None for others.
+
+    For example "turn 1,3" or "turn all" for "the two turns".
+    """
+    said = " ".join(word.text for word in text.words if word.written)
+    if not SWAP.search(said) or MORE.search(said) or len(said.split()) > WORDS:
+        return None
+    found = TWO.findall(said)
+    if len(found) == 1:
+        one, other = (ORDINALS.get(word) or int(word) for word in found[0] if word)
+        return f"turn {one},{other}"
+    return "turn all" if BOTH.search(said) else None
