@@ -366,3 +366,17 @@ def test_two_turns_change_places_with_all_their_values() -> None:
     assert checked >= 3
     with pytest.raises(EditError, match="two turns can change places"):
         changed("h05", "road: swap")
+
+
+def test_only_the_part_that_climbs_becomes_steeper() -> None:
+    """A straight that falls by 4 % for 60 m and then climbs by 5 % is one straight of two parts."""
+    parts = [Segment(distance=60, direction="straight", incline=grade) for grade in (-4.0, 5.0)]
+    design = Design(starting_point=(40, 40, 10), theta=45, segments=tuple(parts))
+    for plan, wanted in (
+        ("straight up: slope =8", [-4, 8]),
+        ("straight down: slope less", [-2, 5]),
+        ("road up: slope x0.5", [-4, 2.5]),
+        ("straight: slope flat", [0, 0]),
+    ):
+        after = edited(design, plan).design
+        assert [segment.incline for segment in after.segments] == pytest.approx(wanted, abs=0.3), plan

@@ -10,9 +10,15 @@ from math import inf
 
 from roadgpt.brief.model import OTHER_SIDE
 from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, Range
-from roadgpt.check.measures import Measures
+from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.slopes import bounded_slopes, climb_candidates, road_slope_candidates, slope_steps
+from roadgpt.design.edit.slopes import (
+    bounded_slopes,
+    climb_candidates,
+    part_slope_candidates,
+    road_slope_candidates,
+    slope_steps,
+)
 from roadgpt.design.edit.steps import (
     Adjust,
     Become,
@@ -74,6 +80,8 @@ def change_candidates(
             return _road_lengths(change, elements, world) if elements else ()
         case "length":
             return _together(_lengths(change, element, world) for element in elements)
+        case "slope" if _is_of_parts(change, elements):
+            return part_slope_candidates(change, elements, found, world)
         case "slope" if is_road:
             return road_slope_candidates(change, elements, found, world)
         case "slope":
@@ -87,6 +95,13 @@ def change_candidates(
             return _flipped(wrong, world) if wrong else ()
         case _:
             return _together(_straightened(element) for element in elements)
+
+
+def _is_of_parts(change: Change, elements: Sequence[RoadElement]) -> bool:
+    """Returns whether a change concerns only those parts of elements that climb, fall or are level."""
+    named = change.target.way if change.target else None
+    ways = {way(segment.incline) for element in elements for segment in element.segments}
+    return named is not None and named in ways and len(ways) > 1
 
 
 def _is_beyond(change: Change, element: RoadElement) -> bool:

@@ -6,11 +6,12 @@ from typing import NamedTuple
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.request import Change, Place, Target, What
+from roadgpt.design.edit.request import Change, Place, Target, Way, What
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
+LEAST_PART = 10.0  # m of a straight that climb, fall or are level, to be called a part of it
 MUCH = 0.3  # share of half a road: an element that reaches farther into both halves belongs to neither
 SINGLE = ("hairpin", "u_turn", "switchback")
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
@@ -182,13 +183,22 @@ def _spared(target: Target, found: list[RoadElement], elements: RoadElements) ->
     return [element for element in found if element.name not in gone]
 
 
+def _ways(element: RoadElement, grade: float) -> set[Way]:
+    """Returns whether an element climbs, falls or is level; a straight with several slopes does several."""
+    parts: dict[Way, float] = {}
+    for segment in element.segments:
+        parts[way(segment.incline)] = parts.get(way(segment.incline), 0.0) + segment.distance
+    long = {each for each, length in parts.items() if length >= LEAST_PART}
+    return {way(grade)} if element.is_turn or len(long) < 2 else long
+
+
 def _fits(target: Target, element: RoadElement) -> bool:
     seen = element.seen
     if seen is None:
         return False
     if target.side and element.side != target.side:
         return False
-    if target.way and way(seen.grade) != target.way:
+    if target.way and target.way not in _ways(element, seen.grade):
         return False
     if target.size and not (seen.length >= LONG if target.size == "long" else seen.length <= SHORT):
         return False

@@ -1,6 +1,7 @@
 """Lists ways to change grades: of one turn or straight, or of many elements at once."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import inf
 
 from roadgpt.brief.words import PERCENT_SLACK, Range
@@ -112,6 +113,21 @@ def road_slope_candidates(
         shares = [1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15)]
         slopes = [SlopeOfAll(names, times=times) for times in shares]
     return tuple((slope,) for slope in slopes)
+
+
+def part_slope_candidates(
+    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that change only the grades of those segments that go as the change says.
+
+    "The uphill part at 8 %" concerns the segments that climb.
+
+    Raises:
+        EditError: the grade is steeper than the rules allow.
+    """
+    assert change.target is not None
+    steps = (step for (step,) in road_slope_candidates(change, elements, found, world))
+    return tuple((replace(step, only=change.target.way),) for step in steps if isinstance(step, SlopeOfAll))
 
 
 def climb_candidates(

@@ -16,6 +16,8 @@ import numpy as np
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import Range
+from roadgpt.check.measures import way
+from roadgpt.design.edit.request import Way
 from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.design.sequence import both
@@ -266,6 +268,8 @@ class SlopeOfAll:
     """Upper limit of the size of the new incline."""
     sign: int = 0
     """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
+    only: Way | None = None
+    """The segments that change: those uphill, downhill or level before; None for all."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements with the new inclines."""
@@ -277,6 +281,8 @@ class SlopeOfAll:
         size = np.clip(np.abs(before) * self.times + self.more, self.least, self.most)
         signs = self.sign or np.where(before >= 0, 1, -1)
         after = np.clip(signs * size, -limit, limit) + 0.0  # no -0.0
+        if self.only is not None:
+            after = np.where([way(incline) == self.only for incline in before], after, before)
         return element.with_segments(with_inclines(element.segments, after))
 
 
