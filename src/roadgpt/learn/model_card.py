@@ -37,8 +37,10 @@ def card(
             "",
             "Reads a description of a road in English, German, French, Spanish or Italian and writes a plan:"
             " the Brief on one line; reads a change request as well, and writes a plan of changes. Two"
-            " networks read every text. Their encoders are MiniLM, 6 layers, fine-tuned; their decoders,"
-            " with 6 and 3 layers, began from random weights; all in int8.",
+            " networks read every text; a third one reads those that may tell of junctions, lanes or maps."
+            " Their encoders are MiniLM, 6 layers, fine-tuned; their decoders, with 6, 3 and 3 layers, began"
+            " from random weights; all in int8. The tables below are of single roads, which the first two"
+            " read.",
             "",
             *_files(weights),
             *_data(data),
