@@ -8,6 +8,7 @@ from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.map_words import asks_for_map, with_counted_map
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
+from roadgpt.brief.readers.model.plan_choice import brief_of
 from roadgpt.brief.readers.model.slots import slotted
 
 
@@ -242,3 +243,22 @@ def test_roads_between_alike_junctions_are_alike_too() -> None:
 )
 def test_one_lane_ends_or_begins_at_a_time(asked: str, line: str) -> None:
     assert plan(with_each_lane(read_plan(asked))) == line
+
+
+@pytest.mark.parametrize(
+    ("asked", "line"),
+    [
+        (
+            "straight up; straight down; straight up | turns=0 hills=3.. // crossroads",
+            "straight up; straight down; straight up | turns=0 // crossroads",
+        ),
+        ("straight up; straight down | turns=0 hills=2..", "straight up; straight down | turns=0"),
+        ("straight up; straight down | turns=0 hills=1..", "straight up; straight down | turns=0 hills=1.."),
+        ("straight up; straight down | turns=0 hills=3", "straight up; straight down | turns=0 hills=3"),
+        ("straight up; straight | turns=0 hills=3..", "straight up; straight | turns=0 hills=3.."),
+        ("straight up; turn; straight down | hills=3..", "straight up; turn; straight down | hills=3.."),
+    ],
+)
+def test_hilly_means_the_slopes_that_are_listed(asked: str, line: str) -> None:
+    words = "a hilly road, up and down"
+    assert plan(brief_of(asked, slotted(words), words)) == line

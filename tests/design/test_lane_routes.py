@@ -294,6 +294,23 @@ def test_roads_beyond_the_crossing_at_the_end_of_a_ramp_have_two_ways() -> None:
     assert [member.profile.count for _, member in route.roads][:2] == [(1, 1), (1, 0)]  # the ramp
 
 
+def test_a_motorway_that_is_joined_keeps_its_lanes() -> None:
+    line = "merge main side=right // | motorway lanes=3"
+    route = drafted(line, 1)
+    assert next(member.profile.count for _, member in route.roads) == (3, 0)
+    assert inspect(route, read_plan(line), WIDE) == ()
+
+
+def test_the_centre_line_goes_on_where_the_route_leads_straight_on() -> None:
+    def centres(line: str) -> list[str]:
+        return [member.profile.centre_marking for _, member in drafted(line, 1).roads]
+
+    ahead = "t_junction straight ways=left+straight"
+    assert centres(f"| centre=double // {ahead} // crossroads right") == ["double", "double", "broken"]
+    assert centres(f"| centre=double // {ahead} // | centre=solid") == ["double", "solid"]
+    assert centres("| centre=double // crossroads straight // | divided lanes=2 against=2")[0] == "double"
+
+
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:
     for seed in range(3):
         route = drafted("merge ramp // | motorway", seed)

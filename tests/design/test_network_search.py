@@ -234,6 +234,20 @@ def test_a_wide_road_and_a_narrow_one_keep_apart_by_their_own_widths() -> None:
     assert inspect(drafted(line, 1, world), read_plan(line), world) == ()
 
 
+def test_a_long_straight_road_to_a_junction_gets_a_map() -> None:
+    brief = read_plan("| turns=0 len=600 // crossroads left")
+    world = world_for(brief, USUAL)
+    assert world.site.map_size * 2**0.5 > 600
+    assert inspect(drafted("| turns=0 len=600 // crossroads left", 1, world), brief, world) == ()
+
+
+def test_ramps_find_a_place_close_to_changes_of_lanes() -> None:
+    line = "merge ramp len=220 // | len=300 // lane_change right // | len=300 // lane_change left // "
+    line += "diverge ramp"
+    world = world_for(read_plan(line), USUAL)
+    assert inspect(drafted(line, 1, world), read_plan(line), world) == ()
+
+
 def test_wide_roads_find_a_place_around_a_roundabout() -> None:
     line = "| lanes=2 divided // roundabout exit=2 // | lanes=2 divided // roundabout exit=1"
     for seed in range(5):
