@@ -295,6 +295,8 @@ def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> 
         "the last straight shall lose 10 m",  # of its length
         "raise the start by 5 m",
         "climb no more than 8 m",
+        "let it climb for 20 m",  # along the road
+        "over the last 80 m it should climb",
         "swap left and right",
         "exchange the radii of turns 1 and 2",
         "swap turns 2 and 3 for hairpins",

@@ -30,8 +30,13 @@ OTHER = re.compile(
     r"beginn|debut|depart|inicio|comienzo|principio|inizio|partenza)\b"
 )
 """Words with which the metres may be a length or a limit, or may concern the start of the road."""
+ALONG = re.compile(
+    r"\b(?:for|over|within|during|in|along|last|first|auf|uber|lang|letzten|ersten|sur|pendant|derniers|premiers|en|"
+    r"durante|ultimos|primeros|per|su|nei|ultimi|primi) (?:the |den |les |los |i )?(?:last |first )?\[unused"
+)
+"""Words before metres along the road: "climb over the last 80 m"."""
 NAMED = re.compile(
-    r"\b(?:turn|bend|curve|corner|hairpin|straight|stretch|part|half|kurve\w*|kehre\w*|gerade\w*|stueck|abschnitt\w*|"
+    r"\b(?:turn|bend|curve|corner|hairpin|straight|stretch|part|half|kurve\w*|kehre\w*|gerade\w*|abschnitt\w*|"
     r"teil\w*|virage\w*|epingle\w*|droite|partie|troncon|curva\w*|horquilla\w*|recta\w*|tramo\w*|tornant\w*|"
     r"rettiline\w*|tratt\w*)\b"
 )
@@ -50,11 +55,11 @@ class HeightWish(NamedTuple):
 def height_wish(text: SlottedText) -> HeightWish | None:
     """Returns the climb that a change request asks for; None if it asks for none or for more than that.
 
-    The metres have to be the only number with a unit, and no word may speak of a length.
+    The metres have to be the only number with a unit, and no word may speak of a length or a distance.
     """
     said = " ".join(word.text for word in text.words if word.written)
     metres = [slot.value for slot in text.slots if slot.unit == "metres"]
-    if len(text.slots) != 1 or len(metres) != 1 or OTHER.search(said):
+    if len(text.slots) != 1 or len(metres) != 1 or OTHER.search(said) or ALONG.search(said):
         return None
     verbs = [("=", UP), ("=-", DOWN), ("+", RAISED), ("-", LOWERED)]
     verbs += BY_HEIGHT if HEIGHT.search(said) else ()
