@@ -35,6 +35,7 @@ def test_sums_are_put_right(words: str, written: str, right: str) -> None:
         ("straight: 120 m, right, radius:20", "straight len=120; turn right r=20"),
         ("4 turns and no lefts", "turn x4 | lefts=0"),
         ("6 turns, 2 or more to the left", "turn x6 | lefts=2.."),
+        ("6 turns, several of them left, grade at most 5 %", "turn x6 | lefts=2.."),
         ("6 turns, some to the left and some to the right", "turn x6 | lefts=1.. rights=1.."),
         ("all of the five go left except one", "turn x5 | lefts=4 rights=1"),
         ("6 turns, twice as many lefts as rights", "turn x6 | lefts=4 rights=2"),

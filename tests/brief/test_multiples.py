@@ -26,6 +26,11 @@ LEFT_ALONE = [
     "a left, then a straight twice as long as the one of 35 m",  # said later
     "a left with a radius of R25, then a right half as far",  # nothing to double but a radius
     "a hill twice as steep",
+    "a straight of 60 m, a bend of 90 degrees, then a straight half the length of the road",
+    "a 100 m straight, a right with a radius of 30 m, then a left twice as large",
+    "a road of 150 m with two straights, one twice as long as the other",
+    "the road is 200 m long, and half the length goes uphill",
+    "a straight of 40 m, a left, then a straight twice as long as the bend",
 ]
 
 

@@ -97,6 +97,12 @@ def test_the_network_writes_a_map_where_the_words_ask_for_one() -> None:
             "a main street over two crossroads, and two dead ends",
             "map crossroads x2 dead_ends=2",
         ),
+        ("map t_junction x2", "a main road, five dead ends in total", "map t_junction x2 dead_ends=5"),
+        (
+            "map t_junction x3 dead_ends=3..",
+            "a map with a main road and at least 3 dead ends",
+            "map t_junction x3 dead_ends=3..",
+        ),
     ],
 )
 def test_blocks_and_dead_ends_of_maps_follow_from_the_words(asked: str, words: str, line: str) -> None:
@@ -209,6 +215,7 @@ def test_the_lane_at_the_start_is_no_change(asked: str, words: str, line: str) -
             "three crossroads, left first",
             ["crossroads left", "crossroads"],
         ),
+        (2 * ["roundabout"], "a road with 3 bends and roundabouts at both ends", 2 * ["roundabout"]),
         (2 * ["merge main"], "four junctions of a motorway", 2 * ["merge main"]),
     ],
 )

@@ -344,6 +344,12 @@ def test_a_climb_is_changed_by_metres_and_too_much_is_refused() -> None:
     assert after[-1] - after[0] == pytest.approx(before[-1] - before[0] + 3, abs=0.35)
     with pytest.raises(EditError, match="steeper than the"):
         changed("h05", "road: climb =200")
+    uneven = tuple(Segment(distance=d, direction="straight", incline=i) for d, i in ((30, 12), (80, 2)))
+    steep = Design(starting_point=(40, 40, 10), theta=45, segments=uneven)
+    height = build(edited(steep, "road: climb =9").design).centreline()[:, 2]
+    assert height[-1] - height[0] == pytest.approx(9, abs=0.35)  # not 12 % x 1.7, which no rule allows
+    with pytest.raises(EditError, match="in a request of its own"):
+        changed("h05", "road: climb =3; turn 1: remove")
     with pytest.raises(EditError, match="no climb in metres"):
         changed("h05", "road: climb more")
 
@@ -376,6 +382,10 @@ def test_only_the_part_that_climbs_becomes_steeper() -> None:
         ("straight up: slope =8", [-4, 8]),
         ("straight down: slope less", [-2, 5]),
         ("road up: slope x0.5", [-4, 2.5]),
+        ("straight down: slope =8", [-8, 5]),
+        ("straight down: slope 6..", [-6, 5]),
+        ("straight up: slope ..3", [-4, 3]),
+        ("straight up: slope down =3", [-4, -3]),
         ("straight: slope flat", [0, 0]),
     ):
         after = edited(design, plan).design

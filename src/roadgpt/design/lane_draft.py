@@ -177,11 +177,11 @@ def _continued(brief: Brief) -> list[Brief]:
     They are taken from the road before if its lanes continue across the junction. They are also taken from a
     neighbouring road with so many lanes that some of them would otherwise lead nowhere.
     """
-    roads, places = list(brief.roads), brief.junctions
+    roads, places, on_ramps = list(brief.roads), brief.junctions, _on_ramps(brief.junctions)
     for n, place in enumerate(places):
         if _is_one_road(place):
             roads[n + 1] = _of_same_road(roads[n], roads[n + 1], place)
-        elif _leads_straight_on(place) and _may_have_centre(roads[n + 1]):
+        elif _leads_straight_on(place) and _may_have_centre(roads[n + 1]) and not on_ramps[n + 1]:
             roads[n + 1] = roads[n + 1].model_copy(update={"centre": roads[n].centre})
     for n, place in reversed(list(enumerate(places))):
         if _is_one_road(place):

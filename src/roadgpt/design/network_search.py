@@ -177,7 +177,8 @@ class NetworkSearch:
         stem; None for any other junction.
         """
         clause = self.brief.junctions[number]
-        is_exit = number > 0 and self.brief.junctions[number - 1].kind == "diverge"
+        before = self.brief.junctions[number - 1] if number else None
+        is_exit = before is not None and before.kind == "diverge" and before.take != "main"
         is_free = clause.take in ("left", "right") and not clause.ways and clause.angle is None
         if clause.kind != "t_junction" or not is_exit or not is_free:
             return None

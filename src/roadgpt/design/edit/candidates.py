@@ -15,6 +15,7 @@ from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.slopes import (
     bounded_slopes,
     climb_candidates,
+    only_parts,
     part_slope_candidates,
     road_slope_candidates,
     slope_steps,
@@ -72,7 +73,8 @@ def change_candidates(
     elif change.bound:
         elements = [element for element in elements if _is_beyond(change, element)]
         if change.what == "slope" and elements:
-            return ((bounded_slopes(change, elements),),)
+            step = bounded_slopes(change, elements)
+            return ((only_parts(change, step) if _is_of_parts(change, elements) else step,),)
     match change.what:
         case "angle" | "radius" | "shape":
             return _together(_bends(change, element, world) for element in elements)

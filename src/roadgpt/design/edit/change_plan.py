@@ -147,8 +147,10 @@ def read_change_plan(line: str) -> EditRequest:
     changes = tuple(_Parser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
-    if len(changes) > 1 and any(change.what == "reverse" for change in changes):
-        raise EditError("a road is reversed in a request of its own; leave the other changes out")
+    if len(changes) > 1 and any(change.what in ("reverse", "climb") for change in changes):
+        raise EditError(
+            "a road is reversed, or climbs by metres, in a request of its own; leave the other changes out"
+        )
     return EditRequest(line, changes)
 
 

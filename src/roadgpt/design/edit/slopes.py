@@ -18,7 +18,7 @@ LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: the grade to which 'steeper' changes a level place
 
 
-def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> EditStep:
+def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
     """Returns the edit step that makes every element at most, or at least, as steep as the change asks."""
     names, bound = frozenset(element.name for element in elements), change.to or 0.0
     if change.bound < 0:
@@ -125,9 +125,18 @@ def part_slope_candidates(
     Raises:
         EditError: the grade is steeper than the rules allow.
     """
-    assert change.target is not None
     steps = (step for (step,) in road_slope_candidates(change, elements, found, world))
-    return tuple((replace(step, only=change.target.way),) for step in steps if isinstance(step, SlopeOfAll))
+    return tuple((only_parts(change, step),) for step in steps if isinstance(step, SlopeOfAll))
+
+
+def only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
+    """Returns the step for those segments only that go as the change says; they keep their direction, unless
+    the change gives them another one."""
+    assert change.target is not None
+    sign = step.sign
+    if change.way is None and change.target.way != "flat":
+        sign = 1 if change.target.way == "up" else -1
+    return replace(step, only=change.target.way, sign=sign)
 
 
 def climb_candidates(
@@ -148,8 +157,10 @@ def climb_candidates(
     aim = now + change.more * change.by if change.by is not None else now * (change.times or 1.0)
     aim = change.to if change.to is not None else aim
     grade = 100 * aim / length
-    _refuse_too_steep(abs(grade), 100 * world.limits.max_grade)
+    limit = 100 * world.limits.max_grade - 0.2
+    _refuse_too_steep(abs(grade), limit)
     names = frozenset(element.name for element in elements)
-    if aim and all(rise * aim > 0 for rise in rises):
+    steepest = max(abs(segment.incline) for each in elements for segment in each.segments)
+    if aim and all(rise * aim > 0 for rise in rises) and steepest * aim / now <= limit:
         return ((SlopeOfAll(names, times=aim / now),),)
     return ((SlopeOfAll(names, least=abs(grade), most=abs(grade), sign=1 if aim >= 0 else -1),),)

@@ -14,7 +14,11 @@ NOUN = (
     r"bifurcaciones|incroci|rotonde|rotatorie|bivi)"
 )
 OTHERS = r"more|other|further|weiteren?|andere|autres|otr[ao]s|altr[ei]|mas|piu|de plus"
-COUNT = re.compile(rf"(?<!(?:altre|altri|otras|otros) )\b(\d+) (?!{OTHERS})(?:[^\W\d]\w* ){{0,2}}?{NOUN}\b")
+APART = r"(?:and|und|et|y|e|between|way|lane|arm|turns?|bends?|curves?|kurven|virages|curvas|curve|blocks?)\b"
+"""Words that part a number from junctions named behind them, as in "3 bends and roundabouts"."""
+COUNT = re.compile(
+    rf"(?<!(?:altre|altri|otras|otros) )\b(\d+) (?!{OTHERS})(?:(?!{APART})[^\W\d]\w* ){{0,2}}?{NOUN}\b"
+)
 """A number before the plural of a word for junctions, in a text without accents."""
 
 

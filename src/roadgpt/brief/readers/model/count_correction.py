@@ -29,10 +29,13 @@ MORE = word_set(
     "autre plus davantage mas otras otra otros demas altre altra altri ulteriori",
 )
 """Words with which "no turns" excludes only turns that are not named, as in "no further turns"."""
-MOST = MORE | word_set(
-    "most mostly majority meist meisten mehr mehrzahl mehrheit plupart majorite mayoria maggioranza maggior",
+MOST = word_set(
+    "mostly majority meist meisten mehrzahl mehrheit plupart majorite mayoria maggioranza maggior"
 )
-"""Words with which most turns go to one side, as in "more lefts than rights"."""
+"""Words with which most turns go to one side."""
+COMPARED = word_set("more mehr plus mas piu")
+THAN = word_set("than als que che di")
+"""Words of comparisons, such as "more lefts than rights"."""
 MOST_COUNTS = 8
 """The largest number of counts that are checked: eight counts already have 255 possible sums."""
 
@@ -79,8 +82,9 @@ def _sides_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
 def _majority(brief: Brief, said: list[int], words: set[str]) -> Brief:
     """Corrects "at least n turns to one side" to more than half of the turns, if most go there and the words
     do not give n."""
-    turns, named = _total(brief), (words & LEFT and words & RIGHT) or words & MOST - MORE
-    if turns is None or not words & MOST or not named:
+    turns = _total(brief)
+    is_compared = all(words & each for each in (COMPARED, THAN, LEFT, RIGHT))
+    if turns is None or not (is_compared or words & MOST):
         return brief
     for name, side, other in (("left", brief.left, brief.right), ("right", brief.right, brief.left)):
         if other is None and side and side.hi is None and side.lo not in said and (side.lo or 0) > 1:

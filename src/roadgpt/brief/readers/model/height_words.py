@@ -9,7 +9,7 @@ UP = (
     r"climbs?|climbing|rises?|ascends?|goes? up|(?:an)?steigen|(?:an)?steigt|montent|monte|monter|grimpe\w*|"
     r"suban?|salga|salgano|salire"
 )
-DOWN = r"descends?|goes? down|abfallen|abfaellt|descende|descendent|descendre|bajan?|bajen?|scenda|scendere"
+DOWN = r"descends?|goes? down|abfallen|abfallt|descende|descendent|descendre|bajan?|bajen?|scenda|scendere"
 RAISED = (
     r"raised?|lift(?:ed)?|higher|hoher|anheben|angehoben|rehauss\w*|relev\w*|plus haut\w*|mas alt[ao]|"
     r"alza\w*|rialza\w*|piu in alto"
@@ -25,14 +25,18 @@ HEIGHT = re.compile(
 )
 OTHER = re.compile(
     r"\b(?:long|longer|short|shorter|length|radius|tighter|wider|lang\w*|kurz\w*|radien|longueur|court\w*|"
-    r"rayon|larg\w*|longitud|cort\w*|radio|lung\w*|raggio|add|insert|como|at least|at most|below|under|"
-    r"mindestens|unter|hochstens|nicht|moins|plus de|menos|sotto|meno|not|no|non|pas|start|beginning|anfang|"
-    r"beginn|debut|depart|inicio|comienzo|principio|inizio|partenza)\b"
+    r"rayon|larg\w*|longitud|cort\w*|radio|lung\w*|raggio|distance|gap|size|section|"
+    r"add|insert|append|put|mirror|swap|remove|reverse|another|then|and|und|et|e|y|puis|poi|each|every|"
+    r"jede\w*|chaque|cada|ogni|more|less|mehr|weniger|moins|plus de|menos|meno|at least|at most|below|under|mindestens|"
+    r"unter|hochstens|como|sotto|not|no|non|nicht|pas|final|after|before|until|from|between|nach|vor|ab|bis|"
+    r"apres|avant|despues|antes|hasta|dopo|prima|start|beginning|anfang|beginn|debut|depart|inicio|comienzo|"
+    r"principio|inizio|partenza)\b"
 )
-"""Words with which the metres may be a length or a limit, or may concern the start of the road."""
+"""Words with which the metres may be a length, a place or a limit, or with which more is asked for."""
 ALONG = re.compile(
-    r"\b(?:for|over|within|during|in|along|last|first|auf|uber|lang|letzten|ersten|sur|pendant|derniers|premiers|en|"
-    r"durante|ultimos|primeros|per|su|nei|ultimi|primi) (?:the |den |les |los |i )?(?:last |first )?\[unused"
+    r"\b(?:for|over|within|during|in|along|last|first|auf|uber|lang|letzten|ersten|sur|pendant|derniers|premiers|"
+    r"en|a|an|the climb|climb of|durante|ultimos|primeros|per|su|nei|ultimi|primi) "
+    r"(?:the |den |les |los |i )?(?:last |first )?\[unused"
 )
 """Words before metres along the road: "climb over the last 80 m"."""
 NAMED = re.compile(

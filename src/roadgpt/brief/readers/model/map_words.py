@@ -41,7 +41,7 @@ ACROSS = re.compile(
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
 SIDE_STREETS = re.compile(
-    r"side (?:streets?|roads?)|(?:seiten|neben)strassen?|rues? (?:laterale|secondaire|transversale)s?|"
+    r"side (?:streets?|roads?)|(?:seiten|neben)stra(?:ss|ß)en?|rues? (?:laterale|secondaire|transversale)s?|"
     r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
 )
 MAIN_STREET = re.compile(
@@ -51,7 +51,8 @@ MAIN_STREET = re.compile(
 TREE = re.compile(rf"\b(?:{DEAD_END}|end dead)\b")
 MORE_KINDS = re.compile(
     r"cross|junction|roundabout|kreuz|kreis|einmund|carrefour|croisement|rond|giratoire|cruce|glorieta|rotonda|"
-    r"incroc|rotatori|square|loop|ring|platz|place\b|plaza|piazza"
+    r"incroc|rotatori|fork|gabel|abzweig|bifurc|bivi|at least|at most|up to|total|in all|each|mindestens|"
+    r"hochstens|insgesamt|bis zu|au moins|al menos|almeno|square|loop|ring|platz|place\b|plaza|piazza"
 )
 NOT_A_TREE = re.compile(
     rf"\b(?:none|not|nicht|pas|nessuna|ninguna?|keine[rs]?|aucune)\b[^.;]{{0,25}}{DEAD_END}\b"
@@ -76,7 +77,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     said = _said(text)
     found = DEAD_ENDS.findall(said)
     off_street = _off_main_street(said, found)
-    if off_street is not None:
+    if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update = {} if asked.junctions else _blocks(asked, said)
     if asked.dead_ends is None or asked.dead_ends.exact:

@@ -21,10 +21,10 @@ FACTORS = {
 LENGTHS = "long|length|lang|lange|langen|laenge|longue|longueur|larga|largo|longitud|lunga|lungo|lunghezza"
 ANGLES = "angle|winkel|angulo|angolo"
 GRADES = (
-    "steep|steeply|grade|gradient|slope|steil|steigung|gefaelle|raide|pente|empinada|empinado|pendiente|ripida"
+    "steep|steeply|grade|gradient|slope|steil|steigung|gefalle|raide|pente|empinada|empinado|pendiente|ripida"
     "|ripido|pendenza"
 )
-SIZES = "far|weit|loin|lejos|much|big|large|viel|stark|gross|forte?|grande?"
+SIZES = "far|weit|loin|lejos|much|viel"
 KINDS: tuple[tuple[str, Unit], ...] = ((LENGTHS, "metres"), (ANGLES, "degrees"), (GRADES, "percent"))
 NAMED = f"(?P<what>{LENGTHS}|{ANGLES}|{GRADES}|{SIZES})"
 TIMES = r"(?P<times>{[^}]*}) (?:times|mal|fois|veces|volte)"
@@ -42,6 +42,44 @@ PHRASES = tuple(
     )
 )
 """Multiples as they are said in five languages, in words without accents; numbers stand in braces."""
+REFERENCES = frozenset(
+    ["as", "than", "wie", "als", "que", "come", "of", "di", "de", "du", "del", "der", "des"]
+)
+KNOWN = frozenset(
+    [
+        "first",
+        "previous",
+        "last",
+        "before",
+        "one",
+        "erste",
+        "ersten",
+        "vorige",
+        "vorher",
+        "premiere",
+        "premier",
+    ]
+    + ["precedente", "primera", "primero", "anterior", "prima", "primo"]
+)
+"""What a multiple may be compared with: the part that was named before it."""
+ROAD = frozenset(
+    [
+        "road",
+        "route",
+        "track",
+        "whole",
+        "total",
+        "all",
+        "altogether",
+        "strasse",
+        "straße",
+        "strecke",
+        "insgesamt",
+    ]
+    + ["parcours", "carretera", "ruta", "recorrido", "strada", "percorso", "tracciato"]
+)
+"""Words beside the length of the whole road, of which no part is a multiple."""
+NEAR = 3  # words
 DENIALS = frozenset(["not", "no", "nicht", "keine", "pas", "ne", "non"])
 DENIED = 4  # words
 """How far before a multiple it may be denied: "not really twice as long"."""
@@ -72,7 +110,12 @@ def with_multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Num
         others = [number for number in out if number.first not in within]
         base = _base([number for number in others if number.last < multiple.first], tokens, multiple.what)
         is_denied = not DENIALS.isdisjoint(tokens[max(multiple.first - DENIED, 0) : multiple.first])
-        if base is None or is_denied or _is_explained(others, multiple.last, base.unit):
+        if (
+            base is None
+            or is_denied
+            or _is_of_another(tokens[multiple.last + 1 :][: 2 * NEAR])
+            or _is_explained(others, multiple.last, base.unit)
+        ):
             continue
         value = round(base.value * multiple.factor, 1)
         made = Number(value, multiple.first, multiple.last, base.unit, False)
@@ -121,7 +164,18 @@ def _base(numbers: Sequence[Number], tokens: Sequence[str], what: str) -> Number
         return None
     unit = unit or next((number.unit for number in reversed(measured) if number.unit != "percent"), "")
     alike = [number for number in measured if number.unit == unit]
-    return alike[-1] if alike and len({number.value for number in alike}) == 1 else None
+    if not alike or len({number.value for number in alike}) > 1:
+        return None
+    around = tokens[max(alike[-1].first - NEAR, 0) : alike[-1].last + 1 + NEAR]
+    has_radius = any(is_radius(tokens, number) or number.unit == "" for number in numbers)
+    is_unclear = what in SIZES.split("|") and unit == "metres" and has_radius
+    return None if is_unclear or not ROAD.isdisjoint(around) else alike[-1]
+
+
+def _is_of_another(behind: Sequence[str]) -> bool:
+    """Returns whether the words behind a multiple compare it with something but the part named before it."""
+    at = next((n for n, word in enumerate(behind[:NEAR]) if word in REFERENCES), None)
+    return at is not None and KNOWN.isdisjoint(behind[at:])
 
 
 def _is_explained(numbers: Sequence[Number], last: int, unit: Unit) -> bool:

@@ -36,7 +36,8 @@ SWAP = re.compile(
 )
 MORE = re.compile(
     r"\b(?:left|right|links|rechts|gauche|droite|izquierda|derecha|sinistra|destra|start|end|finish|anfang|ziel|"
-    r"for|directions?|sides?|richtung\w*|sens|sentido\w*|"
+    r"lengths?|sharpness|steepness|width|height|straights?|to|then|remove|make|from|back|aus|off|gentle|"
+    r"sharp|hairpins?|second last|vorletzt\w*|for|directions?|sides?|richtung\w*|sens|sentido\w*|"
     r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
 )
 """Words with which something other than the places of two turns is exchanged, or nothing."""
