@@ -14,7 +14,7 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.refusal import OF_CAUSES, refused
-from roadgpt.design.edit import change_plan as language
+from roadgpt.design.edit import change_parser as language
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.design.edit.request import HALVES, SUPERLATIVES
 
@@ -135,6 +135,7 @@ def test_the_network_has_a_token_for_every_word_of_changes() -> None:
         *language.MEASURES,
         *language.ALONE,
         *language.DOSES,
+        *language.WAYS,
     }
     words |= {f"{word}(" for word in (*language.POSITIONS, "but")}
     words |= {f"{word}=" for word in language.NUMBERS}

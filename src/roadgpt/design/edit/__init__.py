@@ -23,7 +23,7 @@ from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
-REORDERS = ("reverse", "swap")
+REORDERS = ("reverse", "swap", "move")
 REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
@@ -103,8 +103,11 @@ def _reordering(change: PlacedChange, elements: RoadElements) -> str:
     if change.change.what == "reverse":
         return REVERSED
     turns = [element.name for element in elements if element.is_turn]
-    one, other = (turns.index(element.name) + 1 for element in change.elements)
-    return f"turn {one} and turn {other} have changed places; they are named as before"
+    numbers = [str(turns.index(element.name) + 1) for element in change.elements]
+    if change.change.what == "move":
+        told = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
+        return f"{told} moved; the turns are named as before"
+    return f"turn {numbers[0]} and turn {numbers[1]} have changed places; they are named as before"
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

@@ -6,49 +6,11 @@ Changes are separated by ``;``. Each names a place, then a colon, then what is w
 ``add``. The page docs/reference/plans.md describes the language.
 """
 
-import re
 from collections.abc import Iterator
-from dataclasses import replace
-from typing import Any, Literal, cast, get_args
 
-from roadgpt.brief.model import Kind, Sharpness, Side
-from roadgpt.design.edit.request import (
-    HALVES,
-    MUCH,
-    SLIGHTLY,
-    SUPERLATIVES,
-    Change,
-    EditRequest,
-    Place,
-    Target,
-    Way,
-)
+from roadgpt.design.edit.change_parser import DOSES, MEASURES, NUMBERS, ChangeParser
+from roadgpt.design.edit.request import HALVES, SUPERLATIVES, Change, EditRequest, Place, Target
 from roadgpt.errors import EditError
-
-TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
-KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
-NOUNS = ("turn", "straight", "start", "end", "road")
-PROPERTIES = {
-    **dict.fromkeys(get_args(Side), "side"),
-    **dict.fromkeys(get_args(Sharpness), "sharpness"),
-    **dict.fromkeys(get_args(Way), "way"),
-    **dict.fromkeys(("long", "short"), "size"),
-}
-NUMBERS = {"deg": "degrees", "len": "length", "r": "radius", "pct": "grade"}
-NEXT_TO = ("after", "before", "between", "on")
-"""Positions, relative to other elements, at which a new element can be added."""
-POSITIONS = (*NEXT_TO, "from", "up_to")
-ENDS: dict[str, Literal["start", "end", "middle"]] = {
-    "at_start": "start",
-    "at_end": "end",
-    "at_middle": "middle",
-}
-MEASURES = ("angle", "radius", "length", "slope", "climb")
-ALONE = ("straighten", "remove", "mirror", "reverse", "swap", "alternate")
-OF_ROAD = ("mirror", "reverse")
-"""Wishes of the whole road."""
-DOSES = {"slightly": SLIGHTLY, "much": MUCH}
-PAGE = "the page 'Plans' of the reference describes the language"
 
 
 def change_plan(request: EditRequest) -> str:
@@ -67,13 +29,21 @@ def _change(change: Change) -> str:
 
 
 def _wish(change: Change) -> Iterator[str]:
+    if change.what == "count":
+        low, high = ("..", "") if change.bound < 0 else ("", ".." if change.bound else "")
+        yield f"x{low}{_number(change.to or 0)}{high}"
+        return
+    if change.what == "move":
+        assert change.place is not None
+        yield _position(change.place)
+        return
     yield change.what
     if change.what == "side":
         yield change.side or "other"
     if change.what == "shape":
         yield from (word for word in (change.kind, change.sharpness) if word)
     if change.way and change.what == "slope":
-        yield change.way
+        yield change.slope or ""
     if change.what in MEASURES:
         yield from _value(change)
 
@@ -96,7 +66,7 @@ def _added(change: Change) -> Iterator[str]:
     yield change.kind or change.target.noun or "turn"
     if change.count != 1:
         yield f"x{change.count}"
-    yield from (word for word in (change.side, change.sharpness, change.way) if word)
+    yield from (word for word in (change.side, change.sharpness, change.slope) if word)
     for key, field in NUMBERS.items():
         if (value := getattr(change, field)) is not None:
             yield f"{key}={_number(value)}"
@@ -144,7 +114,7 @@ def read_change_plan(line: str) -> EditRequest:
         EditError: A word or number is not part of the language, or is in the wrong place; the message names
             it.
     """
-    changes = tuple(_Parser(part).change() for part in line.split(";") if part.strip())
+    changes = tuple(ChangeParser(part).change() for part in line.split(";") if part.strip())
     if not changes:
         raise EditError("the plan names no change; write for example: turn 2: radius x0.75")
     if len(changes) > 1 and any(change.what in ("reverse", "climb") for change in changes):
@@ -152,222 +122,3 @@ def read_change_plan(line: str) -> EditRequest:
             "a road is reversed, or climbs by metres, in a request of its own; leave the other changes out"
         )
     return EditRequest(line, changes)
-
-
-class _Parser:
-    """Reads one change from its tokens, from left to right."""
-
-    def __init__(self, text: str) -> None:
-        self.text = " ".join(text.split())
-        self.tokens: list[str] = []
-        at = 0
-        while at < len(self.text):
-            match = TOKEN.match(self.text, at)
-            if match is None:
-                raise self._error(self.text[at:].split()[0])
-            self.tokens.append(match[0].strip())
-            at = match.end()
-        self.at = 0
-
-    def change(self) -> Change:
-        """Returns the change."""
-        if self._take("add"):
-            found = self._new()
-        else:
-            target = self._target()
-            if not self._take(":"):
-                raise EditError(
-                    f"the change '{self.text[:60]}' does not say what is wanted; "
-                    "write the place, a colon and the wish"
-                )
-            found = self._wish(target)
-        if self._next():
-            raise self._error(self._next())
-        return replace(found, words=self.text)
-
-    def _wish(self, target: Target) -> Change:
-        what = self._word()
-        if what in ALONE:
-            if what == "reverse" and target != Target("road", words="road"):
-                raise EditError("only the whole road can be reversed; write: road: reverse")
-            whole = what in OF_ROAD and target.noun == "road"
-            return Change(cast(Any, what), None if whole else target)
-        if what == "side":
-            side = self._word()
-            if side not in (*get_args(Side), "other"):
-                raise self._error(side)
-            return Change("side", target, side=None if side == "other" else cast(Side, side))
-        if what == "shape":
-            return self._shape(Change("shape", target))
-        if what not in MEASURES:
-            raise self._error(what)
-        change = Change(cast(Any, what), target)
-        if what == "slope" and self._next() in get_args(Way):
-            change = replace(change, way=cast(Way, self._word()))
-            if not self._next():
-                return change
-        return self._valued(change)
-
-    def _shape(self, change: Change) -> Change:
-        while word := self._next():
-            if word in KINDS and change.kind is None:
-                change = replace(change, kind=cast(Kind, word))
-            elif word in get_args(Sharpness) and change.sharpness is None:
-                change = replace(change, sharpness=cast(Sharpness, word))
-            else:
-                raise self._error(word)
-            self.at += 1
-        if not (change.kind or change.sharpness):
-            raise self._error("")
-        return change
-
-    def _valued(self, change: Change) -> Change:
-        if self._take("="):
-            return replace(change, to=self._figure())
-        if self._take(".."):
-            return replace(change, to=self._figure(), bound=-1)
-        if self._take("+"):
-            return replace(change, more=1, by=self._figure())
-        if self._take("-"):
-            return replace(change, more=-1, by=self._figure())
-        if self._take("x"):
-            figure = self._figure()
-            return replace(change, times=figure / 100 if self._take("%") else figure)
-        if _is_number(self._next()):
-            number = self._figure()
-            if number < 0 and not self._next():  # the sign belongs to the difference: -20
-                return replace(change, more=-1, by=-number)
-            if not self._take(".."):
-                raise self._error(self._next())
-            return replace(change, to=number, bound=1)
-        dose = DOSES.get(self._next(), 1.0)
-        self.at += dose != 1.0
-        word = self._word()
-        if word not in ("more", "less"):
-            raise self._error(word)
-        return replace(change, more=1 if word == "more" else -1, dose=dose)
-
-    def _new(self) -> Change:
-        kind = self._word()
-        if kind not in KINDS | {"turn", "straight"}:
-            raise self._error(kind)
-        noun: Any = "straight" if kind == "straight" else "turn"
-        own = cast(Kind, kind) if kind in KINDS else None
-        change = Change("add", Target(noun, indefinite=True, words=kind), kind=own)
-        fields: dict[str, Any] = {}
-        while word := self._next():
-            self.at += 1
-            if word == "x":
-                self._set(fields, "count", self._whole())
-            elif word == "whole":
-                self._set(fields, "is_whole", True)
-            elif word in NUMBERS:
-                self._set(fields, NUMBERS[word], self._equal())
-            elif PROPERTIES.get(word) in ("side", "sharpness", "way"):
-                self._set(fields, PROPERTIES[word], word)
-            elif word in ENDS or word in NEXT_TO:
-                self._set(fields, "place", self._position(word))
-            else:
-                raise self._error(word)
-        return replace(change, **fields)
-
-    def _position(self, word: str) -> Place:
-        if word in ENDS:
-            return Place(ENDS[word])
-        self._need("(")
-        target = self._target()
-        other = None
-        if word == "between":
-            self._need(",")
-            other = self._target()
-        self._need(")")
-        return Place(cast(Any, word), target, other)
-
-    def _target(self) -> Target:
-        begun = self.at
-        noun = self._word()
-        if noun not in (*NOUNS, *KINDS):
-            raise self._error(noun)
-        fields: dict[str, Any] = {"kind": noun} if noun in KINDS else {}
-        while (word := self._next()) not in ("", ":", ")", ","):
-            if _is_number(word):
-                self._set(fields, "numbers", self._list())
-                continue
-            self.at += 1
-            if word == "all":
-                self._set(fields, "every", True)
-            elif word == "middle":
-                self._set(fields, "middle", True)
-            elif word in SUPERLATIVES:
-                self._set(fields, "most", SUPERLATIVES[word])
-            elif word == "x":
-                self._set(fields, "count", self._whole())
-            elif word in ("deg", "len"):
-                self._set(fields, NUMBERS[word], self._equal())
-            elif word in HALVES:
-                self._set(fields, "half", HALVES[word])
-            elif word in PROPERTIES:
-                self._set(fields, PROPERTIES[word], word)
-            elif word in POSITIONS or word in ENDS:
-                self._set(fields, "place", self._position(word))
-            elif word == "but":
-                self._need("(")
-                self._set(fields, "but", self._target())
-                self._need(")")
-            else:
-                raise self._error(word)
-        words = " ".join(self.tokens[begun : self.at])
-        return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
-
-    def _list(self) -> tuple[int, ...]:
-        numbers = [self._whole()]
-        while self._next() == "," and _is_number(self._next(1)):
-            self.at += 1
-            numbers.append(self._whole())
-        return tuple(numbers)
-
-    def _set(self, fields: dict[str, Any], name: str, value: Any) -> None:
-        if name in fields:
-            raise EditError(f"the change '{self.text[:60]}' gives its {name} twice; give it once")
-        fields[name] = value
-
-    def _equal(self) -> float:
-        self._need("=")
-        return self._figure()
-
-    def _figure(self) -> float:
-        word = self._word()
-        if not _is_number(word):
-            raise self._error(word)
-        return float(word)
-
-    def _whole(self) -> int:
-        number = self._figure()
-        if not number.is_integer() or not number:
-            raise self._error(_number(number))
-        return int(number)
-
-    def _need(self, sign: str) -> None:
-        if not self._take(sign):
-            raise self._error(self._next())
-
-    def _take(self, word: str) -> bool:
-        is_next = self._next() == word
-        self.at += is_next
-        return is_next
-
-    def _word(self) -> str:
-        self.at += 1
-        return self.tokens[self.at - 1] if self.at <= len(self.tokens) else ""
-
-    def _next(self, further: int = 0) -> str:
-        place = self.at + further
-        return self.tokens[place] if place < len(self.tokens) else ""
-
-    def _error(self, word: str) -> EditError:
-        where = f"'{word[:40]}' is not expected in" if word else "something is missing at the end of"
-        return EditError(f"{where} the change '{self.text[:60]}'; {PAGE}")
-
-
-def _is_number(word: str) -> bool:
-    return bool(re.fullmatch(r"-?\d+(?:\.\d+)?", word))

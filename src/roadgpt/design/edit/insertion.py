@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
 
-from roadgpt.brief.model import OTHER_SIDE, Side
+from roadgpt.brief.model import OTHER_SIDE, Side, Slope
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 from roadgpt.design.edit.pointing import PlacedChange
@@ -50,7 +50,16 @@ PREFERRED = {
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
 MOST_NEW = 12
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
-SLOPED = {"up": 5.0, "down": -5.0, "flat": 0.0}  # percent to aim at
+SLOPED: dict[Slope, float] = {
+    "up": 5.0,
+    "down": -5.0,
+    "flat": 0.0,
+    "gently_up": 3.0,
+    "gently_down": -3.0,
+    "steeply_up": 9.5,
+    "steeply_down": -9.5,
+}
+"""The grade in percent at which a new turn or straight aims."""
 
 
 def insertion_candidates(
@@ -241,14 +250,14 @@ def _grade(change: Change) -> Range | None:
     """Returns the requested range of grades in percent; None if the request gives none."""
     if change.grade is not None:
         return Range(change.grade - 0.6, change.grade + 0.6)
-    return SLOPES[change.way].grade if change.way else None
+    return SLOPES[change.slope].grade if change.slope else None
 
 
 def _incline_asked(change: Change, incline: float) -> float:
     """Returns the incline of a new element in percent: as requested, or else ``incline``."""
     if change.grade is not None:
         return change.grade
-    return SLOPED[change.way] if change.way else incline
+    return SLOPED[change.slope] if change.slope else incline
 
 
 def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:

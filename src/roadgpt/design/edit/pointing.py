@@ -7,13 +7,14 @@ from typing import NamedTuple
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
 from roadgpt.design.edit.request import Change, Place, Target, Way, What
+from roadgpt.design.edit.stretches import RoadStretch, stretch_of, within
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
 LONG, SHORT = 60.0, 30.0  # m: brief.words
 LEAST_PART = 10.0  # m of a straight that climb, fall or are level, to be called a part of it
-MUCH = 0.3  # share of half a road: an element that reaches farther into both halves belongs to neither
 SINGLE = ("hairpin", "u_turn", "switchback")
+OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
 
@@ -28,6 +29,8 @@ class PlacedChange(NamedTuple):
     """The elements after, before or on which something is added."""
     stop: RoadElement | None = None
     """The second element if something is added between two; else None."""
+    stretch: RoadStretch | None = None
+    """The stretch of the road if it is named by a distance or as a half, and its slope changes; else None."""
 
 
 def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedChange, ...]:
@@ -45,17 +48,60 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         place = change.place
         if change.what in ("mirror", "reverse"):
             out.append(PlacedChange(change, elements))
+        elif change.what == "count":
+            out.append(_counted(change, elements))
+        elif change.what == "move":
+            assert change.target is not None
+            moved = tuple(pointed(change.target, elements, "side"))
+            out.append(PlacedChange(change, moved, *_marks(place, elements)))
         elif change.what != "add":
             assert change.target is not None
-            out.append(PlacedChange(change, tuple(pointed(change.target, elements, change.what))))
-        elif place is None or place.target is None or place.how in ("start", "end", "middle"):
-            out.append(PlacedChange(change, ()))
+            own = tuple(pointed(change.target, elements, change.what))
+            is_sloped = change.what in OF_SLOPE
+            stretch = stretch_of(change.target, elements) if is_sloped else None
+            out.append(PlacedChange(change, own, stretch=stretch))
         else:
-            marks = tuple(pointed(_named(place.target), elements, "length"))
-            other = place.other if place.how == "between" else None
-            stop = pointed(_named(other), elements, "length")[0] if other else None
-            out.append(PlacedChange(change, (), marks, stop))
+            out.append(PlacedChange(change, (), *_marks(place, elements)))
     return tuple(out)
+
+
+def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, RoadElement | None]:
+    """Returns the elements next to which something comes, and the second one if it comes between two."""
+    if place is None or place.target is None or place.how in ("start", "end", "middle"):
+        return (), None
+    other = place.other if place.how == "between" else None
+    stop = pointed(_named(other), elements, "length")[0] if other else None
+    return tuple(pointed(_named(place.target), elements, "length")), stop
+
+
+def _counted(change: Change, elements: RoadElements) -> PlacedChange:
+    """Returns the removal or the addition with which the road has as many turns as asked for.
+
+    The last ones are removed; new ones come at the end.
+    """
+    target = change.target
+    assert target is not None
+    assert change.to is not None
+    if target.noun != "turn":
+        raise EditError(f"'{change.words}' counts no turns; write for example: turn: x4")
+    there, wanted = _among(replace(target, every=True), turns(elements), elements), int(change.to)
+    if change.bound <= 0 and len(there) > wanted:
+        return PlacedChange(replace(change, what="remove"), tuple(there[wanted:]))
+    if change.bound >= 0 and len(there) < wanted:
+        new = Target("turn", indefinite=True, words=target.words)
+        more = Change(
+            "add",
+            new,
+            kind=target.kind,
+            side=target.side,
+            sharpness=target.sharpness,
+            way=target.way,
+            count=wanted - len(there),
+            place=Place("end"),
+            words=change.words,
+        )
+        return PlacedChange(more, ())
+    return PlacedChange(change, ())
 
 
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
@@ -71,6 +117,8 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
         EditError: no element matches, or several match although the request means one.
     """
     match target.noun:
+        case "end" | "start" if target.length is not None:
+            return _at_end(target, elements, what)
         case "end" | "start":
             return [_end(elements, what, last=target.noun == "end")]
         case "road":
@@ -97,9 +145,9 @@ def straights(elements: RoadElements) -> list[RoadElement]:
 
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     found = list(elements)
-    if target.half:
-        if what == "slope":
-            _refuse_a_split(elements)
+    if target.half and what in OF_SLOPE:
+        found = _at_end(target, elements, what)
+    elif target.half:
         found = _half(elements, target.half)
     place = target.place
     if place and place.target and place.how != "on":
@@ -133,17 +181,17 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
     return out
 
 
-def _refuse_a_split(elements: RoadElements) -> None:
-    """Raises EditError if one turn or straight makes up much of both halves: it can get only one slope."""
-    middle, at = sum(element.length for element in elements) / 2, 0.0
-    for element in elements:
-        if min(middle - at, at + element.length - middle) > MUCH * middle:
-            noun = "turn" if element.is_turn else "straight"
-            raise EditError(
-                f"the middle of this road lies in a {noun} of {element.length:.0f} m, which has one slope;"
-                " name turns and straights, or describe a new road: 'uphill, then downhill'"
-            )
-        at += element.length
+def _at_end(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
+    """Returns the elements of "the last 80 m"; only their slope and their climb can be changed together."""
+    if what not in OF_SLOPE:
+        raise EditError(
+            f"'{target.words}' is a distance, and only its slope or its climb can be changed; name turns or "
+            "straights"
+        )
+    stretch = stretch_of(target, elements)
+    assert stretch is not None
+    names = {element.name for element in within(elements, stretch)}
+    return [element for element in elements if element.name in names]
 
 
 def _end(elements: RoadElements, what: What, last: bool) -> RoadElement:

@@ -1,10 +1,11 @@
-"""Reorders the elements of a road: reverses the whole road, or lets two turns change places."""
+"""Reorders the elements of a road: reverses the whole road, moves turns, or lets two change places."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
 
-from roadgpt.design.edit.steps import flipped
+from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.steps import EditCandidate, flipped
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build
@@ -22,28 +23,66 @@ class Reverse:
 
 
 @dataclass(frozen=True, slots=True)
-class Swap:
-    """Lets two elements change places; each keeps its angle, radius, side and grade."""
+class Reorder:
+    """Puts the turns of a road in another order; each keeps its angle, radius, side and grade.
 
-    one: str
-    other: str
+    The straights between them stay where they are.
+    """
+
+    names: tuple[str, ...]
+    """The names of all turns in their new order."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in their new order."""
         by_name = {element.name: element for element in elements}
-        places = {self.one: by_name[self.other], self.other: by_name[self.one]}
-        return tuple(places.get(element.name, element) for element in elements)
+        places = iter(self.names)
+        return tuple(by_name[next(places)] if each.name in self.names else each for each in elements)
 
 
-def swap_of(elements: Sequence[RoadElement]) -> Swap:
+def swap_of(chosen: Sequence[RoadElement], elements: RoadElements) -> Reorder:
     """Returns the step that lets two turns change places.
 
     Raises:
-        EditError: these are not two turns.
+        EditError: the chosen elements are not two turns.
     """
-    if len(elements) != 2 or not all(element.is_turn for element in elements):
+    if len(chosen) != 2 or not all(element.is_turn for element in chosen):
         raise EditError("two turns can change places; name two, for example: swap turns 1 and 3")
-    return Swap(elements[0].name, elements[1].name)
+    one, other = (element.name for element in chosen)
+    other_of = {one: other, other: one}
+    return Reorder(tuple(other_of.get(name, name) for name in _turn_names(elements)))
+
+
+def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
+    """Returns the candidate that moves turns to another place among the turns; none if they are there.
+
+    Raises:
+        EditError: something other than a turn is to be moved, or a turn is to be moved next to itself.
+    """
+    moved = [element.name for element in placed.elements]
+    place = placed.change.place
+    if place is None or not all(element.is_turn for element in placed.elements):
+        raise EditError(f"'{placed.change.words}' moves a straight; only turns can be moved")
+    before = _turn_names(elements)
+    others = [name for name in before if name not in moved]
+    at = {element.name: index for index, element in enumerate(elements)}
+    match place.how:
+        case "start":
+            index = 0
+        case "end":
+            index = len(others)
+        case "middle":
+            index = len(others) // 2
+        case how:
+            if any(mark.name in moved for mark in placed.marks):
+                raise EditError(f"'{placed.change.words}' moves a turn next to itself; name another place")
+            mark = at[placed.marks[0 if how == "before" else -1].name]
+            index = sum(at[name] < mark + (how != "before") for name in others)
+    after = (*others[:index], *moved, *others[index:])
+    return () if after == before else ((Reorder(after),),)
+
+
+def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
+    return tuple(element.name for element in elements if element.is_turn)
 
 
 def _reversed(element: RoadElement) -> RoadElement:

@@ -1,9 +1,9 @@
 """Defines a change request as data: the changes to make, and the places along the road that they concern."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, cast
 
-from roadgpt.brief.model import Kind, Sharpness, Side
+from roadgpt.brief.model import Kind, Sharpness, Side, Slope
 
 Noun = Literal["turn", "straight", "end", "start", "road", "it"]
 What = Literal[
@@ -17,12 +17,15 @@ What = Literal[
     "straighten",  # a straight in the place of a turn
     "add",
     "remove",
+    "count",  # so many turns, in all or of one kind
+    "move",  # a turn to another place
     "mirror",
     "swap",  # two turns change places
     "reverse",  # the whole road, from its end to its start
     "alternate",
 ]
 Way = Literal["up", "down", "flat"]
+Steepness = Literal["gently", "steeply"]
 Measure = Literal["sharp", "long", "steep"]
 SLIGHTLY, MUCH = 0.5, 1.8
 """Sizes of a change ('slightly', 'much') for which no number is given, relative to the usual size."""
@@ -68,7 +71,7 @@ class Target:
     degrees: float | None = None
     """The angle, as in 'the 90 degree bend'."""
     length: float | None = None
-    """The length in metres, as in 'the 40 m straight'."""
+    """The length in metres, as in 'the 40 m straight' and 'the last 80 m'."""
     is_that: bool = False
     """True for 'that turn': the one that was mentioned last."""
     is_bare: bool = False
@@ -120,6 +123,8 @@ class Change:
     'much'.
     """
     way: Way | None = None
+    steepness: Steepness | None = None
+    """How steep the new slope is if ``way`` is "up" or "down"; None if the request does not say."""
     side: Side | None = None
     """The new side; None for the opposite of the present one."""
     kind: Kind | None = None
@@ -136,6 +141,11 @@ class Change:
     ('end with a 60 m straight').
     """
     words: str = ""
+
+    @property
+    def slope(self) -> Slope | None:
+        """The new slope, with its steepness if the request gives it, as in "steeply_up"."""
+        return cast(Slope, f"{self.steepness}_{self.way}") if self.steepness else self.way
 
 
 @dataclass(frozen=True, slots=True)

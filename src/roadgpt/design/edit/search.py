@@ -19,8 +19,9 @@ from roadgpt.check.measures import Measures
 from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import PlacedChange
-from roadgpt.design.edit.reordering import Reverse, started_at_end, swap_of
+from roadgpt.design.edit.reordering import Reverse, move_of, started_at_end, swap_of
 from roadgpt.design.edit.request import Change, What
+from roadgpt.design.edit.slopes import stretch_candidates
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
 from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
@@ -93,13 +94,19 @@ def _ways(
         case "reverse":
             return ((Reverse(),),)
         case "swap":
-            return ((swap_of(placed.elements),),)
+            return ((swap_of(placed.elements, elements),),)
+        case "move":
+            return move_of(placed, elements)
+        case "count":
+            return ()  # there are as many as asked for
         case "add":
             return insertion_candidates(placed, elements, world, number)
         case "remove":
             return removal_candidates(placed.elements, elements)
         case "alternate":
             return alternating_candidates(placed.elements, world)
+        case _ if placed.stretch is not None:
+            return stretch_candidates(placed.change, elements, placed.stretch, found, world)
         case _:
             return change_candidates(placed.change, placed.elements, found, world)
 

@@ -3,12 +3,15 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from math import inf
+from typing import NamedTuple
 
 from roadgpt.brief.words import PERCENT_SLACK, Range
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.request import Change
-from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, SlopeOfAll, Wanted
-from roadgpt.design.road_elements import RoadElement
+from roadgpt.design.edit.request import Change, Steepness
+from roadgpt.design.edit.slope_of_all import SlopeOfAll
+from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
+from roadgpt.design.edit.stretches import RoadStretch, within
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -16,6 +19,25 @@ STEEPER, FLATTER = 1.5, 0.5  # shares of a grade
 STEEPER_BY = 2.0  # percentage points that 'steeper' adds at least
 LEVEL, CLEARLY_LEVEL = 1.0, 0.8  # percent
 STEEP_FROM = 4.0  # percent: the grade to which 'steeper' changes a level place
+
+
+class SlopeAim(NamedTuple):
+    """The grade in percent at which a new slope aims, and the ranges in which it may lie."""
+
+    grade: float
+    room: tuple[float, float]
+    wide_room: tuple[float, float]
+    least: tuple[float, float]
+    """The least grade of each segment of a longer stretch, and another one if the first cannot be built."""
+    most: float
+
+
+AIMS: dict[Steepness | None, SlopeAim] = {
+    None: SlopeAim(5.0, (3.0, 12.0), (1.3, 13.0), (4.0, 3.0), 12.0),
+    "gently": SlopeAim(3.0, (2.0, 5.0), (1.3, 5.5), (2.5, 2.0), 4.5),
+    "steeply": SlopeAim(9.5, (8.0, 15.0), (6.5, 15.0), (9.0, 8.0), 14.0),
+}
+"""Aims of "uphill", "gently uphill" and "steeply uphill", inside the meanings in ``brief.words``."""
 
 
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
@@ -55,7 +77,9 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
             return []
         return _graded(element, 1, 0.0, (-0.5, 0.5), (-CLEARLY_LEVEL, CLEARLY_LEVEL))
     if change.way and not change.more:
-        return [] if way(now) == change.way else _graded(element, sign, 5.0, (3.0, 12.0), (1.3, 13.0))
+        aim_at = AIMS[change.steepness]
+        is_so = way(now) == change.way and (not change.steepness or _is_in(abs(now), aim_at.room))
+        return [] if is_so else _graded(element, sign, aim_at.grade, aim_at.room, aim_at.wide_room)
     if change.more > 0 and change.way and way(now) != change.way:
         return _graded(element, sign, 6.0, (3.0, 12.0))
     if change.more < 0:
@@ -66,6 +90,10 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
     if steep <= abs(now) + 0.4:
         raise EditError(f"it is as steep as the rules allow there: {now:.1f} % of {limit:g} %")
     return _graded(element, sign, steep, (min(abs(now) + 0.4, steep - 0.2), min(steep + 1.5, limit)))
+
+
+def _is_in(grade: float, room: tuple[float, float]) -> bool:
+    return room[0] <= grade <= room[1]
 
 
 def _refuse_too_steep(grade: float, limit: float) -> None:
@@ -102,9 +130,11 @@ def road_slope_candidates(
     elif change.times is not None:
         slopes = [SlopeOfAll(names, times=change.times)]
     elif sign and not change.more:
-        if inclines and min(incline * sign for incline in inclines) >= 1.5:
+        aim_at = AIMS[change.steepness]
+        room = aim_at.room if change.steepness else (1.5, inf)
+        if inclines and all(_is_in(incline * sign, room) for incline in inclines):
             return ()
-        slopes = [SlopeOfAll(names, least=low, most=12.0, sign=sign) for low in (4.0, 3.0)]
+        slopes = [SlopeOfAll(names, least=low, most=aim_at.most, sign=sign) for low in aim_at.least]
     elif change.more < 0:
         slopes = [SlopeOfAll(names, times=times) for times in (FLATTER, 0.75)]
     elif all(abs(incline) < LEVEL for incline in inclines):
@@ -113,6 +143,31 @@ def road_slope_candidates(
         shares = [1 + (times - 1) * change.dose for times in (STEEPER, 1.3, 1.15)]
         slopes = [SlopeOfAll(names, times=times) for times in shares]
     return tuple((slope,) for slope in slopes)
+
+
+def stretch_candidates(
+    change: Change, elements: RoadElements, stretch: RoadStretch, found: Measures, world: World
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates that change the grades or the climb of one stretch of the road.
+
+    Args:
+        change: the change of a slope or a climb.
+        elements: all elements of the road.
+        stretch: the stretch of the road that changes.
+        found: the measurements of the whole road.
+        world: the limits that the rules check.
+
+    Raises:
+        EditError: as for ``road_slope_candidates`` and ``climb_candidates``.
+    """
+    parts = within(elements, stretch)
+    if change.what == "climb":
+        ways = climb_candidates(change, parts, world)
+    elif change.bound:
+        ways = ((bounded_slopes(change, parts),),)
+    else:
+        ways = road_slope_candidates(change, parts, found, world)
+    return tuple((replace(step, stretch=stretch),) for (step,) in ways if isinstance(step, SlopeOfAll))
 
 
 def part_slope_candidates(

@@ -8,7 +8,7 @@ violate a rule, or if measured values lie outside these ranges.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, floor, inf, radians
+from math import ceil, floor, radians
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -16,8 +16,6 @@ import numpy as np
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import Range
-from roadgpt.check.measures import way
-from roadgpt.design.edit.request import Way
 from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.design.sequence import both
@@ -250,40 +248,6 @@ class RoadLength:
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements unchanged."""
         return elements
-
-
-@dataclass(frozen=True, slots=True)
-class SlopeOfAll:
-    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow.
-
-    The size of an incline i becomes |i| * ``times`` + ``more`` percent, limited by ``least`` and ``most``.
-    """
-
-    names: frozenset[str]
-    times: float = 1.0
-    more: float = 0.0
-    least: float = -inf
-    """Lower limit of the size of the new incline."""
-    most: float = inf
-    """Upper limit of the size of the new incline."""
-    sign: int = 0
-    """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
-    only: Way | None = None
-    """The segments that change: those uphill, downhill or level before; None for all."""
-
-    def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements with the new inclines."""
-        return tuple(self._applied(e, world) if e.name in self.names else e for e in elements)
-
-    def _applied(self, element: RoadElement, world: World) -> RoadElement:
-        limit = 100 * world.limits.max_grade - 0.2
-        before = np.array([segment.incline for segment in element.segments])
-        size = np.clip(np.abs(before) * self.times + self.more, self.least, self.most)
-        signs = self.sign or np.where(before >= 0, 1, -1)
-        after = np.clip(signs * size, -limit, limit) + 0.0  # no -0.0
-        if self.only is not None:
-            after = np.where([way(incline) == self.only for incline in before], after, before)
-        return element.with_segments(with_inclines(element.segments, after))
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,7 +68,7 @@ NEXT_TO = ["after(", "before(", "between(", "on("]
 """The positions of a feature that a change adds, relative to a place on the road."""
 POSITIONS = [*NEXT_TO, "from(", "up_to("]
 ENDS_OF_ROAD = ["at_start", "at_end", "at_middle"]
-MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent"}
+MEASURED = {"angle": "degrees", "radius": "metres", "length": "metres", "slope": "percent", "climb": "metres"}
 """The properties to which a change can give a value, with the unit of the value."""
 ALONE = ["straighten", "remove", "mirror", "alternate"]
 FACTORS = (

@@ -1,0 +1,99 @@
+"""Stretches of a road by distance: "the last 80 m", "the first half"."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+from roadgpt.design.edit.request import Target
+from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.errors import EditError
+from roadgpt.road import Segment
+
+LEAST_PIECE = 1.0  # m of a straight segment: a shorter piece is not cut off
+MOST_MOVED = 0.3  # share of a stretch by which its end may be moved to the end of a turn
+MILLIMETRE = 1000.0
+
+
+class RoadStretch(NamedTuple):
+    """A part of a road, between two stations in metres from its start."""
+
+    start: float
+    end: float
+
+
+def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
+    """Returns the stretch that a target names by a distance or as a half; None if it names none.
+
+    A stretch that would end within a turn ends at the nearer end of the turn's segment there.
+
+    Raises:
+        EditError: the road is shorter, or the end would be moved too far.
+    """
+    whole = sum(element.length for element in elements)
+    if target.noun == "road" and target.half:
+        length, is_last = whole / 2, target.half == 2
+    elif target.noun in ("start", "end") and target.length is not None:
+        length, is_last = target.length, target.noun == "end"
+    else:
+        return None
+    if length > whole + LEAST_PIECE:
+        raise EditError(f"the road is only {whole:.0f} m long, not {length:g} m; name a shorter part of it")
+    station = whole - length if is_last else length
+    for segment, at in _with_stations(elements):
+        end = at + segment.distance
+        if segment.turn_degrees and at < station < end:
+            ends = min(at, end, key=lambda each: abs(each - station))
+            if abs(ends - station) > MOST_MOVED * length:
+                raise EditError(
+                    f"station {station:.0f} m of this road lies in a turn, which keeps one slope; name turns "
+                    "and straights, for example: from turn 2 on"
+                )
+            station = ends
+            break
+    return RoadStretch(station, whole) if is_last else RoadStretch(0.0, station)
+
+
+def within(elements: RoadElements, stretch: RoadStretch) -> RoadElements:
+    """Returns the elements with only those segments that lie in the stretch; elements without any are left
+    out.
+    """
+    at, out = 0.0, list[RoadElement]()
+    for element in elements:
+        own = [s for s, there in zip(*pieces(element, at, stretch), strict=True) if there]
+        out += [element.with_segments(own)] if own else []
+        at += element.length
+    return tuple(out)
+
+
+def pieces(
+    element: RoadElement, at: float, stretch: RoadStretch
+) -> tuple[tuple[Segment, ...], tuple[bool, ...]]:
+    """Returns the segments of an element that begins at station ``at``, and which of them lie in a stretch.
+
+    A straight segment in which the stretch begins or ends is cut in two there.
+    """
+    cut = [part for segment, start in _with_stations([element], at) for part in _cut(segment, start, stretch)]
+    whole = replace(element, segments=tuple(cut))
+    middles = [start + segment.distance / 2 for segment, start in _with_stations([whole], at)]
+    return whole.segments, tuple(stretch.start < middle < stretch.end for middle in middles)
+
+
+def _with_stations(elements: Sequence[RoadElement], at: float = 0.0) -> Iterator[tuple[Segment, float]]:
+    """Yields the segments of elements, each with the station at which it begins."""
+    for element in elements:
+        for segment in element.segments:
+            yield segment, at
+            at += segment.distance
+
+
+def _cut(segment: Segment, at: float, stretch: RoadStretch) -> list[Segment]:
+    if segment.turn_degrees:
+        return [segment]
+    out = [segment]
+    for station in stretch:
+        before = sum(part.distance for part in out[:-1])
+        first = round((station - at - before) * MILLIMETRE) / MILLIMETRE
+        rest = round((out[-1].distance - first) * MILLIMETRE) / MILLIMETRE
+        if min(first, rest) >= LEAST_PIECE:
+            out[-1:] = [out[-1].model_copy(update={"distance": each}) for each in (first, rest)]
+    return out

@@ -1,0 +1,182 @@
+"""Changes of so many metres of road, of the number of turns and of their order, measured afterwards."""
+
+import numpy as np
+import pytest
+
+from edit_truth import roads
+from roadgpt import check
+from roadgpt.brief.plan import read_plan
+from roadgpt.check.measures import MeasuredFeature, measure
+from roadgpt.design import draft
+from roadgpt.design.edit import Edited, edit
+from roadgpt.design.edit.change_plan import read_change_plan
+from roadgpt.errors import EditError
+from roadgpt.road import Design, Segment, World, build
+
+WORLD = World()
+STRAIGHT = draft(read_plan("straight flat len=240"), WORLD, seed=1)
+WINDING = draft(read_plan("turn x5 alternating | flat"), WORLD, seed=3)
+LISTED = draft(
+    read_plan(
+        "straight len=60; turn left deg=60 r=30; straight len=60; turn right deg=90 r=25; straight len=60; "
+        "hairpin left | flat"
+    ),
+    WORLD,
+    seed=2,
+)
+JOINT = 40.0  # m before and behind a joint of slopes, where a parabola joins them
+
+
+def edited(design: Design, plan: str) -> Edited:
+    return edit(design, read_change_plan(plan), WORLD)
+
+
+def turns(design: Design) -> tuple[MeasuredFeature, ...]:
+    return measure(build(design).centreline()).turns
+
+
+def grades(design: Design, low: float, high: float) -> np.ndarray:
+    """The grades in percent of pieces of 5 m between two shares of the road, from its heights."""
+    road = build(design)
+    s = np.arange(low * road.length, high * road.length, 5.0)
+    return 100 * np.diff(road.at(s)[:, 2]) / 5.0
+
+
+@pytest.mark.parametrize(
+    ("plan", "start", "end", "grade"),
+    [
+        ("end len=80: slope down =5", -80, 0, -5.0),
+        ("start len=100: slope up =6", 0, 100, 6.0),
+        ("road half1: slope up =4", 0, 0.5, 4.0),
+        ("end len=120: climb =6", -120, 0, 5.0),
+        ("start len=60: slope steeply_down", 0, 60, -9.0),
+    ],
+)
+def test_so_many_metres_of_a_straight_have_a_slope_of_their_own(
+    plan: str, start: float, end: float, grade: float
+) -> None:
+    after, length = edited(STRAIGHT, plan).design, build(STRAIGHT).length
+    low, high = start % length / length, (end or length) / length if end != 0.5 else 0.5
+    joint = JOINT / length
+    inside = grades(after, low + joint * (low > 0), high - joint * (high < 1))
+    assert inside == pytest.approx(grade, abs=0.05)
+    outside = (0.0, low - joint) if low > 0 else (high + joint, 1.0)
+    assert grades(after, *outside) == pytest.approx(grades(STRAIGHT, *outside), abs=0.05)
+    assert build(after).length == pytest.approx(length, abs=0.5)
+    assert check.inspect(build(after), None, WORLD) == ()
+
+
+def test_both_halves_of_a_straight_change_at_once() -> None:
+    after = edited(STRAIGHT, "road half1: slope up =5; road half2: slope down =5").design
+    assert grades(after, 0.0, 0.3) == pytest.approx(5, abs=0.05)
+    assert grades(after, 0.7, 1.0) == pytest.approx(-5, abs=0.05)
+
+
+def test_a_stretch_does_not_end_within_a_turn() -> None:
+    first = turns(LISTED)[0]
+    made = edited(LISTED, f"start len={first.start + 8:.0f}: slope up =4")
+    assert turns(made.design)[0].grade < 1.5
+    assert grades(made.design, 0.0, 30 / build(LISTED).length) == pytest.approx(4, abs=0.05)
+
+
+def test_a_stretch_that_ends_amid_a_long_turn_is_refused() -> None:
+    turn = Segment(distance=61.09, direction="left", turn_degrees=70.0, radius=50.0)
+    design = Design(
+        starting_point=(100.0, 50.0, 0.0),
+        theta=90.0,
+        segments=(
+            Segment(distance=20.0, direction="straight"),
+            turn,
+            Segment(distance=60.0, direction="straight"),
+        ),
+    )
+    with pytest.raises(EditError, match=r"station 50 m of this road lies in a turn"):
+        edited(design, "start len=50: slope up")
+
+
+@pytest.mark.parametrize(
+    ("plan", "complaint"),
+    [
+        ("end len=900: slope down", r"the road is only \d+ m long, not 900 m"),
+        ("end len=50: remove", "is a distance, and only its slope or its climb can be changed"),
+        ("end len=50: length +20", "is a distance, and only its slope or its climb can be changed"),
+        ("straight: x3", "counts no turns; write for example: turn: x4"),
+        ("straight 2: at_end", "moves a straight; only turns can be moved"),
+        ("turn 1: before(turn 1)", "moves a turn next to itself"),
+        ("turn: x5", "is so already"),
+        ("turn: x..6", "is so already"),
+        ("turn 1: at_start", "is so already"),
+    ],
+)
+def test_what_cannot_be_is_said_in_a_sentence(plan: str, complaint: str) -> None:
+    with pytest.raises(EditError, match=complaint):
+        edited(WINDING, plan)
+
+
+@pytest.mark.parametrize(("plan", "sides"), [("turn: x3", 3), ("turn: x..4", 4), ("turn: x6..", 6)])
+def test_a_road_gets_so_many_turns(plan: str, sides: int) -> None:
+    before, after = turns(WINDING), turns(edited(WINDING, plan).design)
+    assert len(after) == sides
+    kept = min(len(before), len(after))
+    assert [t.side for t in after[:kept]] == [t.side for t in before[:kept]]
+    assert [t.radius for t in after[:kept]] == pytest.approx([t.radius for t in before[:kept]], rel=0.1)
+
+
+def test_turns_of_one_side_are_counted_alone() -> None:
+    before = [turn.side for turn in turns(WINDING)]
+    after = [turn.side for turn in turns(edited(WINDING, "turn left: x1").design)]
+    assert after.count("left") == 1
+    assert after.count("right") == before.count("right")
+    hairpins = roads()["h05"]
+    assert len(turns(edited(hairpins, "hairpin: x2").design)) == len(turns(hairpins)) + 1
+
+
+@pytest.mark.parametrize(
+    ("plan", "order"),
+    [
+        ("turn 3: at_start", (2, 0, 1)),
+        ("turn 1: at_end", (1, 2, 0)),
+        ("turn 3: before(turn 2)", (0, 2, 1)),
+        ("turn 1: after(turn 2)", (1, 0, 2)),
+        ("turn 3: between(turn 1, turn 2)", (0, 2, 1)),
+        ("turn 1: at_middle", (1, 0, 2)),
+        ("turn 3: before(straight 1)", (2, 0, 1)),
+        ("turn 1,3: swap", (2, 1, 0)),
+    ],
+)
+def test_a_turn_moves_with_its_angle_and_radius(plan: str, order: tuple[int, ...]) -> None:
+    before, made = turns(LISTED), edited(LISTED, plan)
+    after = turns(made.design)
+    assert [turn.side for turn in after] == [before[i].side for i in order]
+    assert [turn.degrees for turn in after] == pytest.approx([before[i].degrees for i in order], abs=4)
+    assert [turn.radius for turn in after] == pytest.approx([before[i].radius for i in order], rel=0.1)
+    assert build(made.design).length == pytest.approx(build(LISTED).length, rel=0.1)
+    assert "named as before" in made.changes[0]
+
+
+@pytest.mark.parametrize(
+    ("plan", "low", "high"),
+    [
+        ("straight 2: slope steeply_up", 6.5, 15.0),
+        ("straight 2: slope gently_up", 1.3, 5.5),
+        ("straight 2: slope steeply_down", -15.0, -6.5),
+        ("turn 2: slope gently_down", -5.5, -1.3),
+    ],
+)
+def test_a_word_for_steepness_is_a_range_of_grades(plan: str, low: float, high: float) -> None:
+    found = measure(build(edited(LISTED, plan).design).centreline())
+    feature = (
+        found.turns[1] if plan.startswith("turn") else next(f for f in found.gaps[1] if f.kind == "straight")
+    )
+    assert low <= feature.grade <= high
+
+
+def test_a_whole_road_is_as_steep_as_the_word_says() -> None:
+    for word, low, high in (("gently_up", 1.8, 5.0), ("steeply_up", 7.5, 15.0)):
+        found = grades(edited(WINDING, f"road: slope {word}").design, 0.1, 0.9)
+        assert low <= found.min() <= found.max() <= high
+
+
+def test_something_new_is_as_steep_as_the_word_says() -> None:
+    after = edited(LISTED, "add straight steeply_up len=50 at_end").design
+    assert grades(after, 1 - 12 / build(after).length, 1.0) == pytest.approx(9.5, abs=1.5)
