@@ -92,6 +92,10 @@ def test_the_network_writes_a_map_where_the_words_ask_for_one() -> None:
             "map t_junction x3 dead_ends=5",
         ),
         ("map junction x2", "ein Dorf, eine Hauptstraße, zwei Sackgassen", "map t_junction x2 dead_ends=4"),
+        ("map roundabout x2", "14 junctions, 2 of them roundabouts", "map roundabout x2; junction x12"),
+        ("map roundabout x2", "4 Knotenpunkte, davon 2 Kreisel", "map roundabout x2; junction x2"),
+        ("map roundabout x2", "4 junctions? not four, two, both roundabouts", "map roundabout x2"),
+        ("map t_junction x3; crossroads", "four junctions, three Ts, one X", "map t_junction x3; crossroads"),
         (
             "map crossroads x2 dead_ends=2",
             "a main street over two crossroads, and two dead ends",

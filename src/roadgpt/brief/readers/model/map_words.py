@@ -40,6 +40,13 @@ ACROSS = re.compile(
     r"deep|high|north|south|each|long|len\w*|lang|x)\b"
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
+ALL_KINDS = re.compile(
+    r"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:junctions|intersections|knoten(?:punkten?)?|"
+    r"intersecciones|intersezioni)\b"
+)
+"""A number before a word for junctions of any kind."""
+CORRECTED = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
+"""Words with which a number may be taken back."""
 SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)stra(?:ss|ß)en?|rues? (?:laterale|secondaire|transversale)s?|"
     r"calles? (?:lateral|secundaria)(?:e?s)?|(?:strad[ae]|vi[ae]) (?:lateral|secondari)[aei]|laterali"
@@ -79,7 +86,8 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     off_street = _off_main_street(said, found)
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
-    update = {} if asked.junctions else _blocks(asked, said)
+    update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said)}
+    update |= _other_junctions(asked, said)
     if asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = _number(found) if found else _around_blocks(asked, said)
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
@@ -100,6 +108,22 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
         return None
     kinds = (JunctionCount(kind="t_junction", count=exactly(number)),)
     return {"junctions": kinds, "columns": None, "rows": None, "dead_ends": exactly(number + 2)}
+
+
+def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:
+    """Returns the junctions of a map with those that the words count and no kind accounts for: of "14
+    junctions, two of them roundabouts" twelve are of any kind.
+    """
+    number = _number(ALL_KINDS.findall(said))
+    kinds = [each.kind for each in asked.junctions]
+    counts = [each.count for each in asked.junctions]
+    if not number or not kinds or "junction" in kinds or CORRECTED.search(said):
+        return {}
+    if not all(count.exact for count in counts):
+        return {}
+    others = number - int(sum(count.lo or 0 for count in counts))
+    more = JunctionCount(kind="junction", count=exactly(others))
+    return {"junctions": (*asked.junctions, more)} if others > 0 else {}
 
 
 def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
