@@ -66,6 +66,12 @@ def test_so_many_metres_of_a_straight_have_a_slope_of_their_own(
     assert check.inspect(build(after), None, WORLD) == ()
 
 
+def test_what_changed_is_told_of_the_stretch() -> None:
+    told = edited(STRAIGHT, "end len=80: slope down =5").changes
+    length = build(STRAIGHT).length
+    assert told[0].startswith(f"from {length - 80:.0f} to {length:.0f} m: grade -0.4 -> -4.")
+
+
 def test_both_halves_of_a_straight_change_at_once() -> None:
     after = edited(STRAIGHT, "road half1: slope up =5; road half2: slope down =5").design
     assert grades(after, 0.0, 0.3) == pytest.approx(5, abs=0.05)

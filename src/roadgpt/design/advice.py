@@ -130,14 +130,13 @@ def _offer(brief: Brief, world: World, fits: Fits, likely: float) -> str:
     return f"{less} or use --map-size {larger:g}" if larger else less
 
 
-def no_room(error: NoRoomError, world: World) -> str:
+def no_room(error: NoRoomError, world: World, fits: Fits) -> str:
     """Returns the message for a road that does not fit on the map.
 
     If the message suggests a length or a map size, a road was drafted with it. If neither the length of the
     road nor that of a straight is required, or the road has no turns, the result is the message of ``error``.
+    ``fits`` tests whether roads can be drafted for a Brief on a map, as ``road_search.fits`` does.
     """
-    from roadgpt.design.road_search import fits  # the planner asks for offers, too
-
     brief = error.brief
     if _asked(brief) is None or (brief.turns and brief.turns.hi == 0):
         return str(error)  # of a straight road, the longest is known

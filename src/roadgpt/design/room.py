@@ -43,7 +43,8 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
 
 
 def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
-    """Yields a sentence on the lanes that the words ask for, and one on a centre line that is not used.
+    """Yields a sentence if the words ask for lanes, and one if they ask for a centre line that the road does
+    not get.
 
     For networks, there are no sentences.
 

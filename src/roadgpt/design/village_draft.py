@@ -102,15 +102,15 @@ class _FreeArm:
 
     node: int
     z: complex
-    """The place of its junction."""
+    """The place of the junction as x + iy in metres."""
     way: complex
-    """Its direction out of the junction, of length 1."""
+    """The direction of the arm out of the junction, of length 1."""
     reach: float
-    """Metres from the node to its contact."""
+    """Distance in metres from the node to the place where the arm meets the junction."""
 
     @property
     def line(self) -> Line:
-        """The straight that is kept free for it."""
+        """The straight that is kept free for the arm."""
         return Line(self.z, self.z + self.way * (self.reach + STUB), frozenset({self.node}))
 
 
@@ -133,7 +133,7 @@ class _Village:
         return replace(self, draft=draft, free=list(self.free))
 
     def grow(self, junction: JunctionDesign) -> bool:
-        """Joins a junction to an arm that leads nowhere; returns whether it found a place."""
+        """Joins a junction to a free arm; returns whether a place was found for the junction."""
         nodes = self.draft.nodes
         middle = sum(node.z for node in nodes) / len(nodes)
         found = []
@@ -168,10 +168,11 @@ class _Village:
 
         Args:
             junction: the junction.
-            z: its place as x + iy in metres.
-            turn: the angle in radians by which it is turned.
-            back: index of the arm on which a road leads to it; None for none.
-            joined_to: the node from which this road comes.
+            z: the place of the junction as x + iy in metres.
+            turn: the angle in radians by which the junction is turned.
+            back: index of the arm to which a road leads from an earlier node; None for the first junction,
+                to which no road leads yet.
+            joined_to: the number of this earlier node; left out for the first junction.
         """
         radius = junction.radius if junction.kind == "roundabout" else None
         number = self.draft.add(DraftNode(z, junction.kind, junction.kerb, radius), *joined_to)
@@ -242,7 +243,9 @@ class _Village:
         return roads + [arm.line for arm in self.free if arm not in without]
 
     def join_arms(self) -> bool:
-        """Joins pairs of free arms by roads with a bend, or with two if a number of dead ends is required.
+        """Joins pairs of free arms by roads with one bend.
+
+        If a number of dead ends is required, arms that one bend cannot join are joined by two.
 
         Returns whether as many arms remain free as dead ends are required.
         """

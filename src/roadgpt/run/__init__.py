@@ -22,6 +22,7 @@ from roadgpt.check import Finding, inspect, rules_of
 from roadgpt.design import check_designer, designer_of
 from roadgpt.design.advice import no_room
 from roadgpt.design.report import DesignReport
+from roadgpt.design.road_search import fits
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
 from roadgpt.drive.loading import driver_of
@@ -132,7 +133,7 @@ def brief_of(words: str, world: World = USUAL, setup: Setup = PLAIN, meter: Mete
             fixed = "map_size" in world.site.model_fields_set
             return read(words, setup.reader, *limits, setup.chat, world.section.road_width, fixed)
         except NoRoomError as error:
-            raise BriefError(no_room(error, world)) from error
+            raise BriefError(no_room(error, world, fits)) from error
 
 
 def prove(

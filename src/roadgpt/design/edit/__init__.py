@@ -18,9 +18,10 @@ from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest
 from roadgpt.design.edit.search import made
+from roadgpt.design.edit.stretches import RoadStretch
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Geometry, World
+from roadgpt.road import Design, Geometry, World, build
 
 MOST_CHANGES = 12
 REORDERS = ("reverse", "swap", "move")
@@ -90,12 +91,25 @@ def edit(
         unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
     if not asks:
+        stretches = tuple(change.stretch for change in changes if change.stretch is not None)
         told = (
             *(_reordering(change, elements) for change in changes if change.change.what in REORDERS),
+            *(_sloped(stretch, design, road.design, geometry) for stretch in dict.fromkeys(stretches)),
             *told,
         )
     told = (*told, *(f"'{change.words}' was so already" for change in idle))
     return Edited(road.design, told, unused, sure)
+
+
+def _sloped(stretch: RoadStretch, before: Design, after: Design, geometry: Geometry) -> str:
+    """Returns a sentence on the mean grade of a stretch before and after a change."""
+    grades = []
+    for design in (before, after):
+        road = build(design, geometry)
+        ends = (min(station, road.length) for station in stretch)
+        low, high = (float(road.at(station)[2]) for station in ends)
+        grades.append(100 * (high - low) / (stretch.end - stretch.start))
+    return f"from {stretch.start:.0f} to {stretch.end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
 
 
 def _reordering(change: PlacedChange, elements: RoadElements) -> str:
