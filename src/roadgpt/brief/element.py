@@ -39,12 +39,13 @@ class Element(NamedTuple):
 
     @property
     def is_elastic(self) -> bool:
-        """Whether this is a straight that the design may lengthen."""
+        """Whether this is a straight that the design may lengthen at will."""
         return not self.turn and (self.required_length is None or self.required_length.hi == inf)
 
     @property
     def has_fixed_length(self) -> bool:
-        """Whether this is a straight whose required length has an upper limit."""
+        """Whether this is a straight that the design may not lengthen at will, because its required length
+        has an upper limit."""
         return self.required_length is not None and self.required_length.hi < inf
 
     @property

@@ -1,5 +1,7 @@
 """Features of a road that can be axes of the space in which a search looks for diverse roads.
 
+This space is called the feature map. It is divided into cells or bins, which are not the cells of a campaign.
+
 ``run.features`` has the five features of the SBFT competition: MAX_CURV, DIR_COV, STD_SA, MEAN_LP, MAX_LP.
 This module adds features of the road's geometry; all but the first come from ``check.measures``:
 
@@ -49,10 +51,10 @@ BOUNDS: dict[str, tuple[float, float]] = {
     "CLIMB": (-40.0, 40.0),  # m
     "LENGTH": (20.0, 620.0),  # m
 }
-"""The range of the map along each axis; values beyond this range belong to the outermost cell."""
+"""The range of the feature map along each axis; values beyond this range belong to the outermost cell."""
 
 DEGREES = (0.0, 180.0)
-"""The range of the map along the axes DEGREES_1, DEGREES_2, and so on."""
+"""The range of the feature map along the axes DEGREES_1, DEGREES_2, and so on."""
 
 
 def behaviour_of(road: Road, brief: Brief | None) -> dict[str, float]:
@@ -122,7 +124,7 @@ def directions(heading: Array) -> float:
 
 
 def bounds_of(axis: str) -> tuple[float, float]:
-    """Returns the smallest and the largest value on the map's axis for a feature.
+    """Returns the smallest and the largest value of a feature on its axis of the feature map.
 
     Raises:
         KeyError: there is no feature of that name.
@@ -134,9 +136,14 @@ def bounds_of(axis: str) -> tuple[float, float]:
 
 
 def cell_of(features: Mapping[str, float], axes: Sequence[str], cells: int) -> tuple[int, ...] | None:
-    """Returns the cell of a test, as one index per axis, on a map with ``cells`` cells along each axis.
+    """Returns the cell of the feature map to which a test belongs, as one index per axis.
 
     Returns None if the test lacks one of the features.
+
+    Args:
+        features: the features of the test, by name.
+        axes: names of the features that are the axes of the feature map.
+        cells: the number of cells along each axis.
     """
     if any(axis not in features for axis in axes):
         return None

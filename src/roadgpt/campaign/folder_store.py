@@ -85,7 +85,8 @@ class FolderStore(Store):
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
         """Writes the files of tests that have ended.
 
-        A test for which no road could be designed is written only after another test of its cell has a road.
+        A test for which no road could be designed is held back until a road has been designed for another
+        test of the same cell.
         """
         super().keep(ended, *rest)
         for name, one in ended:

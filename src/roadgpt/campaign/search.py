@@ -32,14 +32,15 @@ class SearchSettings(Frozen):
     batch: Annotated[int, Field(ge=1, le=1000)] = 5
     """Number of tests in a batch. At most two batches are driven at the same time."""
     axes: Annotated[tuple[str, ...], Field(min_length=1, max_length=MOST_AXES)] = USUAL_AXES
-    """Names of the features that are the axes of the map."""
+    """Names of the features that are the axes of the feature map."""
     also: Annotated[tuple[str, ...], Field(max_length=MOST_AXES)] | None = None
-    """Names of the features that are the axes of a second map; failures in new cells of either map count the
-    same. Empty: there is no second map. None: MAX_CURV and DIR_COV if ``axes`` has its default value,
-    otherwise no second map.
+    """Names of the features that are the axes of a second feature map; failures in new cells of either map
+    count the same. Empty: there is no second map. None: MAX_CURV and DIR_COV if ``axes`` has its default
+    value, otherwise no second map.
     """
     archive: Literal["grid", "cvt"] = "grid"
-    """Kind of map: "grid" has the cells of a grid, "cvt" the neighbourhoods of evenly spread centroids."""
+    """Kind of feature map: its cells are those of a grid ("grid"), or the neighbourhoods of evenly spread
+    centroids ("cvt")."""
     cells: Annotated[int, Field(ge=2, le=10_000)] = 25
     """Number of cells along each axis of a grid, or number of centroids."""
     candidates: Annotated[int, Field(ge=1, le=1000)] = 40
@@ -64,7 +65,7 @@ class SearchSettings(Frozen):
 
     @property
     def maps(self) -> tuple[tuple[str, ...], ...]:
-        """The axes of each map."""
+        """The axes of each feature map."""
         usual = USUAL_ALSO if self.axes == USUAL_AXES else ()
         also = usual if self.also is None else self.also
         return tuple(axes for axes in dict.fromkeys((self.axes, also)) if axes)

@@ -29,7 +29,7 @@ COLUMNS = (
     "beyond_m", "at_s_m", "description",
 )  # fmt: skip
 AXES, PER_AXIS = ("MAX_CURV", "STD_SA"), 25
-"""The map for a cell whose settings name no other: its features, and the number of cells along each."""
+"""The feature map of a cell whose settings name no other: its axes, and the number of bins along each."""
 EVERY = (
     f"SELECT tests.cell, tests.number, batch, origin, seed, given, {', '.join(MEASURED)}, description, "  # noqa: S608
     "features FROM tests JOIN details USING (cell, number) "
@@ -115,7 +115,7 @@ def _cell_row(record: Record, cell: Cell, status: CellStatus) -> dict[str, Any]:
 
 
 def _failing_cells(record: Record, cell: Cell) -> int:
-    """Counts the cells of the map in which a car failed: a measure of how much the failures differ."""
+    """Counts the bins of the feature map that contain failures: a measure of how much these differ."""
     axes, cells = cell.settings.get("axes", AXES), cell.settings.get("cells", PER_AXIS)
     if not isinstance(axes, (list, tuple)) or not isinstance(cells, int) or not {*axes} <= {*BOUNDS}:
         axes, cells = AXES, PER_AXIS  # another generator's settings mean something else

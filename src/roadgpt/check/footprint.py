@@ -175,9 +175,10 @@ class Footprint:
 
     @cached_property
     def bounds(self) -> Array:
-        """The smallest x and y and the largest x and y of each carriageway in metres, shape ``(n, 4)``.
+        """The smallest x and y and the largest x and y in metres of each polygon of ``polygons``, shape
+        ``(n, 4)``.
 
-        A carriageway may extend beyond these bounds by up to ``SLACK`` metres.
+        The true carriageway may extend beyond its polygon by up to ``SLACK`` metres.
         """
         right, left, _, first = self._edges
         low = np.minimum.reduceat(np.minimum(right, left), first[:-1])

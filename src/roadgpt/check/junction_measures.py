@@ -149,7 +149,8 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
     """Returns whether road ``one`` begins at a merge, or road ``two``, which continues it, ends at an exit.
 
-    Such a road has the lane for acceleration or deceleration beside it.
+    In the first case, the lane for acceleration belongs to road ``one``; in the second, the lane for
+    deceleration belongs to road ``two``.
     """
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
     return any(
@@ -179,7 +180,7 @@ def _turn_of(network: Network, way: Connection) -> float:
 
 
 def side_of_ramp(network: Network, junction: Junction) -> Side:
-    """Returns the side of the ramp of a merge or exit."""
+    """Returns the side of the main road on which the ramp of a merge or exit lies."""
     return "left" if _turn_of(network, _way_of_ramp(network, junction)) > 0 else "right"
 
 

@@ -52,7 +52,8 @@ WORLD = (
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
             0.95),
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
-    _world("--lanes", "Lanes along + oncoming. [default: 1+1, or as worded]", lanes),
+    _world("--lanes", "Lanes in the driving direction + oncoming lanes. [default: 1+1, or as described]",
+           lanes),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
            measure(2, 10, "metres"), is_rare=True),
@@ -153,9 +154,9 @@ BEAMNG = (
 )
 
 AXES = _files(
-    "--axes", "Axes of pictures: equal (to scale), or thesis (the ranges of the RoadGPT thesis: top view "
-    "220 m x 220 m; heights to 20 m, along 200 m).", click.Choice(["equal", "thesis"]), "equal",
-    is_rare=True, table="run",
+    "--axes", "Axes of pictures: equal (to scale), or thesis (fixed ranges, as in the RoadGPT thesis: top "
+    "view 220 m x 220 m; height profile 200 m long and 20 m high).", click.Choice(["equal", "thesis"]),
+    "equal", is_rare=True, table="run",
 )
 FORMAT = _files("--format picture_formats", "Formats of pictures: png, svg, pdf.", picture_formats, ("png",),
                 metavar="FORMAT,...", table="run")

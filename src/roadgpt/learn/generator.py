@@ -106,7 +106,7 @@ def sometimes_spoiled(pair: Pair, rng: np.random.Generator) -> Pair:
 
 def draw(language: str, rng: np.random.Generator, symbol: str = "top", phrases: str = "") -> Pair | None:
     """Returns a random description and its plan, made with a grammar; None if they make no sense, or if the
-    description is too long or held out.
+    description is held out or has more than 500 characters.
 
     Args:
         language: code of the language, such as "en".
@@ -129,7 +129,8 @@ def draw(language: str, rng: np.random.Generator, symbol: str = "top", phrases: 
 
 
 def draw_change(language: str, rng: np.random.Generator) -> Pair | None:
-    """Returns a random change request and its plan; None if they do not fit together, or are too long."""
+    """Returns a random change request and its plan; None if they do not fit together, or if the request has
+    more than 500 characters."""
     try:
         text, raw = Speaker(grammar_of(language, "changes"), rng).say("top")
         plan = " ".join(raw.split())
@@ -152,7 +153,7 @@ def assembled(raw: str) -> str | None:
     """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense.
 
     Raises:
-        Discarded: a clause of the plan does not have exactly one kind.
+        Discarded: a clause of the plan names no kind of element, such as "turn" or "straight", or several.
         BriefError: the plan cannot be read.
     """
     refusal = REFUSAL.search(raw)
@@ -166,7 +167,7 @@ def road_of(raw: str) -> str:
     """Returns the plan of a road with its parts in the usual order; grammar rules write them in any order.
 
     Raises:
-        Discarded: a clause of the plan does not have exactly one kind.
+        Discarded: a clause of the plan names no kind of element, such as "turn" or "straight", or several.
     """
     wishes = [wish.lstrip("| ").replace("straight_", "straight ") for wish in WISH.findall(raw)]
     clauses = [_kind_first(part) for part in WISH.sub(" ", raw).split(";")]
@@ -183,7 +184,7 @@ def _placed(wish: str) -> str:
 
 
 def _kind_first(clause: str) -> str:
-    """Returns a clause with its kind in front, without empty modifiers such as 'len='."""
+    """Returns a clause with its kind of element in front, without empty modifiers such as 'len='."""
     words = [word for word in clause.split() if not word.endswith("=")]
     kinds = [word for word in words if KIND.fullmatch(word)]
     if not words:

@@ -49,6 +49,6 @@ class Ending(Frozen):
 
     @property
     def is_of_a_generator(self) -> bool:
-        """False if the generator could not be imported, or if its interpreter cannot run generators;
-        otherwise True."""
+        """False if the generator could not be loaded, or if the Python interpreter that should run it cannot
+        run generators; True if it ended in any other way."""
         return self.how not in UNBEGUN

@@ -61,7 +61,15 @@ class StationAxis:
 
     @classmethod
     def of(cls, network: Network, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
-        """Returns the axis of some roads; ``widest`` is the greatest x extent of a junction in metres."""
+        """Returns the axis on which the given roads lie one after another, followed by the two stretches for
+        junctions.
+
+        Args:
+            network: the network.
+            roads: all roads of the network.
+            widest: the greatest x extent of a junction in metres; the stretch on which nothing is painted is
+                longer than that.
+        """
         starts, rows, at = {}, [], 0.0
         for each in roads:
             # a broken line begins with a dash at the start of each road

@@ -105,8 +105,9 @@ class Executor(Protocol):
         ...
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
-        """Returns the results of ``function`` for all items, in order. Jobs that are queued wait until
-        then. See ``campaign.model.Pool.map``.
+        """Returns the results of ``function`` for all items, in order. See ``campaign.model.Pool.map``.
+
+        The items go to free workers before the jobs that wait in the queue.
         """
         ...
 

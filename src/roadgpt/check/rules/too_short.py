@@ -27,13 +27,18 @@ def inspect(road: Road, brief: Brief | None, world: World) -> tuple[Finding, ...
 
 
 def shorter_than_allowed(length: float, world: World) -> Finding:
-    """Returns the Finding for a road of this length in metres, which is at most the smallest allowed one."""
+    """Returns the Finding for a road that is too short.
+
+    Args:
+        length: the length of the road in metres, which does not exceed ``min_length``.
+        world: the World; a road must be longer than its ``min_length``.
+    """
     wanted = f"a road is longer than {world.limits.min_length:g} m"
     return Finding("too_short", f"the road is {length:.1f} m long, and {wanted}")
 
 
 def without_room(length: float) -> Finding:
-    """Returns the Finding for a road of this length in metres on which a car cannot be driven."""
+    """Returns the Finding for a road, of this length in metres, that is too short for any drive."""
     sentence = (
         f"the road is {length:.1f} m long, too short to be driven: a car starts {START:g} m along a road and "
         f"has arrived {GOAL:g} m before its end"

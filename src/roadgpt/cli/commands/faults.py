@@ -29,8 +29,8 @@ FAULT_OPTIONS = (
            "--faults.", bool, heading=Heading.FAILURES),
     Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
            f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
-    Option("--groups", "Do not test which groups of failures are one fault, which takes up to 16 drives of "
-           "each tested failure; implies --faults.", bool, heading=Heading.FAILURES),
+    Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
+           "up to 16 drives of each tested failure. Implies --faults.", bool, heading=Heading.FAILURES),
 )  # fmt: skip
 
 
@@ -212,11 +212,12 @@ def command(
 
     Failures are grouped where the 60 m of road around the lane departure are alike. Some failures of each
     group are driven with small changes, such as a 15 % larger radius of the bend. Groups that the same
-    change removes are one fault; it is tested on further failures, and those that stay leave it. The most
-    typical failure of each fault is driven again several times with slightly varied friction, start
-    position and perception delay; the share of drives that fail again is reported. DIR/faults gets a
-    picture and a sentence for each fault, faults.csv with a line per fault, and failures.csv with a line
-    per failure. Finished work is not repeated, so Ctrl-C loses nothing.
+    change removes are one fault. The change is then tested on further failures of the fault, and those that
+    it does not remove are taken out of the fault. The most typical failure of each fault is driven again
+    several times with slightly varied friction, start position and perception delay; the share of drives
+    that fail again is reported. DIR/faults gets a picture and a sentence for each fault, faults.csv with a
+    line per fault, and failures.csv with a line per failure. Finished work is not repeated, so Ctrl-C loses
+    nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

@@ -52,11 +52,12 @@ OF_DATA = (
 OF_TRAIN = (
     *(OUT, HAND, CHANGES, NETWORKS),
     Option("--weights", "Folder of all-MiniLM-L6-v2: model.safetensors, vocab.txt.", folder),
-    Option("--installed", "Start from the installed reader instead.", bool),
+    Option("--installed", "Start from the installed reader instead of --weights.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
-    Option("--second", "Start from the second network of the installed reader.", bool),
-    Option("--routes", "Train the network that reads routes and maps instead.", bool),
+    Option("--second", "Start from the second of the installed reader's two neural networks for single "
+           "roads.", bool),
+    Option("--routes", "Train the neural network that reads routes and maps instead.", bool),
     Option("--decoder-layers", "Number of decoder layers, a multiple of the number in the weights.",
            whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
@@ -67,9 +68,10 @@ OF_TRAIN = (
 )
 OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND, CHANGES, NETWORKS),
-    Option("--second", "Folder of another training run; its network becomes the reader's second network.",
+    Option("--second", "Folder of another training run; its neural network becomes the second of the "
+           "reader's two for single roads.", folder),
+    Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
-    Option("--routes", "Folder of a training run with --routes; its network reads routes and maps.", folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
     options.seed("Seed of the chats.", 1),
 )
@@ -80,8 +82,8 @@ OF_CHATS = (
 )
 OF_EVALUATE = (
     HAND,
-    Option("--split", "Pairs to evaluate on; exam: what must be refused, and what only seems so.",
-           click.Choice(SPLITS), "validation"),
+    Option("--split", "Pairs to evaluate on; exam: descriptions that must be refused, and valid ones, some of"
+           " which could be mistaken for these.", click.Choice(SPLITS), "validation"),
     Option("--reader names", "Reader to evaluate; repeat the option for more readers.",
            default=("model",), multiple=True),
     Option("--misses", "Show this many descriptions that were misread.", whole(0, 10_000, "a number"), 0),

@@ -18,9 +18,10 @@ DIRECTORY = Argument("directory", "DIR", kind=folder)
 # fmt: off
 OF_NEW = (
     Argument("file", "[SURVEY.toml]", kind=PATH, required=False),
-    Option("--from study", "Choose roads of its folders of runs at random.", folder, metavar="STUDY_DIR"),
+    Option("--from study", "Choose roads at random from the folders of runs in STUDY_DIR.", folder,
+           metavar="STUDY_DIR"),
     options.out("The survey's folder.", required=True, metavar="DIR"),
-    Option("--asks", "With --from: who conducts the survey; raters see it first.", str, ""),
+    Option("--asks", "With --from: who conducts the survey; shown to raters on the first page.", str, ""),
     Option("--contact", "With --from: where raters can send questions.", str, ""),
     Option("--pairs", "With --from: number of pairs of roads to compare.", whole(0, 20, "a number"), 2),
     options.seed("With --from: seed of the random choice.", 0),
@@ -31,12 +32,13 @@ OF_SERVE = (
     Option("--raters", "Number of raters who each get a personal link.", whole(0, 10_000, "people"), 0),
     Option("--open is_open", "Let anyone join who has the shared link.", bool),
     Option("--port", "Port of the server; 0: a free one.", whole(0, 65_535, "a port"), PORT),
-    Option("--host", "127.0.0.1: only this machine; 0.0.0.0: all.", str, "127.0.0.1"),
+    Option("--host", "Who can reach the server; 127.0.0.1: only this machine, 0.0.0.0: all machines.",
+           str, "127.0.0.1"),
     Option("--url", "Address at which raters reach the server, if it is behind a proxy.", str, ""),
 )
 OF_ANALYSE = (
     DIRECTORY,
-    options.out("Folder for the report. [default: in the survey's]", metavar="DIR"),
+    options.out("Folder for the report. [default: a subfolder of the survey's folder]", metavar="DIR"),
     Option("--synthetic", "Analyse answers of this many simulated raters instead.",
            whole(1, 10_000, "a number")),
     Option("--agreement", "With --synthetic: how often raters agree, 0 to 1.", measure(0, 1), 0.8),

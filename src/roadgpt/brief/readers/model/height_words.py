@@ -1,4 +1,4 @@
-"""Reads metres of height in change requests ("it should climb 8 m"), for which the network has no word."""
+"""Reads heights in metres in change requests ("it should climb 8 m") by rules."""
 
 import re
 from typing import NamedTuple

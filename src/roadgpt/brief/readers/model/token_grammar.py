@@ -93,7 +93,7 @@ class InOrder:
 
     @property
     def may_be_empty(self) -> bool:
-        """Whether enough symbols have been written."""
+        """Whether the rest of the sequence can be left out."""
         return self.least <= 0
 
     def first(self) -> Iterable[str]:

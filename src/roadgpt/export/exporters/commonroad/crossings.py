@@ -80,7 +80,7 @@ class Crossings:
         yield out
 
     def references(self, lanelet: int) -> Iterator[XmlElement]:
-        """Yields the element that assigns its sign or light to a lanelet; nothing if the lanelet has none."""
+        """Yields the element by which a lanelet refers to its sign or light; nothing if it has neither."""
         if lanelet in self._signed:
             id_, _, arm = self._signed[lanelet]
             name = "trafficLightRef" if arm.control == "lights" else "trafficSignRef"
