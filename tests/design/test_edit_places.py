@@ -186,3 +186,42 @@ def test_a_whole_road_is_as_steep_as_the_word_says() -> None:
 def test_something_new_is_as_steep_as_the_word_says() -> None:
     after = edited(LISTED, "add straight steeply_up len=50 at_end").design
     assert grades(after, 1 - 12 / build(after).length, 1.0) == pytest.approx(9.5, abs=1.5)
+
+
+@pytest.mark.parametrize(("kind", "sign"), [("crest", 1), ("dip", -1)])
+def test_a_crest_or_a_dip_lies_where_it_is_asked_for(kind: str, sign: int) -> None:
+    made = edited(STRAIGHT, f"add {kind} at_middle")
+    road = build(made.design)
+    s = np.arange(0.0, road.length, 1.0)
+    heights = sign * (road.at(s)[:, 2] - build(STRAIGHT).at(s)[:, 2])
+    assert s[heights.argmax()] == pytest.approx(road.length / 2, abs=5)
+    assert heights.max() > 1.5
+    assert road.length == pytest.approx(build(STRAIGHT).length, abs=0.1)
+    assert check.inspect(road, None, WORLD) == ()
+    assert made.changes[0].startswith(f"a {kind} of 120 m is new, its middle at")
+
+
+@pytest.mark.parametrize(
+    "place", ["on(straight 2)", "between(turn 1, turn 2)", "after(turn 1)", "before(turn 2)"]
+)
+def test_a_crest_lies_on_the_straight_that_is_named(place: str) -> None:
+    road, after = build(LISTED), build(edited(LISTED, f"add crest {place}").design)
+    first, second, _ = turns(LISTED)
+    middle = (first.end + second.start) / 2
+    rises = after.at(np.array([first.end, middle, second.start]))[:, 2]
+    assert rises[1] > max(rises[0], rises[2]) + 0.3
+    before = np.arange(0.0, first.start, 2.0)
+    assert after.at(before)[:, 2] == pytest.approx(road.at(before)[:, 2], abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("plan", "complaint"),
+    [
+        ("add crest x2 at_end", "2 times 'crest' at once is too much"),
+        ("add zigzag at_end", "'zigzag' cannot be added"),
+        ("add dip on(straight shortest)", r"a dip needs a straight of 40 m or more; there are \d+ m"),
+    ],
+)
+def test_a_hill_that_cannot_be_added_is_refused(plan: str, complaint: str) -> None:
+    with pytest.raises(EditError, match=complaint):
+        edited(WINDING, plan)

@@ -14,6 +14,7 @@ from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
+from roadgpt.design.edit.hills import hill_of, is_hill
 from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest
@@ -94,6 +95,7 @@ def edit(
         stretches = tuple(change.stretch for change in changes if change.stretch is not None)
         told = (
             *(_reordering(change, elements) for change in changes if change.change.what in REORDERS),
+            *(_hill(change, elements) for change in changes if is_hill(change.change)),
             *(_sloped(stretch, design, road.design, geometry) for stretch in dict.fromkeys(stretches)),
             *told,
         )
@@ -110,6 +112,11 @@ def _sloped(stretch: RoadStretch, before: Design, after: Design, geometry: Geome
         low, high = (float(road.at(station)[2]) for station in ends)
         grades.append(100 * (high - low) / (stretch.end - stretch.start))
     return f"from {stretch.start:.0f} to {stretch.end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
+
+
+def _hill(change: PlacedChange, elements: RoadElements) -> str:
+    hill = hill_of(change, elements)
+    return f"a {change.change.kind} of {2 * hill.half:.0f} m is new, its middle at {hill.middle:.0f} m"
 
 
 def _reordering(change: PlacedChange, elements: RoadElements) -> str:

@@ -46,7 +46,9 @@ class EditedRoad(BaseModel):
     model_config = fixed_description("The changed road.")
 
     touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
-    theta: Number = Field(description="Heading at the start, in degrees; leave it as it was unless there is a good reason.")
+    theta: Number = Field(
+        description="Heading at the start, in degrees; leave it as it was unless there is a good reason."
+    )
     segments: list[EditedSegment] = Field(description="All segments, in driving order.")
 
 

@@ -17,6 +17,7 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
+from roadgpt.design.edit.hills import hill_candidates, is_hill
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import PlacedChange
 from roadgpt.design.edit.reordering import Reverse, move_of, started_at_end, swap_of
@@ -99,6 +100,8 @@ def _ways(
             return move_of(placed, elements)
         case "count":
             return ()  # there are as many as asked for
+        case "add" if is_hill(placed.change):
+            return hill_candidates(placed, elements)
         case "add":
             return insertion_candidates(placed, elements, world, number)
         case "remove":
