@@ -160,7 +160,7 @@ def test_a_plan_changes_what_it_names_and_nothing_else() -> None:
 @pytest.mark.parametrize(
     ("line", "told"),
     [
-        ("add crest on(straight 1)", "'crest' cannot be added"),
+        ("add crest on(straight 1)", r"a crest needs a straight of 40 m or more; there are \d+ m"),
         ("add serpentine", "'serpentine' cannot be added"),
         ("add turn x40", "40 turns at once are too many"),
         ("s_bend: remove", "'s_bend' cannot be told apart"),
