@@ -49,6 +49,34 @@ def test_what_holds_all_the_way_is_on_every_road(asked: str, words: str, line: s
 
 
 @pytest.mark.parametrize(
+    ("asked", "words", "line"),
+    [
+        (
+            "| len=400 // diverge ramp side=left || left_hand",
+            "traffic on the left; leave the dual carriageway after 400 m",
+            "| divided len=400 // diverge ramp side=left || left_hand",
+        ),
+        ("| // roundabout", "una doble calzada hasta la rotonda", "| divided // roundabout"),
+        ("// crossroads straight", "crossing the dual carriageway", "// crossroads straight"),
+        (
+            "// crossroads left // | lanes=2",
+            "left onto a dual carriageway",
+            "// crossroads left // | lanes=2",
+        ),
+        ("// crossroads left", "not a dual carriageway, a crossroads, left", "// crossroads left"),
+        ("// t_junction left", "an undivided road, at the T left", "// t_junction left"),
+        (
+            "| lanes=2 // roundabout // | divided",
+            "two lanes, a roundabout, a dual carriageway",
+            "| lanes=2 // roundabout // | divided",
+        ),
+    ],
+)
+def test_a_dual_carriageway_at_the_start_has_a_median(asked: str, words: str, line: str) -> None:
+    assert with_whole_drive(read_plan(asked), words) == read_plan(line)
+
+
+@pytest.mark.parametrize(
     ("asked", "words"),
     [
         (ROUTE, "a left bend, straight over the crossroads, uphill"),

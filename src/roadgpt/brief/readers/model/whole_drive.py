@@ -80,6 +80,18 @@ INSTEAD = re.compile(
 )
 UNSIGNED = (*RAMPS, *LANE_KINDS, "roundabout")
 """The kinds of junctions that never have priority to the right."""
+DUAL_CARRIAGEWAY = re.compile(
+    r"dual carriage ?ways?|\bdivided (?:road|highway|street)|zweibahnig\w*|"
+    r"getrennte\w* (?:richtungs)?fahrbahn\w*|baulich getrennt\w*|chaussees? separees?|"
+    r"doble calzada|calzadas separadas|doppia carreggiata|carreggiate separate"
+)
+NOT_FIRST = re.compile(
+    r"cross|junction|roundabout|fork|\bturn|exit|kreuz|kreis|einmund|abzweig|gabel|carrefour|rond|giratoire|"
+    r"croisement|bifurc|cruce|rotonda|glorieta|incroc|rotatoria|bivio|third|second|last|\bon ?to\b|\binto\b|"
+    r"\bjoin|\breach|\bbecome|\bmeet|\b(?:then|after|dann|danach|nach|puis|ensuite|apres|luego|despues|poi|vers|"
+    r"hasta|fino|auf (?:die|eine))\b"
+)
+"""Words before a dual carriageway that is not the first road of the route."""
 AT_ALL = re.compile(
     r"\b(?:everywhere|throughout|all(?!['’])|both|every|each|uberall|alle[nrm]?|beide[nrm]?|jede[nrm]?|partout|tous|"
     r"toutes|chaque|tod[ao]s|amb[ao]s|cada|ovunque|dappertutto|tutt[ie]|entramb[ie]|ogni)\b"
@@ -94,6 +106,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     - Traffic drives on the left, if the words say so.
     - Every road with oncoming traffic on the same carriageway gets a centre line, if the words name one kind
       of line without a place, and no road of the Brief has a line yet.
+    - The first road gets a median if it is a dual carriageway, and no road of the Brief has one.
     - All roads get the lanes or the centre line of some roads, if the words say that all are alike.
     - Junctions with priority to the right get no give-way signs.
     - A junction at the end of a side street is a T-junction.
@@ -105,7 +118,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     line = None if any(each.centre for each in brief.stretches) else _line_said(words)
     roads = tuple(
         each.model_copy(update={"centre": line}) if line and _has_centre_line(each) else each
-        for each in brief.stretches
+        for each in _with_dual_carriageway(brief.stretches, words)
     )
     return brief.model_copy(
         update={
@@ -137,6 +150,17 @@ def _with_one_way_behind(brief: Brief) -> Brief:
             if roads[n + 1].against is None:
                 roads[n + 1] = roads[n + 1].model_copy(update={"against": exactly(0)})
     return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
+
+
+def _with_dual_carriageway(roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
+    """Returns the roads; the first has a median if the words tell of a dual carriageway there."""
+    said = plain(words)
+    found = DUAL_CARRIAGEWAY.search(said)
+    if not roads or found is None or any(road.divided or road.motorway for road in roads):
+        return roads
+    if NOT_FIRST.search(said[: found.start()]) or not says(DUAL_CARRIAGEWAY, said):
+        return roads
+    return (roads[0].model_copy(update={"divided": True}), *roads[1:])
 
 
 def _alike(brief: Brief, roads: tuple[Brief, ...], words: str) -> tuple[Brief, ...]:
