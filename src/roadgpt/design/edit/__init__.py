@@ -8,6 +8,7 @@ road before the edit. Elements that the request does not name keep all their val
 may be shifted or rotated, so that it stays inside the map.
 """
 
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roadgpt import plugins
@@ -19,7 +20,6 @@ from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest
 from roadgpt.design.edit.search import made
-from roadgpt.design.edit.stretches import RoadStretch
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World, build
@@ -92,31 +92,32 @@ def edit(
         unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
     if not asks:
-        stretches = tuple(change.stretch for change in changes if change.stretch is not None)
-        told = (
-            *(_reordering(change, elements) for change in changes if change.change.what in REORDERS),
-            *(_hill(change, elements) for change in changes if is_hill(change.change)),
-            *(_sloped(stretch, design, road.design, geometry) for stretch in dict.fromkeys(stretches)),
-            *told,
-        )
+        told = (*_announced(changes, elements), *_sloped(changes, design, road.design, geometry), *told)
     told = (*told, *(f"'{change.words}' was so already" for change in idle))
     return Edited(road.design, told, unused, sure)
 
 
-def _sloped(stretch: RoadStretch, before: Design, after: Design, geometry: Geometry) -> str:
-    """Returns a sentence on the mean grade of a stretch before and after a change."""
-    grades = []
-    for design in (before, after):
-        road = build(design, geometry)
-        ends = (min(station, road.length) for station in stretch)
-        low, high = (float(road.at(station)[2]) for station in ends)
-        grades.append(100 * (high - low) / (stretch.end - stretch.start))
-    return f"from {stretch.start:.0f} to {stretch.end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
+def _announced(changes: Sequence[PlacedChange], elements: RoadElements) -> Iterator[str]:
+    """Yields a sentence on each change that its measurements alone would not tell."""
+    for change in changes:
+        if change.change.what in REORDERS:
+            yield _reordering(change, elements)
+        elif is_hill(change.change):
+            hill = hill_of(change, elements)
+            yield f"a {change.change.kind} of {2 * hill.half:.0f} m is new, its middle at {hill.middle:.0f} m"
 
 
-def _hill(change: PlacedChange, elements: RoadElements) -> str:
-    hill = hill_of(change, elements)
-    return f"a {change.change.kind} of {2 * hill.half:.0f} m is new, its middle at {hill.middle:.0f} m"
+def _sloped(
+    changes: Sequence[PlacedChange], before: Design, after: Design, geometry: Geometry
+) -> Iterator[str]:
+    """Yields a sentence on the mean grade of each stretch before and after its change."""
+    for start, end in dict.fromkeys(change.stretch for change in changes if change.stretch):
+        grades = []
+        for design in (before, after):
+            road = build(design, geometry)
+            low, high = (float(road.at(min(station, road.length))[2]) for station in (start, end))
+            grades.append(100 * (high - low) / (end - start))
+        yield f"from {start:.0f} to {end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
 
 
 def _reordering(change: PlacedChange, elements: RoadElements) -> str:
