@@ -16,6 +16,10 @@ from hypothesis import strategies as st
 
 from edit_truth import requests
 from roadgpt.brief import SURE as SURE_ENOUGH
+from roadgpt.brief.readers.model.height_words import height_wish
+from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.swap_words import turns_to_swap
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest, Target
@@ -229,6 +233,27 @@ LANGUAGES = [
     ("la strada dovrebbe essere in piano", "road: slope flat"),
 ]
 
+PARTS = [
+    ("only 4 turns", "turn: x4"),
+    ("no more than three turns", "turn: x..3"),
+    ("make it seven turns in all", "turn: x7"),
+    ("insgesamt fünf Kurven", "turn: x5"),
+    ("cinco curvas en total", "turn: x5"),
+    ("over the last 80 m it should drop at 5 percent", "end len=80: slope down =5"),
+    ("level the first 50 m", "start len=50: slope flat"),
+    ("die letzten 60 m eben", "end len=60: slope flat"),
+    ("les 50 derniers mètres à plat", "end len=50: slope flat"),
+    ("i primi 40 metri in salita al 4 percento", "start len=40: slope up =4"),
+    ("start with the hairpin", "hairpin: at_start"),
+    ("place the third turn ahead of the first one", "turn 3: before(turn 1)"),
+    ("déplace l'épingle au début", "hairpin: at_start"),
+    ("move turns 1 and 2 another 15 m apart", "straight between(turn 1, turn 2): length +15"),
+    ("let the final stretch drop steeply", "straight -1: slope steeply_down"),
+    ("the second half gently uphill", "road half2: slope gently_up"),
+    ("a crest in the middle", "add crest at_middle"),
+]
+"""How many turns there are, distances from an end, moves, steepness, crests."""
+
 BY_RULES = [
     ("reverse the road", "road: reverse"),
     ("Please drive it the other way round.", "road: reverse"),
@@ -263,8 +288,6 @@ REFUSED = [
     "remove a turn",
     "rotate the road by 90 degrees",
     "a flat road with 3 turns",
-    "no more than three turns",
-    "raise the start by 5 m",
     "merge the last two turns",
     "make the road wider",
     "make the kerb longer",
@@ -273,7 +296,7 @@ REFUSED = [
 
 ROWS = sorted(
     {
-        *(SURE + PLACES + AMOUNTS + SHAPES + ADDITIONS + SEVERAL + LANGUAGES),
+        *(SURE + PLACES + AMOUNTS + SHAPES + ADDITIONS + SEVERAL + LANGUAGES + PARTS),
         *((words, "!") for words in REFUSED),
         *((row["request"], row["plan"]) for row in requests()),
     }
@@ -313,9 +336,36 @@ def test_rules_read_what_the_network_has_no_words_for(words: str, plan: str) -> 
     ],
 )
 def test_rules_leave_other_requests_to_the_network(words: str) -> None:
-    assert "reverse" not in read(words)
-    assert "climb" not in read(words)
-    assert "swap" not in read(words)
+    text = slotted(words, is_change=True)
+    assert not asks_to_reverse(words)
+    assert turns_to_swap(text) is None
+    assert height_wish(text) is None
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "climb no more than 8 m",
+        "climb at least 8 m",
+        "mirror it and let it climb 4 m",
+        "let it climb for 20 m",
+        "raise the start by 5 m",
+    ],
+)
+def test_a_climb_that_the_words_do_not_give_is_doubted(words: str) -> None:
+    assert read_request(words).confidence < SURE_ENOUGH
+
+
+@pytest.mark.parametrize(
+    ("words", "plan"),
+    [
+        ("Die Strecke soll vom Start bis zum Ziel 7 m an Höhe verlieren", "road: climb =-7"),
+        ("la curva 3 debería perder 1,5 m de altura", "turn 3: climb =-1.5"),
+        ("climb 8 m more", "road: climb +8"),
+    ],
+)
+def test_a_climb_has_the_sign_of_the_words(words: str, plan: str) -> None:
+    assert read(words) == plan
 
 
 def read(words: str) -> str:
@@ -360,7 +410,7 @@ def _target(target: Target) -> Target:
     return replace(target, numbers=tuple(sorted(numbers)), but=but, every=every)
 
 
-@pytest.mark.parametrize(("words", "plan"), SURE)
+@pytest.mark.parametrize(("words", "plan"), SURE + PARTS)
 def test_plain_requests_are_read_right(words: str, plan: str) -> None:
     assert meaning(read(words)) == meaning(plan)
 

@@ -88,8 +88,11 @@ def change_candidates(
             return road_slope_candidates(change, elements, found, world)
         case "slope":
             return _together(slope_steps(change, element, found, world) for element in elements)
-        case "climb":
+        case "climb" if is_road:
             return climb_candidates(change, elements, world)
+        case "climb":  # "every straight": each of them
+            ways = [climb_candidates(change, [element], world) for element in elements]
+            return (tuple(step for ((step,),) in ways),)
         case "side":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")

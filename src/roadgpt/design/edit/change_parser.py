@@ -98,6 +98,11 @@ class ChangeParser:
             return self._shape(Change("shape", target))
         if what not in MEASURES:
             raise self._error(what)
+        if what == "climb" and target.noun in ("start", "end") and target.length is None:
+            raise EditError(
+                f"'{self.text[:60]}' does not say which part climbs; write road, a straight, a turn, or "
+                "for example: end len=50"
+            )
         change = Change(cast(Any, what), target)
         if what == "slope" and self._next() in WAYS:
             steepness, _, way = self._word().rpartition("_")

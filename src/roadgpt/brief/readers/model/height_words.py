@@ -48,6 +48,19 @@ NAMED = re.compile(
 """Words for parts of a road."""
 
 
+LOST = re.compile(
+    r"\b(?:los(?:e|es|ing)|falls?|falling|drops?|dropping|descends?|descending|verlier\w*|(?:ab)?fall\w*|abfallt|"
+    r"perd\w*|pierd\w*|descend\w*|baj\w*|scend\w*)\b"
+)
+GAINED = re.compile(rf"\b(?:{UP}|{RAISED}|gains?|gagn\w*|gan[ae]\w*|guadagn\w*|gewinn\w*)\b")
+BOUNDED = re.compile(
+    r"\b(?:(?:no|not|nicht) (?:more|less|mehr|weniger)|at (?:most|least)|hochstens|mindestens|"
+    r"au (?:plus|moins)|como (?:mucho|maximo|minimo)|al (?:menos|massimo|minimo)|almeno|up to)\b"
+)
+"""Words for a bound, which a climb in metres cannot have."""
+POSITIVE = re.compile(r"climb =(?=\d)")
+
+
 class HeightWish(NamedTuple):
     """A climb in metres that a change request asks for."""
 
@@ -72,3 +85,15 @@ def height_wish(text: SlottedText) -> HeightWish | None:
     if len(found) != 1:
         return None
     return HeightWish(f"{found[0]}{metres[0]:g}", NAMED.search(said) is not None)
+
+
+def with_sign(line: str, text: SlottedText) -> str:
+    """Returns a plan of changes; its climb is negative if the words only tell of height that is lost."""
+    said = " ".join(word.text for word in text.words if word.written)
+    is_fall = LOST.search(said) is not None and GAINED.search(said) is None
+    return POSITIVE.sub("climb =-", line) if is_fall else line
+
+
+def is_bounded_climb(line: str, text: SlottedText) -> bool:
+    """Returns whether a plan gives a climb for which the words only give a bound."""
+    return ": climb" in line and BOUNDED.search(" ".join(word.text for word in text.words)) is not None
