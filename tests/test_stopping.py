@@ -66,10 +66,11 @@ def begun(code: str) -> "subprocess.Popen[str]":
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("between", ["stopping.look()", "time.sleep(0.02)"])
 def test_one_that_python_drops_is_told_all_the_same(sent: signal.Signals, between: str) -> None:
-    for wait in (0.1, 0.25):
-        process = begun(DROPS.replace("{between}", between))
-        time.sleep(wait)
+    processes = [begun(DROPS.replace("{between}", between)) for _ in range(2)]
+    for process in processes:  # at two moments
+        time.sleep(0.12)
         process.send_signal(sent)
+    for process in processes:
         said, complained = process.communicate(timeout=20)
         assert (process.returncode, said, complained) == (128 + sent, "told\nclean\n", "")
 

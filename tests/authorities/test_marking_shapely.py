@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
-from shapely.geometry import Point, Polygon
-from shapely.ops import nearest_points
+import shapely
+from shapely import Polygon
 
 from authorities.test_verdict_shapely import bent, random_drive
 from drive.slippery_bicycle import SlipperyBicycle
@@ -22,13 +22,22 @@ def between_markings(road: Road) -> Polygon:
     return Polygon(np.concatenate([left, right]))
 
 
-def farthest(lane: Polygon, points: np.ndarray) -> float:
-    """Metres outside the lane, of the point that is farthest outside; negative: inside, from its border."""
-    told = []
-    for point in map(Point, points):
-        near, _ = nearest_points(lane.exterior, point)
-        told.append(near.distance(point) * (-1 if lane.contains(point) else 1))
-    return max(told)
+class Lane:
+    """Shapely's distances from a polygon; its tree of the sides finds the nearest without asking them all."""
+
+    def __init__(self, road: Road) -> None:
+        self.polygon = between_markings(road)
+        shapely.prepare(self.polygon)
+        corners = np.asarray(self.polygon.exterior.coords)
+        self.sides = shapely.STRtree(shapely.linestrings(np.stack([corners[:-1], corners[1:]], axis=1)))
+
+    def farthest(self, places: np.ndarray) -> float:
+        """Metres outside the lane, of the farthest point outside; negative: inside, from its border."""
+        (asked, _), away = self.sides.query_nearest(
+            shapely.points(places), all_matches=False, return_distance=True
+        )
+        assert (asked == np.arange(len(places))).all()
+        return float(np.where(shapely.contains_xy(self.polygon, places), -away, away).max())
 
 
 @pytest.mark.parametrize("hand", [-1, 1])
@@ -36,20 +45,20 @@ def farthest(lane: Polygon, points: np.ndarray) -> float:
 def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -> None:
     road, world = bent(radius, hand), World()
     drive = random_drive(road, seed=round(radius) + hand)
-    lane = between_markings(road)
+    lane = Lane(road)
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive)
     tyres = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
     for step in range(len(drive)):
         box = Polygon(drive.corners(step))
-        sides = [box.exterior.interpolate(share, normalized=True) for share in np.linspace(0, 1, 400)]
-        assert body[step] == pytest.approx(farthest(lane, np.array([p.coords[0] for p in sides])), abs=0.02)
+        sides = shapely.line_interpolate_point(box.exterior, np.linspace(0, 1, 400), normalized=True)
+        assert body[step] == pytest.approx(lane.farthest(shapely.get_coordinates(sides)), abs=0.02)
         x, y, heading = (drive[name][step] for name in ("x", "y", "heading"))
         ahead, left = (
             np.array([np.cos(heading), np.sin(heading)]),
             np.array([-np.sin(heading), np.cos(heading)]),
         )
         feet = [[x, y] + 1.36 * ahead + side * 0.9025 * left for side in (-1, 1)]
-        assert tyres[step] == pytest.approx(farthest(lane, np.array(feet)), abs=0.005)
+        assert tyres[step] == pytest.approx(lane.farthest(np.array(feet)), abs=0.005)
 
 
 @pytest.mark.parametrize("hand", [-1, 1])
@@ -69,8 +78,8 @@ def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: i
 def test_the_farthest_of_a_whole_drive_is_told() -> None:
     road, world = bent(15.0, -1), World(limits=Limits(oob_tolerance=1.0))
     drive = SlipperyBicycle().simulate(road, world, BeamngLike(), 0)
-    lane = between_markings(road)
-    every = [farthest(lane, drive.corners(step)) for step in range(drive.lane_steps)]
+    lane = Lane(road)
+    every = [lane.farthest(np.asarray(drive.corners(step))) for step in range(drive.lane_steps)]
     told = judge(road, drive, world).beyond
     assert told is not None
     # the middle of a side may reach farther over the inside of a bend than the corners do

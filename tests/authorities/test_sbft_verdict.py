@@ -3,6 +3,7 @@
 import gzip
 import json
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ OFFICIAL = Path(__file__).resolve().parents[3] / "shared" / "data" / "sbft_verdi
 FROZEN = Path(__file__).parent / "data" / "sbft_verdicts.jsonl"  # some of them
 
 
+@cache
 def official_verdicts() -> list[dict]:
     """Some that are kept here, and 3,000 more where they are at hand."""
     rows = FROZEN.read_text(encoding="utf-8").splitlines()
@@ -57,7 +59,7 @@ def test_the_second_opinion_equals_official_verdicts() -> None:
 
 def test_random_and_mutated_roads() -> None:
     rng = np.random.default_rng(7)
-    for number in range(200):
+    for number in range(100):
         points, map_size = random_road(rng)
         for road in (points, mutated(points, rng)):
             assert agree(road, map_size), (number, road.tolist(), map_size)

@@ -23,7 +23,7 @@ def bent(radius: float, hand: int) -> Road:
 
 
 def lane_of(road: Road) -> Polygon:
-    s = np.linspace(0, road.length, int(road.length * 20))
+    s = np.linspace(0, road.length, int(road.length * 5))
     return Polygon(np.concatenate([road.at(s, 0.0)[:, :2], road.at(s[::-1], -4.0)[:, :2]]))
 
 

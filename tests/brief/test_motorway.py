@@ -1,6 +1,7 @@
 """A motorway is one: radii of 600 m or more and 5 percent at most; or a sentence says what is not kept."""
 
 import json
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -39,13 +40,19 @@ def tightest_and_steepest(road: Road) -> tuple[float, float]:
     return float(1 / curvature.max()), float(100 * np.abs(np.diff(z) / a).max())
 
 
+@cache
+def road_of(line: str, size: float, seed: int) -> Road:
+    """A road of a plan; most names of motorways have the same plan."""
+    return build(draft(read_plan(line), World(site=Site(map_size=size)), seed=seed))
+
+
 @pytest.mark.parametrize("words", NAMES)
 @pytest.mark.parametrize("size", [2000, 4000])
 def test_where_there_is_room_it_is_wide_and_nowhere_steep(words: str, size: float) -> None:
     brief, world = read(words, map_size=size), World(site=Site(map_size=size))
     assert brief.motorway
     for seed in range(3):
-        road = build(draft(brief, world, seed=seed))
+        road = road_of(plan(brief), size, seed)
         radius, grade = tightest_and_steepest(road)
         assert 590 < radius < 1500, "wide, and no straight road"
         assert grade <= 5
@@ -56,7 +63,7 @@ def test_where_there_is_room_it_is_wide_and_nowhere_steep(words: str, size: floa
 
 @pytest.mark.parametrize("words", [words for words in NAMES if "km" not in words])
 def test_where_there_is_none_that_is_said_and_grades_are_kept(words: str) -> None:
-    brief, world = read(words), World()
+    brief = read(words)
     (remark,) = remarks(brief, 250)
     assert "600 m radius" in remark
     assert "map of 250 m cannot hold" in remark
@@ -64,10 +71,10 @@ def test_where_there_is_none_that_is_said_and_grades_are_kept(words: str) -> Non
     assert remarks(brief, size) != (remark,)
     assert "cannot" not in remarks(brief, size)[0], "the map that is proposed holds one"
     for seed in range(3):
-        _, grade = tightest_and_steepest(build(draft(brief, world, seed=seed)))
+        _, grade = tightest_and_steepest(road_of(plan(brief), 250, seed))
         assert grade <= 5
-    wide = build(draft(read(words, map_size=size), World(site=Site(map_size=size)), seed=1))
-    assert tightest_and_steepest(wide)[0] > 590
+    wide = read(words, map_size=size)
+    assert tightest_and_steepest(road_of(plan(wide), size, 1))[0] > 590
 
 
 def test_a_road_that_is_none_breaks_the_promise() -> None:

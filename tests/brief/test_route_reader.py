@@ -65,7 +65,8 @@ def test_a_reader_without_this_network_names_what_it_cannot_read(tmp_path: Path)
 
 
 def test_nearly_every_description_of_a_route_has_a_word_of_the_list() -> None:
-    lines = [line for path in PAIRS.glob("*.jsonl") for line in path.read_text(encoding="utf-8").splitlines()]
+    files = sorted(PAIRS.glob("*.jsonl"))
+    lines = [line for path in files for line in path.read_text(encoding="utf-8").splitlines()[::3]]
     told = [pair["text"] for pair in map(json.loads, lines) if is_of_junctions(pair["plan"])]
     missed = [text for text in told if not may_tell_a_route(text)]
     assert len(told) > 4000

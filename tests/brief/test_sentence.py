@@ -17,13 +17,13 @@ from roadgpt.brief import (
 from strategies import briefs
 
 
-@settings(max_examples=200, deadline=None)
+@settings(deadline=None)
 @given(briefs())
 def test_the_normal_form_is_its_own(brief: Brief) -> None:
     assert normal(normal(brief)) == normal(brief)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(deadline=None)
 @given(briefs())
 def test_everything_has_a_sentence(brief: Brief) -> None:
     said = sentence(brief)

@@ -38,6 +38,14 @@ def ended(workers: Processes, count: int) -> list[FinishedJob]:
     return found
 
 
+def pid_in(file: Path) -> int:
+    """The pid that a job writes down."""
+    until = time.monotonic() + SOON
+    while not (file.exists() and file.read_text()) and time.monotonic() < until:
+        time.sleep(0.05)
+    return int(file.read_text())
+
+
 def test_results_come_in_order_with_their_values_and_errors_are_raised_again(two: Processes) -> None:
     assert two.map(jobs.square, range(100)) == [number * number for number in range(100)]
     assert two.map(jobs.square, []) == []
@@ -67,20 +75,30 @@ def test_what_fails_costs_its_own_job(two: Processes) -> None:
     assert two.map(jobs.square, [5]) == [25]
 
 
+@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
 def test_a_job_that_kills_or_hangs_is_given_up_after_three_workers_and_others_are_done(
-    two: Processes,
+    two: Processes, tmp_path: Path
 ) -> None:
+    """What the hanging workers have started ends with each of them."""
     two.submit(
         [
             Job(1, jobs.dies, 7),
-            Job(2, jobs.sleeps, SOON),
+            Job(2, jobs.starts_a_program_and_works, str(tmp_path / "pid")),
             *(Job(key, jobs.square, key) for key in range(3, 30)),
         ]
     )
+    first = pid_in(tmp_path / "pid")
     found = {done.key: done for done in ended(two, 29)}
     assert found[1].lost == "given up: 3 workers ended over it (the last one ended with status 7)"
     assert found[2].lost == "given up: 3 workers ended over it (the last one took longer than 2 s)"
     assert {key: found[key].value for key in range(3, 30)} == {key: key * key for key in range(3, 30)}
+    last = pid_in(tmp_path / "pid")
+    assert first != last
+    until = time.monotonic() + 5  # killing is quick, and not at once
+    while is_alive(last) and time.monotonic() < until:
+        time.sleep(0.05)
+    assert not is_alive(first)
+    assert not is_alive(last)
     with pytest.raises(RoadGPTError, match="3 workers ended over it"):
         two.map(jobs.dies, [1])
 
@@ -103,7 +121,7 @@ def test_every_job_ends_once_while_workers_are_killed(tmp_path: Path) -> None:
 
 
 def test_a_worker_without_a_sign_of_life_is_replaced(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(shelf, "SILENCE", 3.0)
+    monkeypatch.setattr(shelf, "SILENCE", 2.0)
     workers = Processes(WorkerConfig(1, jobs.nothing, SOON, tmp_path / "log"))
     try:
         workers.submit([Job(1, jobs.stops_itself, str(tmp_path / "was_here"))])
@@ -152,14 +170,6 @@ def test_workers_end_when_their_parent_was_killed() -> None:
     assert not any(is_alive(pid) for pid in pids)
 
 
-def pid_in(file: Path) -> int:
-    """The pid that a job writes down."""
-    until = time.monotonic() + SOON
-    while not (file.exists() and file.read_text()) and time.monotonic() < until:
-        time.sleep(0.05)
-    return int(file.read_text())
-
-
 @pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
 @pytest.mark.parametrize("job", [jobs.leaves_its_programs, jobs.starts_a_program_and_works])
 def test_what_a_worker_has_started_ends_with_it(tmp_path: Path, job: Callable[[str], object]) -> None:
@@ -174,20 +184,3 @@ def test_what_a_worker_has_started_ends_with_it(tmp_path: Path, job: Callable[[s
     assert time.monotonic() - begun < 8
     time.sleep(0.2)  # killing is quick, and not at once
     assert not is_alive(pid)
-
-
-@pytest.mark.skipif(os.name == "nt", reason="kills as Unix does")
-def test_what_a_worker_that_hangs_has_started_ends_with_it(tmp_path: Path) -> None:
-    workers = Processes(WorkerConfig(1, jobs.nothing, 1.0, tmp_path / "log"))
-    workers.submit([Job(1, jobs.starts_a_program_and_works, str(tmp_path / "pid"))])
-    first = pid_in(tmp_path / "pid")
-    (given_up,) = ended(workers, 1)
-    assert given_up.lost
-    assert "took longer than 1 s" in given_up.lost
-    last = pid_in(tmp_path / "pid")
-    until = time.monotonic() + 5  # killing is quick, and not at once
-    while is_alive(last) and time.monotonic() < until:
-        time.sleep(0.05)
-    assert not is_alive(first)
-    assert not is_alive(last)
-    workers.stop()

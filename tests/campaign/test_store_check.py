@@ -14,6 +14,7 @@ from roadgpt.campaign.lifecycle import begin, work
 from roadgpt.campaign.model import Budget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record
+from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.cli import app
 
 COMMANDS = (
@@ -50,8 +51,10 @@ SPOILT = {
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("made") / "c"
     begin(Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan"), place)
-    for _ in work(place):
-        pass
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
+        for _ in work(place):
+            pass
     return place
 
 

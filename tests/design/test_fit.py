@@ -33,7 +33,7 @@ def fitted(design: Design, name: str, feature: Feature, outline: Outline = FREE)
     return fit(design, asked_of(elements, name, feature), needs, frozen)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=settings.default.max_examples // 4, deadline=None)
 @given(st.integers(0, 60), st.floats(0.8, 1.25), st.data())
 def test_one_turn_gets_its_angle_and_all_other_segments_keep_every_number(
     seed: int, share: float, data: st.DataObject

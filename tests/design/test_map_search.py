@@ -14,6 +14,7 @@ from outside_judge import SHARED
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft, draft_road
+from roadgpt.design.map_search import MapSearch
 from roadgpt.design.room import world_for
 from roadgpt.drive import simulate
 from roadgpt.errors import DesignError, UsageError
@@ -108,8 +109,9 @@ def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
     small = World(site=Site(map_size=120))
     with pytest.raises(DesignError, match=r"no place on a map of 120 m; ask for fewer or shorter blocks, or"):
         drafted("map columns=3 rows=2", 1, small)
+    search = MapSearch(read_plan("map crossroads x5"), small, np.random.default_rng(1))
     with pytest.raises(DesignError, match=r"no place on a map of 120 m; ask for fewer junctions, or give"):
-        drafted("map crossroads x5", 1, small)
+        search.run(30)
     with pytest.raises(DesignError, match="give other numbers"):
         drafted("map columns=2 rows=2 len=20", 1)
     with pytest.raises(UsageError, match="leave out --lanes"):

@@ -17,10 +17,8 @@ from roadgpt.run import Setup, brief_of
 PLAN = Setup(reader="plan")
 CASES = (
     ("serpentine | len=367", 150, 571),
-    ("turn x3 | up len=985", 150, 975),
-    ("| turns=1.. hills=3.. len=1252", 120, 140),
-    ("| turns=1.. len=287..", 120, 342),
-    ("turn x6 sharp | len=2800", 250, 96),
+    ("turn x3 sharp | hills=3.. len=985", 150, 975),
+    ("| turns=1.. up len=287..", 120, 342),
     ("straight | turns=0 len=2283", 200, 18),
 )
 """Plans for which the map has no room, the map's size in m, and a seed."""

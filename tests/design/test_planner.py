@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from design import short_searches as briefly
 from roadgpt import check
 from roadgpt.brief.element import Element
 from roadgpt.brief.model import Brief, Clause, Slope, at_least, at_most, exactly
@@ -14,7 +15,7 @@ from roadgpt.brief.outline import outline
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import measure
-from roadgpt.design import draft, road_search
+from roadgpt.design import draft
 from roadgpt.design.designers.planner import Planner
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.vertical import Pace
@@ -40,12 +41,9 @@ EVALUATION = {"a road": A_ROAD, "uphill": UPHILL, "ends left": ENDS_LEFT}
 
 @pytest.fixture(scope="module", autouse=True)
 def short_searches() -> Iterator[None]:
-    """Fewer drafts before a road is given up, and before a map counts as too small; test_offers has all."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name, value in {"TRIALS": (1,), "TRIED": 30, "GROWN": 3, "GROWN_ON_TRIAL": 1}.items():
-            patch.setattr(road_search, name, value)
+    """Nearly all tests want roads, and the others any advice."""
+    with briefly.short_searches():
         yield
-    road_search.sufficient_map.cache_clear()
 
 
 @cache
@@ -79,7 +77,7 @@ def test_what_can_be_had_is_drafted(brief: Brief, seed: int) -> None:
     assert_fine(planner.draft(brief, WORLD, (), (), seed), brief, WORLD)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=settings.default.max_examples // 2, deadline=None)
 @given(briefs(), worlds(), st.integers(0, 1000))
 def test_any_brief_gives_a_fine_road_or_one_sentence_of_advice(brief: Brief, world: World, seed: int) -> None:
     drafted = attempt(brief, world, seed)

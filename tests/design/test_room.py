@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from design.short_searches import short_searches
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.cli import app
@@ -75,19 +76,6 @@ def test_it_stays_where_there_is_room(line: str) -> None:
     assert map_remark(World(), World()) == ""
 
 
-@pytest.mark.parametrize("given", [World(site=Site(map_size=250)), World().changed(map_size=200)])
-def test_a_map_that_was_given_is_kept(given: World) -> None:
-    brief = read_plan(TOO_LARGE[1])
-    assert world_for(brief, given) == given
-    with pytest.raises(RoadGPTError, match="--map-size"):
-        perform(TOO_LARGE[1], 1, given, PLAN)
-
-
-def test_no_map_helps_against_slopes_that_change_too_fast() -> None:
-    brief = read_plan("straight steeply_up len=12; straight steeply_down len=12; straight steeply_up len=12")
-    assert world_for(brief, World(limits=Limits(speed_limit=60))).site.map_size == 250
-
-
 def test_it_takes_the_surface_as_well() -> None:
     world = world_for(read_plan("straight len=700 | beside(ice)"), World())
     assert world.site.friction == 0.1
@@ -129,3 +117,17 @@ def test_the_command_says_how_large_the_map_is_and_resumes(tmp_path: Path) -> No
     assert "so the map is" not in told.output
     roads = [next((tmp_path / name).glob("test.0001.json")).read_bytes() for name in "ab"]
     assert roads[0] == roads[1]
+
+
+@pytest.mark.parametrize("given", [World(site=Site(map_size=250)), World().changed(map_size=200)])
+def test_a_map_that_was_given_is_kept(given: World) -> None:
+    brief = read_plan(TOO_LARGE[1])
+    assert world_for(brief, given) == given
+    with short_searches(), pytest.raises(RoadGPTError, match="--map-size"):
+        perform(TOO_LARGE[1], 1, given, PLAN)
+
+
+def test_no_map_helps_against_slopes_that_change_too_fast() -> None:
+    brief = read_plan("straight steeply_up len=12; straight steeply_down len=12; straight steeply_up len=12")
+    with short_searches():
+        assert world_for(brief, World(limits=Limits(speed_limit=60))).site.map_size == 250

@@ -8,13 +8,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from design.short_searches import short_searches
 from llm_like import random_lists
 from roadgpt import check, read
 from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
 from roadgpt.check.measures import measure
-from roadgpt.design import draft
+from roadgpt.design import draft, road_search
 from roadgpt.design.edit import edit
 from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.elements import elements_of
@@ -63,7 +64,7 @@ def test_no_draft_is_too_abrupt_for_its_speed(words: str, kmh: float) -> None:
 @pytest.mark.parametrize("kmh", [50, 70, 110])
 def test_roads_whose_slopes_nobody_asked_for_are_comfortable(kmh: float) -> None:
     world = World(limits=Limits(speed_limit=kmh / 3.6))
-    most = [felt(draft(read("a road"), world, seed=seed), world) for seed in range(20)]
+    most = [felt(draft(read("a road"), world, seed=seed), world) for seed in range(12)]
     assert max(most) <= 0.52
     assert sum(value > 0.1 for value in most) > 3  # and they do have slopes
 
@@ -75,9 +76,13 @@ def test_level_roads_are_written_as_before() -> None:
     assert all(segment.vertical_radius is None for road in level for segment in road.segments)
 
 
-def test_slopes_that_cannot_be_had_at_the_speed_are_refused_in_a_sentence() -> None:
+def test_slopes_that_cannot_be_had_at_the_speed_are_refused_in_a_sentence(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(road_search, "FINISHED", 20)  # drafts that fail alike, instead of 100
     brief = read_plan("straight flat len=30; straight up len=25 pct=12; straight flat; turn left")
-    with pytest.raises(DesignError, match=r"too fast for a speed limit of 70 km/h.*--speed-limit [35]0"):
+    said = r"too fast for a speed limit of 70 km/h.*--speed-limit [35]0"
+    with short_searches(), pytest.raises(DesignError, match=said):
         draft(brief, WORLD, seed=1)
     slow = World(limits=Limits(speed_limit=30 / 3.6))
     assert felt(draft(brief, slow, seed=1), slow) <= 3.05

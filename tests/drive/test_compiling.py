@@ -10,39 +10,6 @@ from pathlib import Path
 import roadgpt
 from roadgpt.drive.compiled import COMPILING
 
-LOOP = """
-from roadgpt.drive.compiled import compiled
-
-@compiled
-def twice(x):
-    return 2 * x
-
-@compiled
-def thrice(x):
-    return 3 * x
-
-print(twice(2), thrice(3.0), twice(1.5))
-"""
-
-
-def said(script: Path, cache: Path, quiet: bool = False) -> str:
-    """What a new process says on standard error, with machine code kept in this folder."""
-    start = f"import logging; logging.getLogger('roadgpt').setLevel({'40' if quiet else '0'}); "
-    code = start + f"import runpy; runpy.run_path({str(script)!r})"
-    env = {**os.environ, "NUMBA_CACHE_DIR": str(cache)}
-    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True)
-    assert done.stdout.split() == ["4", "9.0", "3.0"]
-    return done.stderr
-
-
-def test_it_is_said_once_while_code_is_compiled_and_not_when_it_is_kept(tmp_path: Path) -> None:
-    script = tmp_path / "loop.py"
-    script.write_text(LOOP)
-    assert said(script, tmp_path / "kept").splitlines() == [f"roadgpt: {COMPILING}"]
-    assert said(script, tmp_path / "kept") == ""
-    assert said(script, tmp_path / "other", quiet=True) == ""
-
-
 CALLER = """
 import roadgpt.drive.compiled, roadgpt.scene.compiled
 from roadgpt.drive.simulators.mujoco.chassis_control import slip_valve
@@ -63,39 +30,59 @@ def period():
 
 print(valve(), dashes(), period())
 """
+START = "import logging, runpy; logging.getLogger('roadgpt').setLevel({level}); runpy.run_path({script!r})"
 CALLED = "valve", "dashes", "period"
 CHANGES = [
     ("drive/simulators/mujoco/chassis_control.py", "rate = 20.0", "rate = 2.0"),
     ("scene/patterns.py", "return whole * dash +", "return 1.0 +"),
     ("road/profile.py", "DASH, GAP = 4.0", "DASH, GAP = 5.0"),
 ]
+SAYS = f"roadgpt: {COMPILING}\n"
 
 
-def test_kept_code_is_not_used_where_a_file_that_it_uses_has_changed(tmp_path: Path) -> None:
-    package = tmp_path / "src" / "roadgpt"
-    shutil.copytree(Path(roadgpt.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__"))
-    script = tmp_path / "caller.py"
-    script.write_text(CALLER)
-    env = {**os.environ, "PYTHONPATH": str(package.parent), "NUMBA_CACHE_DIR": str(tmp_path / "kept")}
+class Copy:
+    """A copy of the package, whose machine code is kept in a folder of its own."""
 
-    def answers() -> list[str]:
-        command = [sys.executable, "-B", str(script)]
-        return subprocess.run(command, env=env, capture_output=True, text=True, check=True).stdout.split()
+    def __init__(self, folder: Path) -> None:
+        self.kept, self.package = folder / "kept", folder / "src" / "roadgpt"
+        # What Python compiled comes along and is used as long as its source is the same: to do it again for
+        # each process takes longer than all else. Machine code does not come along.
+        other = shutil.ignore_patterns("*.nb?*", "*.pyc.*")
+        shutil.copytree(Path(roadgpt.__file__).parent, self.package, ignore=other)
+        self.script = folder / "caller.py"
+        self.script.write_text(CALLER)
 
-    before = answers()
-    kept = sorted((tmp_path / "kept").rglob("*.nbc"))
-    assert {path.name.partition("-")[0] for path in kept} >= {
-        "caller.valve",
-        "caller.dashes",
-        "caller.period",
-    }
-    assert answers() == before
-    assert sorted((tmp_path / "kept").rglob("*.nbc")) == kept
-    for numbers in ((0, 1), (2,)):  # the numbers of a profile are kept apart from the files of a scene
-        for file, old, new in (CHANGES[number] for number in numbers):
-            text = (package / file).read_text(encoding="utf-8")
-            assert text.count(old) == 1
-            (package / file).write_text(text.replace(old, new), encoding="utf-8")
-        after = answers()
+    def answers(self, is_quiet: bool = False) -> tuple[list[str], str]:
+        """What a new process answers, and what it says on standard error."""
+        env = {**os.environ, "PYTHONPATH": str(self.package.parent), "NUMBA_CACHE_DIR": str(self.kept)}
+        start = START.format(level=40 if is_quiet else 0, script=str(self.script))
+        command = [sys.executable, "-B", "-c", start]
+        done = subprocess.run(command, env=env, capture_output=True, text=True, check=True)
+        return done.stdout.split(), done.stderr
+
+    def codes(self) -> list[Path]:
+        return sorted(self.kept.rglob("*.nbc"))
+
+    def change(self, file: str, old: str, new: str) -> None:
+        text = (self.package / file).read_text(encoding="utf-8")
+        assert text.count(old) == 1
+        (self.package / file).write_text(text.replace(old, new), encoding="utf-8")
+
+
+def test_it_is_said_once_while_code_is_compiled_and_kept_code_is_not_used_where_its_files_have_changed(
+    tmp_path: Path,
+) -> None:
+    copy = Copy(tmp_path)
+    before, said = copy.answers()
+    assert said == SAYS  # once for three functions
+    kept = copy.codes()
+    assert {path.name.partition("-")[0] for path in kept} >= {f"caller.{name}" for name in CALLED}
+    assert copy.answers() == (before, "")
+    assert copy.codes() == kept
+    for numbers, is_quiet in (((0, 1), True), ((2,), False)):  # a profile's numbers are no file of a scene's
+        for number in numbers:
+            copy.change(*CHANGES[number])
+        after, said = copy.answers(is_quiet)
+        assert said == ("" if is_quiet else SAYS)
         assert all(after[number] != before[number] for number in numbers)
         before = after

@@ -27,7 +27,8 @@ from roadgpt.drive import Camera, Command
 def keep(view):
     return Command(-0.2 * (view.t + 2), 0.3 if view.speed < 9 else 0.0, 0.0)
 """
-STRAIGHT = Road.through([[0, 0], [50, 0], [100, 0]])
+CALM = "    def steer(self, view): return keep(view)"
+STRAIGHT = Road.through([[0, 0], [25, 0], [50, 0]])
 
 
 @pytest.fixture
@@ -80,6 +81,14 @@ def test_a_driver_that_sees_has_the_same_pictures(spec) -> None:
     assert len(np.unique(here["steer"])) > 10
 
 
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The drive of a driver that does nothing to its process."""
+    file = tmp_path_factory.mktemp("calm") / "calm.py"
+    file.write_text(f"{HEAD}\nclass D:\n{CALM}")
+    return went(f"{file}:D").to_bytes()
+
+
 @pytest.mark.parametrize(
     "nuisance",
     [
@@ -96,19 +105,17 @@ def test_a_driver_that_sees_has_the_same_pictures(spec) -> None:
         "os.closerange(0, 3)",
     ],
 )
-def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str) -> None:
-    calm = "    def steer(self, view): return keep(view)"
-    expected = went(spec(calm, "calm"))
+def test_what_a_driver_does_to_its_process_is_its_own_affair(spec, nuisance: str, undisturbed: bytes) -> None:
     here = Path.cwd(), {**os.environ}, [*sys.path], signal.getsignal(signal.SIGINT)
-    first = spec(f"    def start(self, road, world, seed):\n        {nuisance}\n{calm}", "loud")
-    assert went(first).to_bytes() == expected.to_bytes()
+    first = spec(f"    def start(self, road, world, seed):\n        {nuisance}\n{CALM}", "loud")
+    assert went(first).to_bytes() == undisturbed
     assert (Path.cwd(), {**os.environ}, [*sys.path], signal.getsignal(signal.SIGINT)) == here
     seen = spec(
         "    def start(self, road, world, seed):\n"
-        "        Path('seen').write_text(os.getcwd() + ' ' + str('PATH' in os.environ))\n" + calm,
+        "        Path('seen').write_text(os.getcwd() + ' ' + str('PATH' in os.environ))\n" + CALM,
         "next",
     )
-    assert went(seen).to_bytes() == expected.to_bytes()
+    assert went(seen).to_bytes() == undisturbed
     assert Path("seen").read_text() == f"{Path.cwd()} True"
 
 

@@ -1,11 +1,17 @@
 """Where the inner loop cannot be compiled, the car drives in plain Python, and tells only those who ask."""
 
+import ctypes
 import os
 import subprocess
 import sys
+from collections.abc import Iterator
 from functools import cache
+from importlib.abc import MetaPathFinder
+from pathlib import Path
 
 import pytest
+
+from roadgpt.drive import compiled, native
 
 SCRIPT = """
 import ctypes, sys, warnings
@@ -16,11 +22,11 @@ from roadgpt.drive.simulators.mujoco import plane
 car = plane()
 for _ in range(3):
     car.move(0.1, 1.0, 0.0)
+from roadgpt.cli.commands import doctor
 print(compiled.COMPILES, compiled.WHY_NOT)
 print(car.see()["vx"])
+print(doctor._numba())
 """
-NO_LIBRARY = "import numba, mujoco; from pathlib import Path; Path.glob = lambda self, name: iter(())"
-NO_SYMBOL = "import numba, mujoco; ctypes.CDLL = lambda path: object()"
 NOT_LOADED = """
 import numba, mujoco
 def refuse(path): raise OSError("cannot open shared object file")
@@ -28,69 +34,102 @@ ctypes.CDLL = refuse
 """
 
 
-@cache
-def compiled_speed():
-    return first_steps("", "nothing here")[1]
-
-
-def first_steps(prelude, path):
+def first_steps(
+    prelude: str = "", path: object = "nothing here", forced: str = "0"
+) -> tuple[str, float, str]:
+    """What a new process says of its choice, how fast its car is in the end, and what doctor says."""
+    more = {
+        "PYTHONPATH": os.pathsep.join([str(path), os.environ.get("PYTHONPATH", "")]),
+        "ROADGPT_NO_NUMBA": forced,
+    }
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT.format(prelude=prelude)],
         capture_output=True,
         text=True,
         check=True,
-        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(path), os.environ.get("PYTHONPATH", "")])},
+        env=os.environ | more,
         timeout=120,
     )
-    said, speed = done.stdout.splitlines()
-    return said, float(speed), done.stderr
+    said, speed, doctor = done.stdout.splitlines()
+    assert said.startswith("True") or done.stderr == ""  # who compiles for the first time says so
+    return said, float(speed), doctor
+
+
+@cache
+def with_numba() -> tuple[str, float, str]:
+    return first_steps()
 
 
 @pytest.mark.parametrize(
     ("module", "raised"),
     [
-        ("numba", "ImportError('Numba needs NumPy 1.26 or less')"),
         ("numba", "AttributeError('module numpy has no attribute long')"),
-        ("llvmlite", "OSError('could not load libllvmlite.so')"),
         ("llvmlite", "ModuleNotFoundError('no llvmlite')"),
     ],
 )
-def test_where_numba_does_not_load_it_drives_in_plain_python(tmp_path, module, raised):
+def test_where_numba_does_not_load_it_drives_in_plain_python(
+    tmp_path: Path, module: str, raised: str
+) -> None:
     (tmp_path / f"{module}.py").write_text(f"import warnings; warnings.warn('soon'); raise {raised}")
-    said, speed, warned = first_steps("", tmp_path)
+    said, speed, _ = first_steps("", tmp_path)
     kind, _, rest = raised.partition("(")
     assert said == f"False {kind}: {rest[1:-2]}"
-    assert speed == pytest.approx(compiled_speed(), rel=1e-9)
-    assert warned == ""
+    assert speed == pytest.approx(with_numba()[1], rel=1e-9)
 
 
+def test_where_mujoco_cannot_be_called_at_its_addresses_it_drives_in_plain_python() -> None:
+    said, speed, _ = first_steps(NOT_LOADED)
+    assert said == "False OSError: cannot open shared object file"
+    assert speed == pytest.approx(with_numba()[1], rel=1e-9)
+
+
+def test_the_doctor_tells_which_is_used_and_why() -> None:
+    assert with_numba()[2] == "compiles the inner loop"
+    said, speed, doctor = first_steps(forced="1")
+    assert said == "False ROADGPT_NO_NUMBA is set"
+    assert doctor == "is not used (ROADGPT_NO_NUMBA is set): drives work, but far slower"
+    assert speed == pytest.approx(with_numba()[1], rel=1e-9)
+
+
+class Broken(MetaPathFinder):
+    """An installation in which a module raises an error while it is imported."""
+
+    def __init__(self, module: str, error: Exception) -> None:
+        self.module, self.error = module, error
+
+    def find_spec(self, name: str, path: object = None, target: object = None) -> None:
+        if name == self.module:
+            raise self.error
+
+
+@pytest.fixture
+def anew(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """The choice may be made once more, in this process."""
+    monkeypatch.setenv("ROADGPT_NO_NUMBA", "0")
+    native.addresses.cache_clear()
+    yield
+    native.addresses.cache_clear()
+
+
+@pytest.mark.usefixtures("anew")
 @pytest.mark.parametrize(
-    ("prelude", "why"),
-    [
-        (NO_LIBRARY, "FileNotFoundError: MuJoCo's library is not in"),
-        (NOT_LOADED, "OSError: cannot open shared object file"),
-        (NO_SYMBOL, "AttributeError: 'object' object has no attribute 'mj_step1'"),
-    ],
+    "error",
+    [ImportError("Numba needs NumPy 1.26 or less"), OSError("could not load libllvmlite.so"), KeyError("x")],
 )
-def test_where_mujoco_cannot_be_called_at_its_addresses_it_drives_in_plain_python(tmp_path, prelude, why):
-    said, speed, warned = first_steps(prelude, tmp_path)
-    assert said.startswith(f"False {why}")
-    assert speed == pytest.approx(compiled_speed(), rel=1e-9)
-    assert warned == ""
+def test_whatever_numba_raises_is_told(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert compiled._numba()[2] == ""
+    monkeypatch.delitem(sys.modules, "numba")
+    monkeypatch.setattr(sys, "meta_path", [Broken("numba", error), *sys.meta_path])
+    assert compiled._numba() == (None, None, f"{type(error).__name__}: {error}")
 
 
-def test_the_doctor_tells_which_is_used_and_why():
-    script = "from roadgpt.cli.commands import doctor; print(doctor._numba())"
-    said = {}
-    for forced in ("0", "1"):
-        done = subprocess.run(
-            [sys.executable, "-c", script],
-            capture_output=True,
-            text=True,
-            check=True,
-            env=os.environ | {"ROADGPT_NO_NUMBA": forced},
-            timeout=120,
-        )
-        said[forced] = done.stdout.strip()
-    assert said["0"] == "compiles the inner loop"
-    assert said["1"] == "is not used (ROADGPT_NO_NUMBA is set): drives work, but far slower"
+@pytest.mark.usefixtures("anew")
+def test_a_mujoco_without_its_library_or_its_functions_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "glob", lambda self, name: iter(()))
+        *found, why = compiled._numba()
+    assert found == [None, None]
+    assert why.startswith("FileNotFoundError: MuJoCo's library is not in")
+    monkeypatch.setattr(ctypes, "CDLL", lambda path: object())
+    why = "AttributeError: 'object' object has no attribute 'mj_step1'"
+    assert compiled._numba() == (None, None, why)

@@ -2,6 +2,8 @@
 
 import json
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from roadgpt.network import Route, made_from
 from roadgpt.road import Site, World
 
 WORLD = World(site=Site(map_size=700))
+Saved = Callable[[str, int], tuple[Route, Path]]
 PLANS = [
     "t_junction left // roundabout exit=2 // | up",
     "| lanes=2 against=2 // lane_change left // crossroads left lights",
@@ -28,32 +31,40 @@ PLANS = [
 ]
 
 
-def saved(line: str, seed: int, folder: Path) -> Route:
-    route = made_from(draft(read_plan(line), WORLD, seed=seed), WORLD)
-    assert isinstance(route, Route)
-    save(route, folder, ["openscenario"], WORLD, "x")
-    return route
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Saved:
+    """Gives the route of a plan and a seed, and the folder with its files, which is made once."""
+
+    @cache
+    def made(line: str, seed: int) -> tuple[Route, Path]:
+        route = made_from(draft(read_plan(line), WORLD, seed=seed), WORLD)
+        assert isinstance(route, Route)
+        folder = tmp_path_factory.mktemp("scenario")
+        save(route, folder, ["openscenario"], WORLD, "x")
+        return route, folder
+
+    return made
 
 
 @pytest.mark.parametrize("line", PLANS)
-def test_asams_checker_finds_nothing(line: str, tmp_path: Path) -> None:
-    saved(line, 1, tmp_path)
-    issues, ends = asam_says(tmp_path / "x.xosc")
+def test_asams_checker_finds_nothing(line: str, saved: Saved) -> None:
+    _, folder = saved(line, 1)
+    issues, ends = asam_says(folder / "x.xosc")
     assert issues == []
     assert ends == {"completed": 17}
 
 
 @pytest.mark.parametrize("line", PLANS)
 @pytest.mark.parametrize("seed", [1, 2])
-def test_the_waypoints_lead_along_the_route(line: str, seed: int, tmp_path: Path) -> None:
-    saved(line, seed, tmp_path)
-    scenario = ET.parse(tmp_path / "x.xosc").getroot()
-    map_ = ET.parse(tmp_path / scenario.find("RoadNetwork/LogicFile").attrib["filepath"]).getroot()
+def test_the_waypoints_lead_along_the_route(line: str, seed: int, saved: Saved) -> None:
+    _, folder = saved(line, seed)
+    scenario = ET.parse(folder / "x.xosc").getroot()
+    map_ = ET.parse(folder / scenario.find("RoadNetwork/LogicFile").attrib["filepath"]).getroot()
     roads = {road.get("id"): road for road in map_.iter("road")}
     start, *ways, end = [place.attrib for place in scenario.iter("LanePosition")]
     assert start == ways[0]
     assert end == ways[-1]
-    legs = json.loads((tmp_path / "x.route.json").read_text())["route"]
+    legs = json.loads((folder / "x.route.json").read_text())["route"]
     last = [] if len(legs) > 1 else legs
     assert [[int(way["roadId"]), int(way["laneId"])] for way in ways] == [*legs, *last]
     for way in ways:
@@ -63,10 +74,10 @@ def test_the_waypoints_lead_along_the_route(line: str, seed: int, tmp_path: Path
         assert way["laneId"] in ids
 
 
-def test_a_route_that_ends_beside_its_start_is_driven(tmp_path: Path) -> None:
-    route = saved("roundabout back", 1, tmp_path)
+def test_a_route_that_ends_beside_its_start_is_driven(saved: Saved) -> None:
+    route, folder = saved("roundabout back", 1)
     assert np.hypot(*(route.at(route.length) - route.at(0.0))[:2]) < 1
-    groups = ET.parse(tmp_path / "x.xosc").getroot().findall("Storyboard/StopTrigger/ConditionGroup")
+    groups = ET.parse(folder / "x.xosc").getroot().findall("Storyboard/StopTrigger/ConditionGroup")
     near, late = ([each.tag for each in group.iter()] for group in groups)
     assert "DistanceCondition" in near
     assert "TraveledDistanceCondition" in near
@@ -76,13 +87,13 @@ def test_a_route_that_ends_beside_its_start_is_driven(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("line", [line for line in PLANS if "//" in line or "map" in line])
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_the_car_starts_far_from_where_its_road_ends_and_stops_at_the_end_of_the_last(
-    line: str, seed: int, tmp_path: Path
+    line: str, seed: int, saved: Saved
 ) -> None:
-    saved(line, seed, tmp_path)
-    scenario = ET.parse(tmp_path / "x.xosc").getroot()
-    map_ = ET.parse(tmp_path / "x.xodr").getroot()
+    _, folder = saved(line, seed)
+    scenario = ET.parse(folder / "x.xosc").getroot()
+    map_ = ET.parse(folder / "x.xodr").getroot()
     roads = {road.get("id"): road for road in map_.iter("road")}
     ways = [place.attrib for place in scenario.iter("LanePosition")][1:-1]
     first, last = roads[ways[0]["roadId"]], roads[ways[-1]["roadId"]]

@@ -1,10 +1,12 @@
 """Descriptions of measured roads: their facts are those of the road; the same seed gives the same ones."""
 
 import re
+from collections.abc import Iterator
 from itertools import islice
 
 import pytest
 
+from design.short_searches import short_searches
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
@@ -14,8 +16,10 @@ from roadgpt.learn.standard import standard
 
 
 @pytest.fixture(scope="module")
-def pairs() -> list[Pair]:
-    return [*islice(measured_pairs(5), 40)]
+def pairs() -> Iterator[list[Pair]]:
+    """The searches are short because nobody reads what is said of plans without a road."""
+    with short_searches():
+        yield [*islice(measured_pairs(5), 40)]
 
 
 def test_plans_stand_as_plans_are_written_and_their_numbers_are_in_the_text(pairs: list[Pair]) -> None:

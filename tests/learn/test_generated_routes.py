@@ -31,7 +31,7 @@ SAID = {
 def drawn(request: pytest.FixtureRequest) -> tuple[int, list[Pair]]:
     """A number of draws in a language, and the pairs that they gave."""
     rng = np.random.default_rng(4)
-    tries = 250
+    tries = 150
     return tries, [pair for pair in (draw_route(request.param, rng) for _ in range(tries)) if pair]
 
 

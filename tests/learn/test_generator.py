@@ -10,7 +10,7 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import LearnError
-from roadgpt.learn.generator import assembled, draw, pairs
+from roadgpt.learn.generator import Pair, assembled, draw, pairs
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
@@ -25,8 +25,8 @@ def test_the_same_seed_gives_the_same_pairs_and_another_others() -> None:
     assert one != other
 
 
-def test_every_generated_plan_is_in_standard_form_and_none_is_held_out() -> None:
-    for pair in islice(pairs(11), 1500):
+def test_every_generated_plan_is_in_standard_form_and_none_is_held_out(generated: tuple[Pair, ...]) -> None:
+    for pair in generated:
         assert not is_held_out(pair.text)
         if pair.family != "composed-en":  # see test_compositions
             assert pair.plan.startswith(REFUSALS) or standard(read_plan(pair.plan)) == pair.plan
@@ -44,8 +44,8 @@ def test_a_language_speaks_in_many_ways(language: str) -> None:
 @pytest.mark.parametrize("language", ["en", "de", "fr", "es", "it"])
 def test_every_number_of_a_specification_can_be_copied(language: str) -> None:
     rng = np.random.default_rng(9)
-    found = [pair for pair in (draw(language, rng, "specs", "specs") for _ in range(400)) if pair]
-    assert len({pair.text for pair in found}) > 0.9 * len(found) > 330
+    found = [pair for pair in (draw(language, rng, "specs", "specs") for _ in range(200)) if pair]
+    assert len({pair.text for pair in found}) > 0.9 * len(found) > 165
     lost = 0
     for pair in found:
         slots = slotted(pair.text).slots

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from learn.covering import covering
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import WEIGHTS
@@ -44,6 +45,13 @@ def plans(pairs: list[Pair]) -> list[str]:
     return sorted({pair.plan for pair in pairs if not pair.plan.startswith("!")})
 
 
+@pytest.fixture(scope="module")
+def few(pairs: list[Pair]) -> list[Pair]:
+    """Pairs that together have each word of the plans, and each two words in a row, twice."""
+    asked = [pair for pair in pairs if not pair.plan.startswith("!")]
+    return [asked[place] for place in covering([pair.plan for pair in asked], 2)]
+
+
 def other_way(junction: JunctionClause) -> JunctionClause:
     """The same junction seen in a mirror, by its fields."""
     swap = {"left": "right", "right": "left"}
@@ -66,18 +74,18 @@ def test_a_mirror_of_a_mirror_is_the_plan_itself(plans: list[str]) -> None:
     assert in_mirror_tokens(in_mirror_tokens(TOKENS)) == TOKENS
 
 
-def test_a_mirrored_plan_takes_every_junction_on_the_other_side(plans: list[str]) -> None:
-    for line in plans:
+def test_a_mirrored_plan_takes_every_junction_on_the_other_side(few: list[Pair]) -> None:
+    for line in (pair.plan for pair in few):
         brief, seen = read_plan(line), read_plan(in_mirror_plan(line))
         assert [other_way(junction) for junction in brief.junctions] == list(seen.junctions)
         assert len(brief.stretches) == len(seen.stretches)
         assert brief.left_hand == seen.left_hand
 
 
-def test_tokens_and_words_of_a_plan_are_mirrored_alike(pairs: list[Pair]) -> None:
-    for pair in pairs:
+def test_tokens_and_words_of_a_plan_are_mirrored_alike(few: list[Pair]) -> None:
+    for pair in few:
         slots = slotted(pair.text).slots
-        tokens = None if pair.plan.startswith("!") else tokens_of(pair.plan, slots)
+        tokens = tokens_of(pair.plan, slots)
         if tokens:
             seen = plan_of(in_mirror_tokens(tokens), slots)
             assert standard(read_plan(seen)) == standard(read_plan(in_mirror_plan(pair.plan)))

@@ -1,13 +1,11 @@
 """What is said once stands once in the plans that are learnt, and means the same."""
 
-from itertools import islice
-
 import pytest
 
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.learn.generator import pairs
+from roadgpt.learn.generator import Pair
 from roadgpt.learn.shared_values import with_shared_values
 
 
@@ -28,8 +26,11 @@ def test_what_all_turns_share(text: str, line: str, once: str | None) -> None:
     assert with_shared_values(line, slotted(text).slots) == (once or line)
 
 
-def test_the_normal_form_stays() -> None:
-    for pair in islice(pairs(17), 800):
+def test_the_normal_form_stays(generated: tuple[Pair, ...]) -> None:
+    changed = 0
+    for pair in generated:
         once = with_shared_values(pair.plan, slotted(pair.text).slots)
-        if not pair.plan.startswith("!"):
+        if once != pair.plan:  # what is not changed has the same form
+            changed += 1
             assert normal(read_plan(once)) == normal(read_plan(pair.plan))
+    assert changed > 5

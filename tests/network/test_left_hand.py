@@ -9,6 +9,7 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import cKDTree
 from shapely.affinity import scale
 
 from network.mirrored import in_mirror
@@ -99,8 +100,8 @@ def mirror_distance(one: Any, other: Any) -> float:
 def apart(points: np.ndarray, others: np.ndarray) -> float:
     """How far a point of either set is from the nearest one of the other set, at most."""
     assert bool(len(points)) == bool(len(others))
-    pairs = ((points, others), (others, points))
-    return max((float(np.linalg.norm(b - a, axis=1).min()) for one, b in pairs for a in one), default=0.0)
+    pairs = ((points, others), (others, points)) if len(points) else ()
+    return max((float(cKDTree(b).query(one)[0].max()) for one, b in pairs), default=0.0)
 
 
 @DRAWINGS

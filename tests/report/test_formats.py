@@ -198,12 +198,15 @@ for value in (design, roadgpt.build(design), roadgpt.prove(design)):
     assert [line.partition("(")[0] for line in done.stdout.splitlines()] == ["Design", "Road", "Run"]
 
 
-def test_the_verb_campaign_can_be_called_whatever_room_was_imported(tmp_path: Path) -> None:
+def test_the_verb_campaign_can_be_called_whatever_room_was_imported_and_pyplot_never_is(
+    tmp_path: Path,
+) -> None:
     code = "import sys, roadgpt.campaign.numbered_test, roadgpt.run; from roadgpt.run import Setup; "
     code += (
         "print(len(list(roadgpt.campaign('a straight road', 1, setup=Setup(drives=False), out=sys.argv[1]))))"
+        "; import roadgpt.report; print('matplotlib.pyplot' in sys.modules, 'matplotlib' in sys.modules)"
     )
     done = subprocess.run(
         [sys.executable, "-c", code, str(tmp_path / "c")], capture_output=True, text=True, check=False
     )
-    assert (done.stdout.strip(), done.stderr) == ("1", "")
+    assert (done.stdout.split(), done.stderr) == (["1", "False", "True"], "")

@@ -1,6 +1,7 @@
 """A PASS that was outside its lane looks in no picture or page like one that was inside."""
 
 import json
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,10 +48,13 @@ def runs() -> dict[str, Run]:
     return made
 
 
-def share_of(path: Path, colour: str) -> float:
-    pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
-    wanted = np.round(255 * np.array(to_rgb(colour))).astype(int)
-    return float((np.abs(pixels - wanted).max(axis=2) <= 2).mean())
+def shares_of(path: Path, colours: Iterable[str]) -> list[float]:
+    told = Image.open(path).convert("RGB").getcolors(1 << 24)
+    assert told is not None
+    counts, found = np.array([count for count, _ in told]), np.array([rgb for _, rgb in told])
+    wanted = [np.round(255 * np.array(to_rgb(colour))) for colour in colours]
+    alike = [np.abs(found - each).max(axis=1) <= 2 for each in wanted]
+    return [float(counts[each].sum() / counts.sum()) for each in alike]
 
 
 def test_every_picture_of_a_run_has_the_colour_of_how_far(runs: dict[str, Run], tmp_path: Path) -> None:
@@ -58,8 +62,8 @@ def test_every_picture_of_a_run_has_the_colour_of_how_far(runs: dict[str, Run], 
         assert OUTCOMES[outcome_of(run)] == SEVERE[run.verdict.severity]  # type: ignore[union-attr]
         drawing().of_run(run, tmp_path)
         for picture in ("birds_eye.png", "height.png", "curvature_grade.png"):
-            shares = {each: share_of(tmp_path / picture, SEVERE[each]) for each in SEVERITIES}
-            assert max(shares, key=lambda each: shares[each]) == name, picture
+            shares = shares_of(tmp_path / picture, [SEVERE[each] for each in SEVERITIES])
+            assert SEVERITIES[int(np.argmax(shares))] == name, picture
         assert {*severities(run.drive)} == {name}
 
 
@@ -93,7 +97,7 @@ def test_the_overview_tells_them_apart(runs: dict[str, Run], tmp_path: Path) -> 
         alone.write_text(json.dumps(json.loads(file.read_text())))
         assert _entry(alone).graded == entry.graded == outcome_of(run)
     (page,) = overview(tmp_path)
-    assert all(share_of(page, colour) > 1e-4 for colour in SEVERE.values())
+    assert min(shares_of(page, SEVERE.values())) > 1e-4
 
 
 def test_the_gallery_of_a_page_tells_them_apart() -> None:

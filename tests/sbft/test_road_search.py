@@ -84,11 +84,11 @@ def test_outcomes_lead_it_to_failures() -> None:
 
 @pytest.mark.usefixtures("few")
 def test_the_same_outcomes_give_the_same_roads_and_others_give_others() -> None:
-    one, same = campaign(12, 4, True), campaign(12, 4, True)
-    other = campaign(10, 4, True, heard=lambda outcome: "PASS" if outcome == "FAIL" else "FAIL")
+    one, same = campaign(8, 4, True), campaign(8, 4, True)
+    other = campaign(8, 4, True, heard=lambda outcome: "PASS" if outcome == "FAIL" else "FAIL")
     assert one == same
     assert one[:5] == other[:5]  # nothing is known yet
-    assert one[8:10] != other[8:]
+    assert one[5:] != other[5:]
 
 
 @pytest.mark.usefixtures("few")
@@ -124,7 +124,7 @@ generator.description, generator.reader, generator.seed = sys.argv[2], "plan", 4
 roads = []
 for points in generator.roads():
     roads.append(points)
-    if len(roads) == 8:
+    if len(roads) == 7:  # the last two are chosen by outcomes
         break
     generator.tell("FAIL", [Record(30.0 * (i % 7), -1.0) for i in range(30)])
 print(json.dumps(roads))
@@ -141,7 +141,7 @@ def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
     generator = RoadGPTTestGenerator(None, 200)
     generator.description, generator.reader, generator.seed = FLAT, "plan", 4
     roads = []
-    for points in islice(generator.roads(), 8):
+    for points in islice(generator.roads(), 7):
         roads.append([[x, y] for x, y in points])
         generator.tell("FAIL", [Record(30.0 * (i % 7), -1.0) for i in range(30)])
     assert json.loads(done.stdout) == roads

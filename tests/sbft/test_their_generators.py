@@ -37,16 +37,15 @@ def counted(folder: Path) -> dict[str, str]:
 
 
 ENDS = {
-    "raises": ("raise KeyError('lane')", "raised", r"KeyError \(.*misbehaves.py, line \d+\): 'lane'"),
     "exits": ("sys.exit(3)", "exit", r"sys.exit\(3\)"),
     "leaves": ("os._exit(9)", "died", "exit status 9"),
     "recursion": ("def f():\n    f()\nf()", "raised", "RecursionError"),
     "interrupt": ("raise KeyboardInterrupt", "raised", "KeyboardInterrupt"),
-    "noise": (
+    "noise, and raises": (
         'print(\'{"op": "end", "how": "died"}\', flush=True)\nos.write(1, b\'x\' * 300000)\n'
-        "sys.stdin.read()\nraise ValueError('noise')",
+        "sys.stdin.read()\nraise KeyError('lane')",
         "raised",
-        "ValueError.*noise",
+        r"KeyError \(.*misbehaves.py, line \d+\): 'lane'",
     ),
     "closed, but for a thread": (
         "os.close(0); os.close(1); os.close(2)\nthreading.Thread(target=time.sleep, args=(600,)).start()",
@@ -75,11 +74,11 @@ def test_however_a_generator_ends_its_tests_are_kept(name: str, tmp_path: Path) 
 def test_one_that_hangs_is_stopped(tmp_path: Path) -> None:
     write(tmp_path, "while True: pass")
     begun = time.monotonic()
-    work, runs = let_loose(tmp_path, patience=5)
+    work, runs = let_loose(tmp_path, patience=3)
     assert time.monotonic() - begun < 120
     assert work.ending is not None
     assert work.ending.how == "hung"
-    assert "5 s" in work.ending.sentence
+    assert "3 s" in work.ending.sentence
     assert len(runs) == 2
     assert numbers(tmp_path) == [1, 2]
 
@@ -170,7 +169,7 @@ def test_one_that_does_not_leave_when_its_budget_is_over_is_stopped(tmp_path: Pa
 
 def test_the_budget_of_time_drops_the_last_test(tmp_path: Path) -> None:
     write(tmp_path, "while True:\n    self.two()")
-    work, runs = let_loose(tmp_path, tests=None, time_budget=3, grace=20)
+    work, runs = let_loose(tmp_path, tests=None, time_budget=2, grace=20)
     assert work.ending is not None
     assert work.ending.how == "budget"
     assert runs
@@ -252,10 +251,10 @@ def test_the_same_seed_gives_the_same_tests(tmp_path: Path) -> None:
     for folder in (tmp_path / "one", tmp_path / "other"):
         folder.mkdir()
         values = {"module_name": "curvature_walk", "class_name": "CurvatureWalk"}
-        let_loose(folder, 3, **values, module_path=str(EXAMPLES))
+        let_loose(folder, 2, **values, module_path=str(EXAMPLES))
         made.append([path.read_bytes() for path in sorted((folder / "out").glob("test.*.json"))])
     assert made[0] == made[1]
-    assert len(made[0]) == 3
+    assert len(made[0]) == 2
 
 
 def test_a_generators_process_needs_no_simulator() -> None:

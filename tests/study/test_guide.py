@@ -2,9 +2,9 @@
 
 import json
 import re
-import subprocess
-import sys
 from pathlib import Path
+
+import pytest
 
 from roadgpt.study.prompts import Prompt
 from roadgpt.study.truth import Truth
@@ -19,9 +19,9 @@ def block(language: str) -> str:
     return str(code)
 
 
-def test_the_python_runs() -> None:
-    done = subprocess.run([sys.executable, "-c", block("python")], capture_output=True, text=True, check=True)
-    assert 0 < float(done.stdout) < 1
+def test_the_python_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    exec(compile(block("python"), "evaluate-roads.md", "exec"), {})
+    assert 0 < float(capsys.readouterr().out) < 1
 
 
 def test_the_prompt_is_one() -> None:

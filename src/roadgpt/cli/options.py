@@ -52,7 +52,7 @@ WORLD = (
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
             0.95),
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
-    _world("--lanes", "Lanes in the driving direction + oncoming lanes. [default: 1+1, or as described]",
+    _world("--lanes", "Lanes ahead + oncoming. [default: 1+1, or as described]",
            lanes),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",

@@ -71,7 +71,7 @@ def simulator(fake: FakeBeamNG, **settings: Any) -> BeamngSimulator:
 
 
 def test_beamngs_ai_drives_in_place_of_its_imitation(fake: FakeBeamNG) -> None:
-    drive = simulator(fake).simulate(HILLS, WORLD, BeamngLike(), 7)
+    drive = simulator(fake, rate=20).simulate(HILLS, WORLD, BeamngLike(), 7)
     assert (drive.driver, drive.simulator, drive.ended) == ("beamng_ai", "beamng", "goal")
     assert judge(HILLS, drive, WORLD).kept
     kinds = {kind for _, kind in fake.transcript}
@@ -79,7 +79,7 @@ def test_beamngs_ai_drives_in_place_of_its_imitation(fake: FakeBeamNG) -> None:
 
 
 def test_the_imitation_drives_where_it_is_told_to(fake: FakeBeamNG) -> None:
-    drive = simulator(fake, imitation=True).simulate(SHORT, WORLD, BeamngLike(), 7)
+    drive = simulator(fake, imitation=True, rate=20).simulate(SHORT, WORLD, BeamngLike(), 7)
     assert drive.driver == "beamng_like"
     assert ("ego", "SetAiWaypoint") not in fake.transcript
 
@@ -119,7 +119,7 @@ def test_speeds_and_rates_are_those_of_the_positions() -> None:
 
 
 def test_the_same_road_is_driven_the_same_way_and_in_one_session(fake: FakeBeamNG) -> None:
-    one, other = (simulator(fake).simulate(SHORT, WORLD, Reference(), 7) for _ in range(2))
+    one, other = (simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7) for _ in range(2))
     assert one["x"] == pytest.approx(other["x"], abs=1e-6)
     assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
     assert fake.scenarios == {}  # cleared away
@@ -145,7 +145,7 @@ def test_the_goal_is_eight_metres_before_the_end(fake: FakeBeamNG) -> None:
 
 def test_a_road_on_the_floor_lies_on_the_levels_ground(fake: FakeBeamNG) -> None:
     low = Road.through([[40, 100, -28], [70, 100, -28], [110, 100, -28]])
-    drive = simulator(fake).simulate(low, WORLD, Reference(), 7)
+    drive = simulator(fake, rate=20).simulate(low, WORLD, Reference(), 7)
     assert drive["z"] == pytest.approx(-28 + 0.56, abs=0.05)
 
 
@@ -189,7 +189,7 @@ def test_a_car_that_leaves_a_floating_road_falls(fake: FakeBeamNG) -> None:
             return Command(-0.2, 0.6)
 
     road = Road.through([[40, 100, 0], [90, 100, 0], [140, 100, 0]])
-    drive = simulator(fake).simulate(
+    drive = simulator(fake, rate=20).simulate(
         road, World(section=CrossSection(shoulder=0)), Away(), 7, keep_driving=True
     )
     assert drive.ended == "fell"
@@ -212,15 +212,15 @@ def test_who_does_not_move_is_stuck_and_an_ai_that_never_sets_off_is_an_error(fa
 def test_a_driver_steers_to_its_left_whichever_way_the_input_turns(sign: float, told: float) -> None:
     spy = Spy()
     with FakeBeamNG(protocol=OURS, steer_sign=sign, told_sign=told) as fake:
-        drive = simulator(fake).simulate(HILLS, WORLD, spy, 7)
-        gain = session_of(BeamngSettings(port=fake.port)).gain
+        drive = simulator(fake, rate=25).simulate(HILLS, WORLD, spy, 7)
+        gain = session_of(BeamngSettings(port=fake.port, rate=25)).gain
         leave_all()
     assert gain == pytest.approx(sign * 0.6, rel=0.05)
     assert drive.ended == "goal"
     assert np.abs(drive["t"] + 2.0).max() < 0.5
     bend = drive["steer"] - np.arctan(2.83 * drive["yaw_rate"] / np.maximum(drive["vx"], 1.0))
     assert np.abs(bend[drive["vx"] > 5]).max() < 0.05
-    assert {view.dt for view in spy.views} == {0.02}
+    assert {view.dt for view in spy.views} == {0.04}
     assert all(view.image is None for view in spy.views)
     assert spy.views[10].steer == pytest.approx(drive["steer"][10])
 
@@ -245,8 +245,8 @@ def test_a_driver_that_fails_costs_its_drive_and_not_the_session(fake: FakeBeamN
             raise ValueError("no idea")
 
     with pytest.raises(DriverError, match="no idea"):
-        simulator(fake).simulate(SHORT, WORLD, Broken(), 7)
-    assert simulator(fake).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
+        simulator(fake, rate=20).simulate(SHORT, WORLD, Broken(), 7)
+    assert simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
     assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
 
 
@@ -295,7 +295,7 @@ def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path
 
 def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> None:
     with FakeBeamNG(port=port, protocol=OURS, faults=(Fault("hang", "Step", 1, 20),)) as fake:
-        made = simulator(fake, poll_timeout=1.5)
+        made = simulator(fake, poll_timeout=1.5, rate=20)
         assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
         leave_all()
 
@@ -328,7 +328,7 @@ def test_beamng_is_started_anew_after_so_many_roads(tmp_path: Path, port: int) -
 
 
 def test_a_level_without_the_ground_that_we_know_can_be_named(fake: FakeBeamNG) -> None:
-    assert simulator(fake, level="smallgrid").simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
+    assert simulator(fake, level="smallgrid", rate=20).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
     with pytest.raises(
         PartError, match="no level atlantis; name another with --beamng-level, there are: small"
     ):
@@ -365,7 +365,7 @@ def test_lines_lie_on_the_asphalt_in_the_game_as_in_our_level(fake: FakeBeamNG) 
             ((_, objects, _),) = fake.scenarios.values()
             laid.extend(each for each in objects if each["class"] == "DecalRoad")
 
-    simulator(fake).simulate(SHORT, WORLD, Looks(), 7)
+    simulator(fake, rate=20).simulate(SHORT, WORLD, Looks(), 7)
     level = items("level", level_road(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
     decals = [each for each in level if each["class"] == "DecalRoad"]
     ours = {each["name"].partition("_")[0]: each["renderPriority"] for each in decals}  # of dashes, one

@@ -6,12 +6,15 @@ import re
 import statistics
 import xml.etree.ElementTree as ET
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure as Drawing
 from scipy import stats
 
 from roadgpt.errors import UsageError
+from roadgpt.report.canvas import Format, save_all
 from roadgpt.report.page import Figure
 from roadgpt.study.survey import rating_charts
 from roadgpt.study.survey.analysis import analyse, load_answers
@@ -56,7 +59,14 @@ def made_up(asked: Survey, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def analysed(asked: Survey, out: Path) -> Path:
-    return analyse(synthetic(asked, 25, 4, 0.7, failing=0.2), out, "roadgpt study survey analyse").parent
+    """Every chart as SVG, and the first one as PDF and PNG as well: each PDF takes a second."""
+
+    def save_first(figure: Drawing, path: Path, formats: Sequence[Format]) -> list[Path]:
+        return [] if [*path.parent.glob("*.pdf")] else save_all(figure, path, formats)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rating_charts, "save_all", save_first)
+        return analyse(synthetic(asked, 25, 4, 0.7, failing=0.2), out, "roadgpt study survey analyse").parent
 
 
 @pytest.fixture
@@ -100,6 +110,7 @@ def test_the_same_seed_gives_the_same_bytes_and_another_one_others(
     again = analysed(asked, tmp_path)
     files = sorted(path.relative_to(made_up) for path in made_up.rglob("*.*"))
     assert len(files) > 20
+    assert {".svg", ".pdf", ".png"} <= {path.suffix for path in files}
     for path in files:
         assert (made_up / path).read_bytes() == (again / path).read_bytes(), path
     assert synthetic(asked, 6, 1).rows == synthetic(asked, 6, 1).rows != synthetic(asked, 6, 2).rows

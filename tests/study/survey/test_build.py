@@ -293,6 +293,8 @@ def test_the_commands_make_and_analyse_a_survey(runs: Path, tmp_path: Path) -> N
     ]  # fmt: skip
     tried = runner.invoke(command, ["analyse", out, "--synthetic", "5", "--seed", "2"])
     assert tried.output.strip().endswith("analysis-synthetic/report.html")
+    charts = [{path.stem for path in (tmp_path / "s").rglob(f"*.{name}")} for name in ("svg", "pdf")]
+    assert charts[0] == charts[1] != set()
     assert "nobody has been invited" in str(runner.invoke(command, ["analyse", out]).exception)
 
 

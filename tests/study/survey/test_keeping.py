@@ -30,8 +30,9 @@ import sys
 for name in ("starlette", "uvicorn", "jinja2", "markupsafe"):
     sys.modules[name] = None  # as where it is not installed
 import roadgpt.study.study_report, roadgpt.study.execution
-import roadgpt.study.survey.build, roadgpt.study.survey.analysis
+import roadgpt.study.survey.build, roadgpt.study.survey.analysis, roadgpt.study.survey.rating_charts
 from roadgpt.__main__ import main
+roadgpt.study.survey.rating_charts.save_all = lambda *_: []  # charts stay on the page; a PDF takes seconds
 for words in sys.argv[1:]:
     sys.argv[1:] = words.split()
     try:

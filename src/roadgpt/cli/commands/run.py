@@ -62,7 +62,7 @@ OPTIONS = (
     options.PLAN,
     Option(
         "--route",
-        "Turns of the route through a map of roads, such as left,straight,right. [default: random]",
+        "Turns of the route through a map, such as left,right. [default: random]",
         str,
         "",
         metavar="TURN,...",

@@ -47,7 +47,7 @@ class EditedRoad(BaseModel):
 
     touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
     theta: Number = Field(
-        description="Heading at the start, in degrees; leave it as it was unless there is a good reason."
+        description="Degrees, of the start; as it was, but for good reasons."
     )
     segments: list[EditedSegment] = Field(description="All segments, in driving order.")
 
