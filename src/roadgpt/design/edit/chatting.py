@@ -46,9 +46,7 @@ class EditedRoad(BaseModel):
     model_config = fixed_description("The changed road.")
 
     touched: list[int] = Field(description="Numbers of the old segments that the request speaks of.")
-    theta: Number = Field(
-        description="Degrees, of the start; as it was, but for good reasons."
-    )
+    theta: Number = Field(description="Degrees, of the start; as it was, but for good reasons.")
     segments: list[EditedSegment] = Field(description="All segments, in driving order.")
 
 
