@@ -106,7 +106,7 @@ def test_a_stretch_that_ends_amid_a_long_turn_is_refused() -> None:
         ("end len=900: slope down", r"the road is only \d+ m long, not 900 m"),
         ("end len=50: remove", "is a distance, and only its slope or its climb can be changed"),
         ("end len=50: length +20", "is a distance, and only its slope or its climb can be changed"),
-        ("straight: x3", "counts no turns; write for example: turn: x4"),
+        ("straight: x3", "only all turns, or those of a side or a kind, can be counted"),
         ("straight 2: at_end", "moves a straight; only turns can be moved"),
         ("turn 1: before(turn 1)", "moves a turn next to itself"),
         ("turn: x5", "is so already"),
@@ -217,7 +217,7 @@ def test_a_crest_lies_on_the_straight_that_is_named(place: str) -> None:
 @pytest.mark.parametrize(
     ("plan", "complaint"),
     [
-        ("add crest x2 at_end", "2 times 'crest' at once is too much"),
+        ("add crest x2 at_end", "adds several at once"),
         ("add zigzag at_end", "'zigzag' cannot be added"),
         ("add dip on(straight shortest)", r"a dip needs a straight of 40 m or more; there are \d+ m"),
     ],
@@ -225,3 +225,76 @@ def test_a_crest_lies_on_the_straight_that_is_named(place: str) -> None:
 def test_a_hill_that_cannot_be_added_is_refused(plan: str, complaint: str) -> None:
     with pytest.raises(EditError, match=complaint):
         edited(WINDING, plan)
+
+
+@pytest.mark.parametrize(
+    ("plan", "complaint"),
+    [
+        ("turn: x-3", "gives no number of turns"),
+        ("turn 1,2: x2", "only all turns, or those of a side or a kind, can be counted"),
+        ("turn longest: x1", "only all turns, or those of a side or a kind, can be counted"),
+        ("turn before(turn 3): x4", "only all turns, or those of a side or a kind, can be counted"),
+        ("turn: x4; turn 1: remove", "need requests of their own"),
+        ("turn left: x3; turn: x4", "need requests of their own"),
+        ("turn 3: at_start; add turn right after(turn 1)", "need requests of their own"),
+        ("turn 2: at_start; turn 2: remove", "need requests of their own"),
+        ("turn 3: remove; end len=40: slope down =5", "need requests of their own"),
+        ("add straight len=60 at_start; start len=40: slope up =5", "need requests of their own"),
+        ("add crest at_end; road half1: slope up =6", "need requests of their own"),
+        ("turn 1: between(turn 4, turn 2)", "names its places the other way round"),
+        ("turn 1: between(turn 2, turn 1)", "moves a turn next to itself"),
+        ("start len=0.4: climb =1", "too short for a slope; name 5 m or more"),
+        ("start len=0: slope up", "too short for a slope"),
+        ("end len=-50: slope up", "too short for a slope"),
+        ("end len=80 up: slope =5", "is a distance, which stands alone"),
+        ("road len=80: slope down =5", "write start len=80 or end len=80"),
+        ("road from(end len=80): slope up =4", "is a distance, which cannot name a place"),
+        ("road but(end len=80): slope up =4", "is a distance, which cannot name a place"),
+        ("turn after(start len=50): remove", "is a distance, which cannot name a place"),
+        ("road after(straight -1): climb =3", "there is no road at"),
+        ("add crest on(straight 1,2)", "names no single straight"),
+        ("add crest on(turn 2)", "names no single straight"),
+        ("add crest between(turn 1, turn 3)", "names 2 straights"),
+        ("add crest between(turn 3, turn 2)", "names no straights"),
+        ("add crest len=60 pct=8 at_middle", "write only where it is to be"),
+        ("start: climb +5", "does not say which part climbs"),
+    ],
+)
+def test_what_would_be_done_in_part_or_at_another_place_is_refused(plan: str, complaint: str) -> None:
+    with pytest.raises(EditError, match=complaint):
+        edited(LISTED if "straight -1" in plan or "turn 3)" in plan else WINDING, plan)
+
+
+@pytest.mark.parametrize(
+    ("plan", "order"),
+    [
+        ("turn 3: at_start; turn 1: at_end", (2, 1, 3, 4, 0)),
+        ("turn 1,2: swap; turn 3,4: swap", (1, 0, 3, 2, 4)),
+        ("turn 1,3: swap; turn 1: at_end", (2, 1, 3, 4, 0)),
+    ],
+)
+def test_several_moves_add_up(plan: str, order: tuple[int, ...]) -> None:
+    before, after = turns(WINDING), turns(edited(WINDING, plan).design)
+    assert [turn.degrees for turn in after] == pytest.approx([before[i].degrees for i in order], abs=6)
+
+
+def test_a_slope_keeps_the_side_of_its_stretch() -> None:
+    hill = edited(STRAIGHT, "road half1: slope up =7; road half2: slope down =3").design
+    assert grades(edited(hill, "end len=60: slope =5").design, 0.93, 1.0) == pytest.approx(-5, abs=0.2)
+
+
+def test_stations_are_those_of_the_road_before() -> None:
+    after = edited(LISTED, "straight 1: length +40; end len=30: slope down =5").design
+    assert grades(after, 1 - 8 / build(after).length, 1.0) == pytest.approx(-5, abs=0.7)
+
+
+def test_limits_of_a_stretch_concern_its_own_slopes() -> None:
+    ridge = edited(STRAIGHT, "road half1: slope up =7; road half2: slope down =3").design
+    assert edited(ridge, "end len=80: slope ..2").design != ridge
+    with pytest.raises(EditError, match="is so already"):
+        edited(ridge, "end len=80: slope ..6")
+
+
+def test_no_climb_at_all_is_a_climb() -> None:
+    rising = edited(STRAIGHT, "road: slope up =5").design
+    assert abs(grades(edited(rising, "road: climb x0").design, 0.1, 0.9)).max() < 0.2

@@ -350,6 +350,8 @@ def test_rules_leave_other_requests_to_the_network(words: str) -> None:
         "mirror it and let it climb 4 m",
         "let it climb for 20 m",
         "raise the start by 5 m",
+        "no falling any more, rising 5 m in height overall",
+        "instead of dropping it should be gaining 6 m of height",
     ],
 )
 def test_a_climb_that_the_words_do_not_give_is_doubted(words: str) -> None:
@@ -359,6 +361,8 @@ def test_a_climb_that_the_words_do_not_give_is_doubted(words: str) -> None:
 @pytest.mark.parametrize(
     ("words", "plan"),
     [
+        ("instead of dropping it should be gaining 6 m of height", "road: climb =6"),
+        ("la carretera debe subir 6 m en total, ahora baja", "road: climb =6"),
         ("Die Strecke soll vom Start bis zum Ziel 7 m an Höhe verlieren", "road: climb =-7"),
         ("la curva 3 debería perder 1,5 m de altura", "turn 3: climb =-1.5"),
         ("climb 8 m more", "road: climb +8"),

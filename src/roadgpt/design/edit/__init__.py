@@ -15,10 +15,11 @@ from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.hills import hill_of, is_hill
+from roadgpt.design.edit.combinations import is_hill
+from roadgpt.design.edit.hills import hill_of
 from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.request import Change, EditRequest
+from roadgpt.design.edit.request import OF_SLOPE, Change, EditRequest
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
@@ -72,7 +73,10 @@ def edit(
         request = read_request(words) if isinstance(words, str) else words
         changes = placed(request.changes, elements)
         if not request.unused:
-            allowed = {i + 1 for change in changes for element in change.elements for i in element.members}
+            hills = {hill_of(change, elements).name for change in changes if is_hill(change.change)}
+            named = [element for element in elements if element.name in hills]
+            named += [element for change in changes for element in change.elements]
+            allowed = {i + 1 for element in named for i in element.members}
     except EditError:  # a model may understand it all the same
         if not asks:
             raise
@@ -92,7 +96,8 @@ def edit(
         unused, sure = request.unused, request.confidence
     told = sentences(design, elements, found, road, draft)
     if not asks:
-        told = (*_announced(changes, elements), *_sloped(changes, design, road.design, geometry), *told)
+        made_so = [change for change in changes if change.change not in idle]
+        told = (*_announced(made_so, elements), *_sloped(changes, design, road.design, geometry), *told)
     told = (*told, *(f"'{change.words}' was so already" for change in idle))
     return Edited(road.design, told, unused, sure)
 
@@ -104,13 +109,18 @@ def _announced(changes: Sequence[PlacedChange], elements: RoadElements) -> Itera
             yield _reordering(change, elements)
         elif is_hill(change.change):
             hill = hill_of(change, elements)
-            yield f"a {change.change.kind} of {2 * hill.half:.0f} m is new, its middle at {hill.middle:.0f} m"
+            where = f", its middle at {hill.middle:.0f} m" if len(changes) == 1 else ""
+            yield f"a {change.change.kind} of {2 * hill.half:.0f} m is new{where}"
 
 
 def _sloped(
     changes: Sequence[PlacedChange], before: Design, after: Design, geometry: Geometry
 ) -> Iterator[str]:
-    """Yields a sentence on the mean grade of each stretch before and after its change."""
+    """Yields a sentence on the mean grade of each stretch before and after its change; none if other
+    changes may have moved it.
+    """
+    if any(change.change.what not in OF_SLOPE for change in changes):
+        return
     for start, end in dict.fromkeys(change.stretch for change in changes if change.stretch):
         grades = []
         for design in (before, after):

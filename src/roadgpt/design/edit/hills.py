@@ -3,23 +3,16 @@
 from typing import NamedTuple
 
 from roadgpt.design.edit.pointing import PlacedChange
-from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.request import HILLS
 from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.steps import EditCandidate
 from roadgpt.design.edit.stretches import RoadStretch
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
-HILLS = {"crest": 1, "dip": -1}
-"""The kinds of hill, with the sign of their first slope."""
 LEAST = 40.0  # m: the shortest straight for a crest or a dip
 LONGEST = 60.0  # m, from the beginning of a crest or a dip to its middle
 GRADES = (5.0, 3.5)  # percent of both slopes; the second value is tried if the first cannot be built
-
-
-def is_hill(change: Change) -> bool:
-    """Returns whether a change adds a crest or a dip."""
-    return change.what == "add" and change.kind in HILLS
 
 
 class Hill(NamedTuple):
@@ -48,12 +41,10 @@ def hill_of(placed: PlacedChange, elements: RoadElements) -> Hill:
     road as the straight allows if the change asks for that.
 
     Raises:
-        EditError: the straight is too short, or several are asked for at once.
+        EditError: the straight is too short, or the place is none or several.
     """
     change = placed.change
     kind = change.kind or ""
-    if change.count > 1:
-        raise EditError(f"{change.count} times '{kind}' at once is too much; say where each one is to be")
     where = _straight_at(placed, elements)
     if where is None or where.length < LEAST or any(segment.turn_degrees for segment in where.segments):
         found = f"; there are {where.length:.0f} m" if where else ""
@@ -84,6 +75,8 @@ def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | 
     place = placed.change.place
     how = place.how if place else "end"
     if how == "on":
+        if len(placed.marks) != 1 or placed.marks[0].is_turn:
+            raise EditError(f"'{placed.change.words}' names no single straight; name one")
         return placed.marks[0]
     gaps = [element for element in elements if element.kind == "gap" and element.segments]
     at = {element.name: index for index, element in enumerate(elements)}
@@ -94,6 +87,13 @@ def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | 
             found = [_around_middle(gaps, elements)] if gaps else []
         case "before":
             found = [gap for gap in gaps if at[gap.name] < at[placed.marks[0].name]][-1:]
+        case "between" if placed.stop is not None:
+            low, high = at[placed.marks[-1].name], at[placed.stop.name]
+            found = [gap for gap in gaps if low < at[gap.name] < high]
+            if len(found) != 1:
+                raise EditError(
+                    f"'{placed.change.words}' names {len(found) or 'no'} straights; name one of them"
+                )
         case _:
             found = [gap for gap in gaps if at[gap.name] > at[placed.marks[-1].name]][:1]
     return found[0] if found else None

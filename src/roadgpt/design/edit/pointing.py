@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.request import Change, Place, Target, Way, What
+from roadgpt.design.edit.combinations import refuse_clashes
+from roadgpt.design.edit.request import OF_SLOPE, Change, Place, Target, Way, What
 from roadgpt.design.edit.stretches import RoadStretch, stretch_of, within
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -14,7 +15,6 @@ from roadgpt.errors import EditError
 LONG, SHORT = 60.0, 30.0  # m: brief.words
 LEAST_PART = 10.0  # m of a straight that climb, fall or are level, to be called a part of it
 SINGLE = ("hairpin", "u_turn", "switchback")
-OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
 
@@ -41,8 +41,10 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         elements: the elements of the road before the edit.
 
     Raises:
-        EditError: no element matches, or several match although the request means one.
+        EditError: no element matches, several match although the request means one, or two changes cannot be
+            made at once.
     """
+    refuse_clashes(changes)
     out = []
     for change in changes:
         place = change.place
@@ -58,6 +60,8 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
             assert change.target is not None
             own = tuple(pointed(change.target, elements, change.what))
             is_sloped = change.what in OF_SLOPE
+            if is_sloped and not own:
+                raise EditError(f"there is no road at '{change.target.words}', so it has no slope")
             stretch = stretch_of(change.target, elements) if is_sloped else None
             out.append(PlacedChange(change, own, stretch=stretch))
         else:
@@ -69,9 +73,10 @@ def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, R
     """Returns the elements next to which something comes, and the second one if it comes between two."""
     if place is None or place.target is None or place.how in ("start", "end", "middle"):
         return (), None
+    marks = tuple(pointed(_named(place.target), elements, "length"))
     other = place.other if place.how == "between" else None
     stop = pointed(_named(other), elements, "length")[0] if other else None
-    return tuple(pointed(_named(place.target), elements, "length")), stop
+    return marks, stop
 
 
 def _counted(change: Change, elements: RoadElements) -> PlacedChange:
@@ -145,7 +150,7 @@ def straights(elements: RoadElements) -> list[RoadElement]:
 
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     found = list(elements)
-    if target.half and what in OF_SLOPE:
+    if target.half and what in OF_SLOPE and stretch_of(target, elements):
         found = _at_end(target, elements, what)
     elif target.half:
         found = _half(elements, target.half)

@@ -23,23 +23,42 @@ class Reverse:
 
 
 @dataclass(frozen=True, slots=True)
-class Reorder:
-    """Puts the turns of a road in another order; each keeps its angle, radius, side and grade.
+class Swap:
+    """Lets two elements change places; each keeps its angle, radius, side and grade."""
+
+    one: str
+    other: str
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements in their new order."""
+        by_name = {element.name: element for element in elements}
+        places = {self.one: by_name[self.other], self.other: by_name[self.one]}
+        return tuple(places.get(element.name, element) for element in elements)
+
+
+@dataclass(frozen=True, slots=True)
+class Move:
+    """Moves turns to another place among the turns; each keeps its angle, radius, side and grade.
 
     The straights between them stay where they are.
     """
 
     names: tuple[str, ...]
-    """The names of all turns in their new order."""
+    after: str
+    """The name of the turn behind which they come; empty for the beginning of the road."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements in their new order."""
-        by_name = {element.name: element for element in elements}
-        places = iter(self.names)
-        return tuple(by_name[next(places)] if each.name in self.names else each for each in elements)
+        turns = [element for element in elements if element.is_turn]
+        moved = [turn for turn in turns if turn.name in self.names]
+        others = [turn for turn in turns if turn.name not in self.names]
+        names = [turn.name for turn in others]
+        index = names.index(self.after) + 1 if self.after else 0
+        order = iter((*others[:index], *moved, *others[index:]))
+        return tuple(next(order) if element.is_turn else element for element in elements)
 
 
-def swap_of(chosen: Sequence[RoadElement], elements: RoadElements) -> Reorder:
+def swap_of(chosen: Sequence[RoadElement]) -> Swap:
     """Returns the step that lets two turns change places.
 
     Raises:
@@ -47,9 +66,7 @@ def swap_of(chosen: Sequence[RoadElement], elements: RoadElements) -> Reorder:
     """
     if len(chosen) != 2 or not all(element.is_turn for element in chosen):
         raise EditError("two turns can change places; name two, for example: swap turns 1 and 3")
-    one, other = (element.name for element in chosen)
-    other_of = {one: other, other: one}
-    return Reorder(tuple(other_of.get(name, name) for name in _turn_names(elements)))
+    return Swap(chosen[0].name, chosen[1].name)
 
 
 def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
@@ -73,12 +90,16 @@ def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate
         case "middle":
             index = len(others) // 2
         case how:
-            if any(mark.name in moved for mark in placed.marks):
+            marks = (*placed.marks, *([placed.stop] if placed.stop else []))
+            if any(mark.name in moved for mark in marks):
                 raise EditError(f"'{placed.change.words}' moves a turn next to itself; name another place")
             mark = at[placed.marks[0 if how == "before" else -1].name]
+            if placed.stop and at[placed.stop.name] <= mark:
+                raise EditError(f"'{placed.change.words}' names its places the other way round")
             index = sum(at[name] < mark + (how != "before") for name in others)
-    after = (*others[:index], *moved, *others[index:])
-    return () if after == before else ((Reorder(after),),)
+    if (*others[:index], *moved, *others[index:]) == before:
+        return ()
+    return ((Move(tuple(moved), others[index - 1] if index else ""),),)
 
 
 def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:

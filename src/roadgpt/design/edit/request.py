@@ -39,6 +39,9 @@ SUPERLATIVES: dict[str, tuple[Measure, int]] = {
 }
 """The superlatives, each with its measure and 1 for the largest value or -1 for the smallest."""
 HALVES = {"half1": 1, "half2": 2}
+OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
+HILLS = {"crest": 1, "dip": -1}
+"""The kinds of hill that can be added, with the sign of their first slope."""
 
 
 @dataclass(frozen=True, slots=True)

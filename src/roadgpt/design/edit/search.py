@@ -17,11 +17,13 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.check.measures import Measures
 from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
-from roadgpt.design.edit.hills import hill_candidates, is_hill
+from roadgpt.design.edit.combinations import is_hill
+from roadgpt.design.edit.hills import hill_candidates
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
 from roadgpt.design.edit.pointing import PlacedChange
 from roadgpt.design.edit.reordering import Reverse, move_of, started_at_end, swap_of
 from roadgpt.design.edit.request import Change, What
+from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.slopes import stretch_candidates
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
@@ -95,7 +97,7 @@ def _ways(
         case "reverse":
             return ((Reverse(),),)
         case "swap":
-            return ((swap_of(placed.elements, elements),),)
+            return ((swap_of(placed.elements),),)
         case "move":
             return move_of(placed, elements)
         case "count":
@@ -212,7 +214,8 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
         UsageError: The road would have no segment, or too many.
     """
     after = elements
-    for step in steps:
+    # stations are those of the road before the change, so steps that have any come first
+    for step in sorted(steps, key=lambda each: not (isinstance(each, SlopeOfAll) and each.stretch)):
         after = step.apply(after, world)
     after = with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
     after = numbered(after)

@@ -123,8 +123,8 @@ def road_slope_candidates(
     if change.way == "flat" or change.to == 0:
         slopes = [SlopeOfAll(names, least=0, most=0)]
     elif change.to is not None:
-        down = -1 if found.grade < 0 else 1
-        slopes = [SlopeOfAll(names, least=change.to, most=change.to, sign=sign or down)]
+        falls = sum(element.incline * element.length for element in elements) < 0
+        slopes = [SlopeOfAll(names, least=change.to, most=change.to, sign=sign or (-1 if falls else 1))]
     elif change.by is not None:
         slopes = [SlopeOfAll(names, more=(change.more or 1) * change.by)]
     elif change.times is not None:
@@ -164,7 +164,12 @@ def stretch_candidates(
     if change.what == "climb":
         ways = climb_candidates(change, parts, world)
     elif change.bound:
-        ways = ((bounded_slopes(change, parts),),)
+        beyond = any(
+            (abs(segment.incline) - (change.to or 0.0)) * change.bound < 0
+            for element in parts
+            for segment in element.segments
+        )
+        ways = ((bounded_slopes(change, parts),),) if beyond else ()
     else:
         ways = road_slope_candidates(change, parts, found, world)
     return tuple((replace(step, stretch=stretch),) for (step,) in ways if isinstance(step, SlopeOfAll))
@@ -209,7 +214,8 @@ def climb_candidates(
     now = sum(rises)
     if change.bound or (change.to is None and change.by is None and change.times is None):
         raise EditError(f"'{change.words}' gives no climb in metres; write for example: road: climb =5")
-    aim = now + change.more * change.by if change.by is not None else now * (change.times or 1.0)
+    times = 1.0 if change.times is None else change.times
+    aim = now + change.more * change.by if change.by is not None else now * times
     aim = change.to if change.to is not None else aim
     grade = 100 * aim / length
     limit = 100 * world.limits.max_grade - 0.2

@@ -9,6 +9,7 @@ from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
 
+LEAST_LENGTH = 5.0  # m of a stretch
 LEAST_PIECE = 1.0  # m of a straight segment: a shorter piece is not cut off
 MOST_MOVED = 0.3  # share of a stretch by which its end may be moved to the end of a turn
 MILLIMETRE = 1000.0
@@ -24,24 +25,26 @@ class RoadStretch(NamedTuple):
 def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
     """Returns the stretch that a target names by a distance or as a half; None if it names none.
 
-    A stretch that would end within a turn ends at the nearer end of the turn's segment there.
+    A stretch that would end within a turn ends at the nearer end of the turn.
 
     Raises:
-        EditError: the road is shorter, or the end would be moved too far.
+        EditError: the road is shorter, the stretch is shorter than 5 m, or its end would be moved too far.
     """
     whole = sum(element.length for element in elements)
-    if target.noun == "road" and target.half:
+    is_part = any((target.place, target.but, target.way))
+    if target.noun == "road" and target.half and not is_part:
         length, is_last = whole / 2, target.half == 2
     elif target.noun in ("start", "end") and target.length is not None:
         length, is_last = target.length, target.noun == "end"
     else:
         return None
+    if length < LEAST_LENGTH:
+        raise EditError(f"'{target.words}' is too short for a slope; name {LEAST_LENGTH:g} m or more")
     if length > whole + LEAST_PIECE:
         raise EditError(f"the road is only {whole:.0f} m long, not {length:g} m; name a shorter part of it")
     station = whole - length if is_last else length
-    for segment, at in _with_stations(elements):
-        end = at + segment.distance
-        if segment.turn_degrees and at < station < end:
+    for at, end in _bends(elements):
+        if at < station < end:
             ends = min(at, end, key=lambda each: abs(each - station))
             if abs(ends - station) > MOST_MOVED * length:
                 raise EditError(
@@ -51,6 +54,19 @@ def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch |
             station = ends
             break
     return RoadStretch(station, whole) if is_last else RoadStretch(0.0, station)
+
+
+def _bends(elements: Sequence[RoadElement]) -> Iterator[tuple[float, float]]:
+    """Yields the stations at which each turn, and each bend too slight for a turn, begins and ends."""
+    at = 0.0
+    for element in elements:
+        if element.is_turn:
+            yield at, at + element.length
+        else:
+            for segment, start in _with_stations([element], at):
+                if segment.turn_degrees:
+                    yield start, start + segment.distance
+        at += element.length
 
 
 def within(elements: RoadElements, stretch: RoadStretch) -> RoadElements:

@@ -21,7 +21,7 @@ from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
-from roadgpt.brief.readers.model.height_words import height_wish, is_bounded_climb, with_sign
+from roadgpt.brief.readers.model.height_words import height_wish, is_doubtful_climb, with_sign
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
@@ -154,7 +154,7 @@ class ModelReader:
         lost = _lost_numbers(draft, text)
         unused = self.roads.unused(text, draft.tokens)
         sure = confidence(self._settings["changes"], found_in, unused)
-        sure = min(sure, DOUBT) if is_denial(words) or is_bounded_climb(draft.line, text) else sure
+        sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
         return ChangeReading(with_sign(draft.line, text), sure, tuple(dict.fromkeys([*lost, *unused])))
 
     def uncalibrated(self, words: str, refuse_from: float) -> UncalibratedReading | None:

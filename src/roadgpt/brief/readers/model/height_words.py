@@ -7,7 +7,7 @@ from roadgpt.brief.readers.model.slots import SlottedText
 
 UP = (
     r"climbs?|climbing|rises?|ascends?|goes? up|(?:an)?steigen|(?:an)?steigt|montent|monte|monter|grimpe\w*|"
-    r"suban?|salga|salgano|salire"
+    r"sub(?:an?|en?|ir|iendo)|sal(?:e|ga|gano|ire)"
 )
 DOWN = r"descends?|goes? down|abfallen|abfallt|descende|descendent|descendre|bajan?|bajen?|scenda|scendere"
 RAISED = (
@@ -52,7 +52,15 @@ LOST = re.compile(
     r"\b(?:los(?:e|es|ing)|falls?|falling|drops?|dropping|descends?|descending|verlier\w*|(?:ab)?fall\w*|abfallt|"
     r"perd\w*|pierd\w*|descend\w*|baj\w*|scend\w*)\b"
 )
-GAINED = re.compile(rf"\b(?:{UP}|{RAISED}|gains?|gagn\w*|gan[ae]\w*|guadagn\w*|gewinn\w*)\b")
+GAINED = re.compile(
+    rf"\b(?:{UP}|{RAISED}|ris(?:e|en|ing)|gain\w*|ascend\w*|gagn\w*|gan[aeo]\w*|guadagn\w*|gewinn\w*|"
+    r"sub[aei]\w*|sal[eigo]\w*|mont\w*|grimp\w*|steig\w*|ansteig\w*)\b"
+)
+TAKEN_BACK = re.compile(
+    r"\b(?:no|not|never|nicht|kein\w*|pas|plus|non|sin|instead|rather|statt|anstatt|lieu|vez|invece|now|"
+    r"jetzt|bisher|maintenant|ahora|adesso|ora)\b"
+)
+"""Words with which a fall may be what is not wanted, or what the road does so far."""
 BOUNDED = re.compile(
     r"\b(?:(?:no|not|nicht) (?:more|less|mehr|weniger)|at (?:most|least)|hochstens|mindestens|"
     r"au (?:plus|moins)|como (?:mucho|maximo|minimo)|al (?:menos|massimo|minimo)|almeno|up to)\b"
@@ -90,10 +98,13 @@ def height_wish(text: SlottedText) -> HeightWish | None:
 def with_sign(line: str, text: SlottedText) -> str:
     """Returns a plan of changes; its climb is negative if the words only tell of height that is lost."""
     said = " ".join(word.text for word in text.words if word.written)
-    is_fall = LOST.search(said) is not None and GAINED.search(said) is None
+    is_fall = LOST.search(said) is not None and not (GAINED.search(said) or TAKEN_BACK.search(said))
     return POSITIVE.sub("climb =-", line) if is_fall else line
 
 
-def is_bounded_climb(line: str, text: SlottedText) -> bool:
-    """Returns whether a plan gives a climb for which the words only give a bound."""
-    return ": climb" in line and BOUNDED.search(" ".join(word.text for word in text.words)) is not None
+def is_doubtful_climb(line: str, text: SlottedText) -> bool:
+    """Returns whether a plan has a climb of which the words only give a bound, or tell of a fall as well."""
+    said = " ".join(word.text for word in text.words)
+    is_fall = LOST.search(said) is not None
+    is_mixed = is_fall and bool(GAINED.search(said) or TAKEN_BACK.search(said))
+    return ": climb" in line and (is_mixed or BOUNDED.search(said) is not None)
