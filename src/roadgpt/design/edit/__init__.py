@@ -15,7 +15,7 @@ from roadgpt import plugins
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
 from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.combinations import is_hill
+from roadgpt.design.edit.combinations import REORDERS, is_hill
 from roadgpt.design.edit.hills import hill_of
 from roadgpt.design.edit.pointing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
@@ -26,7 +26,6 @@ from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, World, build
 
 MOST_CHANGES = 12
-REORDERS = ("reverse", "swap", "move")
 REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
@@ -105,7 +104,7 @@ def edit(
 def _announced(changes: Sequence[PlacedChange], elements: RoadElements) -> Iterator[str]:
     """Yields a sentence on each change that its measurements alone would not tell."""
     for change in changes:
-        if change.change.what in REORDERS:
+        if change.change.what in (*REORDERS, "reverse"):
             yield _reordering(change, elements)
         elif is_hill(change.change):
             hill = hill_of(change, elements)

@@ -15,6 +15,8 @@ from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.slopes import (
     bounded_slopes,
     climb_candidates,
+    is_outside,
+    is_too_steep_or_flat,
     only_parts,
     part_slope_candidates,
     road_slope_candidates,
@@ -69,7 +71,7 @@ def change_candidates(
     """
     is_road = change.target is not None and change.target.noun == "road"
     if change.bound and change.what == "length" and is_road:
-        elements = elements if _is_outside(change, found.length) else []
+        elements = elements if is_outside(change, found.length) else []
     elif change.bound:
         elements = [element for element in elements if _is_beyond(change, element)]
         if change.what == "slope" and elements:
@@ -83,9 +85,9 @@ def change_candidates(
         case "length":
             return _together(_lengths(change, element, world) for element in elements)
         case "slope" if _is_of_parts(change, elements):
-            return part_slope_candidates(change, elements, found, world)
+            return part_slope_candidates(change, elements, world)
         case "slope" if is_road:
-            return road_slope_candidates(change, elements, found, world)
+            return road_slope_candidates(change, elements, world)
         case "slope":
             return _together(slope_steps(change, element, found, world) for element in elements)
         case "climb" if is_road:
@@ -112,18 +114,11 @@ def _is_of_parts(change: Change, elements: Sequence[RoadElement]) -> bool:
 def _is_beyond(change: Change, element: RoadElement) -> bool:
     """Returns whether an element violates the limit that a change sets."""
     if change.what == "slope":
-        values = [abs(segment.incline) for segment in element.segments]
-    elif element.seen is None:
-        values = []
-    else:
-        values = [getattr(element.seen, "degrees" if change.what == "angle" else change.what)]
-    return any(_is_outside(change, now) for now in values)
-
-
-def _is_outside(change: Change, now: float) -> bool:
-    """Returns whether a value violates the limit that a change sets."""
-    assert change.to is not None
-    return (now - change.to) * change.bound < 0
+        return is_too_steep_or_flat(change, element)
+    seen = element.seen
+    return seen is not None and is_outside(
+        change, getattr(seen, "degrees" if change.what == "angle" else change.what)
+    )
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:

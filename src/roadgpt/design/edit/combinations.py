@@ -6,6 +6,7 @@ from roadgpt.design.edit.request import HILLS, OF_SLOPE, Change, Place, Target, 
 from roadgpt.errors import EditError
 
 REORDERS: tuple[What, ...] = ("swap", "move")
+"""Changes that put turns in another order."""
 NUMBERING: tuple[What, ...] = ("add", "remove", "count", "straighten")
 """Changes with which a road gets other turns and straights."""
 

@@ -87,9 +87,7 @@ def _counted(change: Change, elements: RoadElements) -> PlacedChange:
     target = change.target
     assert target is not None
     assert change.to is not None
-    if target.noun != "turn":
-        raise EditError(f"'{change.words}' counts no turns; write for example: turn: x4")
-    there, wanted = _among(replace(target, every=True), turns(elements), elements), int(change.to)
+    there, wanted = _among(target, turns(elements), elements), int(change.to)
     if change.bound <= 0 and len(there) > wanted:
         return PlacedChange(replace(change, what="remove"), tuple(there[wanted:]))
     if change.bound >= 0 and len(there) < wanted:

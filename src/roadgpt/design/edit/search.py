@@ -111,7 +111,7 @@ def _ways(
         case "alternate":
             return alternating_candidates(placed.elements, world)
         case _ if placed.stretch is not None:
-            return stretch_candidates(placed.change, elements, placed.stretch, found, world)
+            return stretch_candidates(placed.change, elements, placed.stretch, world)
         case _:
             return change_candidates(placed.change, placed.elements, found, world)
 

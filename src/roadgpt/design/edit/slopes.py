@@ -40,6 +40,17 @@ AIMS: dict[Steepness | None, SlopeAim] = {
 """Aims of "uphill", "gently uphill" and "steeply uphill", inside the meanings in ``brief.words``."""
 
 
+def is_outside(change: Change, now: float) -> bool:
+    """Returns whether a value violates the limit that a change sets."""
+    assert change.to is not None
+    return (now - change.to) * change.bound < 0
+
+
+def is_too_steep_or_flat(change: Change, element: RoadElement) -> bool:
+    """Returns whether a segment of an element violates the limit that a change sets for slopes."""
+    return any(is_outside(change, abs(segment.incline)) for segment in element.segments)
+
+
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
     """Returns the edit step that makes every element at most, or at least, as steep as the change asks."""
     names, bound = frozenset(element.name for element in elements), change.to or 0.0
@@ -108,7 +119,7 @@ def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, fl
 
 
 def road_slope_candidates(
-    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], world: World
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates that change the grades of many elements; none if the grades are as requested.
 
@@ -146,7 +157,7 @@ def road_slope_candidates(
 
 
 def stretch_candidates(
-    change: Change, elements: RoadElements, stretch: RoadStretch, found: Measures, world: World
+    change: Change, elements: RoadElements, stretch: RoadStretch, world: World
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates that change the grades or the climb of one stretch of the road.
 
@@ -154,7 +165,6 @@ def stretch_candidates(
         change: the change of a slope or a climb.
         elements: all elements of the road.
         stretch: the stretch of the road that changes.
-        found: the measurements of the whole road.
         world: the limits that the rules check.
 
     Raises:
@@ -164,19 +174,15 @@ def stretch_candidates(
     if change.what == "climb":
         ways = climb_candidates(change, parts, world)
     elif change.bound:
-        beyond = any(
-            (abs(segment.incline) - (change.to or 0.0)) * change.bound < 0
-            for element in parts
-            for segment in element.segments
-        )
-        ways = ((bounded_slopes(change, parts),),) if beyond else ()
+        is_beyond = any(is_too_steep_or_flat(change, element) for element in parts)
+        ways = ((bounded_slopes(change, parts),),) if is_beyond else ()
     else:
-        ways = road_slope_candidates(change, parts, found, world)
+        ways = road_slope_candidates(change, parts, world)
     return tuple((replace(step, stretch=stretch),) for (step,) in ways if isinstance(step, SlopeOfAll))
 
 
 def part_slope_candidates(
-    change: Change, elements: Sequence[RoadElement], found: Measures, world: World
+    change: Change, elements: Sequence[RoadElement], world: World
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates that change only the grades of those segments that go as the change says.
 
@@ -185,7 +191,7 @@ def part_slope_candidates(
     Raises:
         EditError: the grade is steeper than the rules allow.
     """
-    steps = (step for (step,) in road_slope_candidates(change, elements, found, world))
+    steps = (step for (step,) in road_slope_candidates(change, elements, world))
     return tuple((only_parts(change, step),) for step in steps if isinstance(step, SlopeOfAll))
 
 

@@ -3,7 +3,9 @@
 import re
 from typing import NamedTuple
 
+from roadgpt.brief.readers.model.bounds import NOT, bound_before, bound_behind
 from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.word_set import word_set
 
 UP = (
     r"climbs?|climbing|rises?|ascends?|goes? up|(?:an)?steigen|(?:an)?steigt|montent|monte|monter|grimpe\w*|"
@@ -15,10 +17,9 @@ RAISED = (
     r"alza\w*|rialza\w*|piu in alto"
 )
 LOWERED = r"lower(?:ed)?|tiefer|absenken|abgesenkt|abaiss\w*|plus bas\w*|mas baj[ao]|abbassa\w*|piu in basso"
-BY_HEIGHT = (
-    ("=", r"gains?|gagn\w*|gan[ae]\w*|guadagn\w*|gewinn\w*"),
-    ("=-", r"falls?|drops?|loses?|perd\w*|pierd\w*|verlier\w*"),
-)
+GAINS = r"gains?|gagn\w*|gan[ae]\w*|guadagn\w*|gewinn\w*"
+FALLS = r"falls?|drops?|loses?|losing|perd\w*|pierd\w*|verlier\w*"
+BY_HEIGHT = (("=", GAINS), ("=-", FALLS))
 """Verbs that may mean a length as well; they count if the request names height."""
 HEIGHT = re.compile(
     r"\b(?:height|altitude|elevation|hohe\w*|hauteur|denivele\w*|altura|desnivel|quota|dislivello)\b"
@@ -47,25 +48,15 @@ NAMED = re.compile(
 )
 """Words for parts of a road."""
 
-
-LOST = re.compile(
-    r"\b(?:los(?:e|es|ing)|falls?|falling|drops?|dropping|descends?|descending|verlier\w*|(?:ab)?fall\w*|abfallt|"
-    r"perd\w*|pierd\w*|descend\w*|baj\w*|scend\w*)\b"
-)
+LOST = re.compile(rf"\b(?:{DOWN}|{FALLS}|falling|dropping|descend\w*|(?:ab)?fall\w*|baj\w*|scend\w*)\b")
 GAINED = re.compile(
-    rf"\b(?:{UP}|{RAISED}|ris(?:e|en|ing)|gain\w*|ascend\w*|gagn\w*|gan[aeo]\w*|guadagn\w*|gewinn\w*|"
-    r"sub[aei]\w*|sal[eigo]\w*|mont\w*|grimp\w*|steig\w*|ansteig\w*)\b"
+    rf"\b(?:{UP}|{RAISED}|{GAINS}|rising|risen|gain\w*|ascend\w*|sub[aei]\w*|sal[eigo]\w*|mont\w*|"
+    r"(?:an)?steig\w*)\b"
 )
-TAKEN_BACK = re.compile(
-    r"\b(?:no|not|never|nicht|kein\w*|pas|plus|non|sin|instead|rather|statt|anstatt|lieu|vez|invece|now|"
-    r"jetzt|bisher|maintenant|ahora|adesso|ora)\b"
+OTHERWISE = NOT | word_set(
+    "instead rather now statt anstatt jetzt bisher lieu plus maintenant vez ahora invece adesso ora"
 )
 """Words with which a fall may be what is not wanted, or what the road does so far."""
-BOUNDED = re.compile(
-    r"\b(?:(?:no|not|nicht) (?:more|less|mehr|weniger)|at (?:most|least)|hochstens|mindestens|"
-    r"au (?:plus|moins)|como (?:mucho|maximo|minimo)|al (?:menos|massimo|minimo)|almeno|up to)\b"
-)
-"""Words for a bound, which a climb in metres cannot have."""
 POSITIVE = re.compile(r"climb =(?=\d)")
 
 
@@ -97,14 +88,20 @@ def height_wish(text: SlottedText) -> HeightWish | None:
 
 def with_sign(line: str, text: SlottedText) -> str:
     """Returns a plan of changes; its climb is negative if the words only tell of height that is lost."""
-    said = " ".join(word.text for word in text.words if word.written)
-    is_fall = LOST.search(said) is not None and not (GAINED.search(said) or TAKEN_BACK.search(said))
-    return POSITIVE.sub("climb =-", line) if is_fall else line
+    return POSITIVE.sub("climb =-", line) if _falls(text) is True else line
 
 
 def is_doubtful_climb(line: str, text: SlottedText) -> bool:
     """Returns whether a plan has a climb of which the words only give a bound, or tell of a fall as well."""
+    words = [word.text for word in text.words]
+    numbers = [place for place, word in enumerate(words) if word.startswith("[unused")]
+    is_bounded = any(bound_before(words, place) or bound_behind(words, place) for place in numbers)
+    return ": climb" in line and (is_bounded or _falls(text) is None)
+
+
+def _falls(text: SlottedText) -> bool | None:
+    """Returns whether the words tell of lost height; None if they also speak of a gain or a denial."""
     said = " ".join(word.text for word in text.words)
-    is_fall = LOST.search(said) is not None
-    is_mixed = is_fall and bool(GAINED.search(said) or TAKEN_BACK.search(said))
-    return ": climb" in line and (is_mixed or BOUNDED.search(said) is not None)
+    if not LOST.search(said):
+        return False
+    return None if GAINED.search(said) or OTHERWISE.intersection(said.split()) else True

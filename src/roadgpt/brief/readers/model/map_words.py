@@ -45,7 +45,7 @@ ALL_KINDS = re.compile(
     r"intersecciones|intersezioni)\b"
 )
 """A number before a word for junctions of any kind."""
-CORRECTED = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
+TAKEN_BACK = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
 """Words with which a number may be taken back."""
 SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)stra(?:ss|ß)en?|rues? (?:laterale|secondaire|transversale)s?|"
@@ -117,7 +117,7 @@ def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:
     number = _number(ALL_KINDS.findall(said))
     kinds = [each.kind for each in asked.junctions]
     counts = [each.count for each in asked.junctions]
-    if not number or not kinds or "junction" in kinds or CORRECTED.search(said):
+    if not number or not kinds or "junction" in kinds or TAKEN_BACK.search(said):
         return {}
     if not all(count.exact for count in counts):
         return {}
