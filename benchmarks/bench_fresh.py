@@ -143,7 +143,7 @@ def main() -> None:
     parser.add_argument("--reader", default="model")
     parser.add_argument("--json", type=Path, help="where the verdict on each row is kept, by its id")
     parser.add_argument(
-        "--retired", choices=("first", "second"), help="an older set, whose misses have been read"
+        "--retired", choices=("first", "second", "third"), help="an older set, whose misses have been read"
     )
     given = parser.parse_args()
     fresh = FRESH / "retired" / given.retired if given.retired else FRESH

@@ -74,8 +74,8 @@ def kill(process: "subprocess.Popen[bytes]") -> None:
 
 def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
     """Asks a process that has called ``ends_its_own`` to end itself and its child processes; does not wait
-    for them. ``kill`` would not reach these child processes (except on Windows), because they run in
-    separate sessions.
+    for them. ``kill`` would not reach these child processes, because they run in separate sessions. On
+    Windows, where ``kill`` reaches them, nothing is done.
     """
     if os.name == "posix" and process.poll() is None:
         with suppress(OSError):
@@ -83,7 +83,7 @@ def ask_to_end(process: "subprocess.Popen[bytes]") -> None:
 
 
 def ends_its_own() -> None:
-    """Makes SIGTERM end this process together with every process that it has started."""
+    """Makes SIGTERM end this process and every process that it has started with this module."""
     signal.signal(signal.SIGTERM, _end_all)
 
 
@@ -104,7 +104,7 @@ def end(process: "subprocess.Popen[bytes]", patience: float = FAREWELL) -> int |
 
 
 def kill_all() -> None:
-    """Ends all processes that were started with this module and have not been waited for."""
+    """Kills all processes that were started with this module, except those that were passed to ``end``."""
     for process in [*_running]:
         kill(process)
 

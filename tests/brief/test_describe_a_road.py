@@ -29,6 +29,11 @@ MEANT = {
     ),
     "two bends of 45 and 90 degrees": "turn 45; turn 90",
     "three turns; 270 degrees of turning in all": "turn x3 | turning=270",
+    "two right-hand curves, the first of 30 m radius, the second of twice that": (
+        "turn right r=30; turn right r=60"
+    ),
+    "four identical left turns, 180 degrees in all": "turn x4 left | alike turning=180",
+    "six turns, no bend under 60 degrees": "turn x6 | deg=60..",
     "a straight flat road": "straight | flat",
     "a long straight followed by a sharp right turn": "straight long; turn right sharp",
     "the first 100 m are flat, then two turns": "straight flat 100; turn x2",

@@ -17,6 +17,21 @@ SAID = [
     ("60 m tout droit, un virage, puis une ligne droite deux fois plus longue", [60, 120], "metres"),
     ("una recta de 50 m, una curva y una recta el doble de larga", [50, 100], "metres"),
     ("un rettilineo di 40 m, una curva e un rettilineo lungo il doppio", [40, 80], "metres"),
+    ("two rights, the first of 30 m radius, the second of twice that", [30, 60], "metres"),
+    ("left, right; radius 40 m everywhere but at the last, which gets half of that", [40, 20], "metres"),
+    ("two lefts, the first with a radius of 60 m, the second with half the radius", [60, 30], "metres"),
+    ("left on 35 m, right on double that radius", [35, 70], "metres"),
+    ("deux courbes, la première de 30 m de rayon, la seconde de rayon double", [30, 60], "metres"),
+    ("une courbe de 30 m de rayon, puis une de rayon deux fois plus grand", [30, 60], "metres"),
+    ("eine Kurve mit 30 m Radius, dann eine mit dem doppelten Radius", [30, 60], "metres"),
+    ("una curva con raggio 30 m, poi una con il doppio del raggio", [30, 60], "metres"),
+    ("una curva de radio 40 m y otra con la mitad de radio", [40, 20], "metres"),
+    ("a left of 45 degrees, then a right of twice that", [45, 90], "degrees"),
+    ("a turn of 40 degrees, another of twice that, another of half that", [40, 80, 40], "degrees"),
+    ("a bend of radius 20 m, then one with three times that radius", [20, 60], "metres"),
+    ("Kurve links Radius 40 m, Kurve rechts halber Radius", [40, 20], "metres"),
+    ("una curva de radio 30 m y otra del doble de radio", [30, 60], "metres"),
+    ("uphill at 12 %? No, too much, half of it", [12, 6], "percent"),
 ]
 LEFT_ALONE = [
     "six turns of 30 degrees, twice as many lefts as rights",  # a count
@@ -26,6 +41,9 @@ LEFT_ALONE = [
     "a left, then a straight twice as long as the one of 35 m",  # said later
     "a left with a radius of R25, then a right half as far",  # nothing to double but a radius
     "a hill twice as steep",
+    "a left with a radius of 30 m, one with a radius of 50 m, then a right with half the radius",
+    "a 40 m straight, 60 m uphill, then half of that",
+    "the whole road is 300 m, the first part half of that",
     "a straight of 60 m, a bend of 90 degrees, then a straight half the length of the road",
     "a 100 m straight, a right with a radius of 30 m, then a left twice as large",
     "a road of 150 m with two straights, one twice as long as the other",

@@ -136,3 +136,17 @@ def test_gentle_for_every_turn_leaves_hairpins_their_angle() -> None:
     seen = of(Clause(kind="hairpin"), sharpness="sharp")
     assert seen.each_turn.degrees == Range(30)
     assert seen.each_turn.radius == Range(0, 30)
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "least"),
+    [
+        (Clause(kind="turn", side="left"), Clause(kind="turn", side="right"), 2),
+        (Clause(kind="turn", sharpness="gentle"), Clause(kind="turn", sharpness="sharp"), 2),
+        (Clause(kind="turn", slope="up"), Clause(kind="turn", slope="down"), 2),
+        (Clause(kind="turn", side="left"), Clause(kind="turn", sharpness="sharp"), 1),
+        (Clause(kind="turn", side="left"), Clause(kind="straight"), 1),
+    ],
+)
+def test_two_ends_that_no_turn_can_be_at_once_are_two_turns(first: Clause, last: Clause, least: int) -> None:
+    assert of(starts=first, ends=last).turns.lo == least

@@ -4,7 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Amount, Brief, Clause, Kind, Sharpness, Side, Slope, at_least, exactly
+from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.errors import BriefError
 
@@ -55,6 +57,20 @@ def test_a_brief_comes_back_from_its_line(brief: Brief) -> None:
     line = plan(brief)
     assert "\n" not in line
     assert read_plan(line) == brief
+
+
+@given(briefs)
+def test_any_brief_has_a_normal_form_that_is_its_own(brief: Brief) -> None:
+    form = normal(brief)
+    assert normal(form) == form
+
+
+def test_a_count_of_none_beside_turns_has_a_normal_form_and_is_refused_by_name() -> None:
+    brief = read_plan("turn x0; hairpin")
+    assert total(brief.clauses).lo >= 1
+    assert normal(brief).clauses[0].count == exactly(0)
+    with pytest.raises(BriefError, match="a clause cannot ask for 0 turns"):
+        check(brief)
 
 
 @pytest.mark.parametrize(

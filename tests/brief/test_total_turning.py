@@ -30,6 +30,7 @@ from roadgpt.errors import BriefError
         ("Drei Kurven, insgesamt 270 Grad", exactly(270), "Drei Kurven"),
         ("trois virages, 200 degrés au total", exactly(200), "trois virages"),
         ("turning 270 degrees in all", exactly(270), ""),
+        ("3 turns total angle around 270 for all of them together", exactly(270), "3 turns"),
         ("five turns, accumulated heading change of 300 degrees or more", at_least(300), "five turns"),
     ],
 )

@@ -74,6 +74,12 @@ def test_a_description_that_begins_with_a_dash_is_told_where_it_belongs(words: l
     assert f"after two dashes: roadgpt run -- {said}" in result.stderr.replace("\n", " ")
 
 
+def test_a_change_that_begins_with_a_dash_is_told_where_it_belongs() -> None:
+    result = invoke("edit", "runs/0001", "-3 turns")
+    assert result.exit_code == 2
+    assert 'after two dashes: roadgpt edit RUN -- "-3 turns"' in result.stderr.replace("\n", " ")
+
+
 def test_behind_two_dashes_it_is_a_description(tmp_path) -> None:
     words = [
         "-n",

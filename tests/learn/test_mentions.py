@@ -41,7 +41,7 @@ def test_what_is_said_is_named_and_what_is_denied_is_not() -> None:
         else:
             named += 1
             brief = read_plan(line)
-            assert brief.model_copy(update={"beside": ()}) == read_plan("turn x2 | up")
+            assert brief.model_copy(update={"beside": (), "alike": False}) == read_plan("turn x2 | up")
             assert plan(brief) == line
     assert named > 900
     assert denied > 300

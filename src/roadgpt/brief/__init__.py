@@ -143,8 +143,8 @@ def read(
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
             this map, and which size of map would hold the road.
-        NotBuiltError: the reader named a roundabout or the like beside the road instead of on it; the message
-            proposes a plan of the road without it.
+        NotBuiltError: the reader put a roundabout or the like into ``Brief.beside``, so that its place on the
+            route is not known; the message proposes a plan of the road without it.
         BriefError: the description does not ask for a road that can be built; the message says what to
             change.
         PartError: no reader of that name is installed.

@@ -1,6 +1,7 @@
-"""Finds contradictions in the requirements for the arms of a junction: one-way roads, ways on, and angles.
+"""Finds contradictions in the requirements for the arms of a junction.
 
-The arms are the roads that meet at the junction.
+The arms are the roads that meet at the junction. The requirements say which arms are one-way, on which sides
+roads lead on, and which angles are between the arms.
 """
 
 from itertools import product

@@ -17,7 +17,7 @@ NOT_BUILT = {
     "merge": "a merge",
     "exit": "an exit or a slip road",
     "lane_change": "a lane change",
-    "loop": "a road that crosses itself",
+    "loop": "a closed loop, or a road that crosses itself",
     # structures and furniture
     "bridge": "a bridge",
     "tunnel": "a tunnel",
@@ -71,7 +71,7 @@ NEEDS_NUMBERS = {
     "size": "a long or a short road is not a number; ask for its length, such as 'a 300 m road'",
     "place": "what kind of road it is, such as a country lane, changes nothing by itself; say how it bends",
     "compared": "how one part compares with another is not built yet; give each its own number",
-    "alike": "equal or evenly spaced parts are not built yet; give each its own number",
+    "alike": "only parts that are alike in everything are built by words; give each its own number",
 }
 """Wishes that RoadGPT understands but cannot build without a number, by name, with the remark for each."""
 OPTIONS = {
@@ -86,7 +86,7 @@ BESIDE = frozenset({*NOT_BUILT, *SAID_OTHERWISE, *SURFACES})
 
 
 def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str]:
-    """Yields what the user should know about these things, as sentences without full stops.
+    """Yields what the user should know about the named things, as sentences without full stops.
 
     Args:
         names: names from ``Brief.beside``.
@@ -107,10 +107,10 @@ def remarks(names: Sequence[str], friction: float | None = None) -> Iterator[str
 
 
 def networks_in(names: Iterable[str]) -> str:
-    """Returns a sentence on why the NETWORKS among the names are not built; empty if there are none.
+    """Returns a sentence that says why things in ``NETWORKS`` are not built; empty if none of them is named.
 
-    The sentence has no full stop: "it is not clear where a roundabout should be; say it in driving order,
-    such as 'a roundabout, second exit'".
+    The sentence has no full stop, for example: "it is not clear where a roundabout should be; say it in
+    driving order, such as 'a roundabout, second exit'".
     """
     named = [name for name in names if name in NETWORKS]
     if not named:

@@ -59,7 +59,7 @@ def check(
     """Checks, from the numbers of a Brief alone, whether some road could satisfy the Brief.
 
     For a route with junctions, each junction, each road and the sequence of lanes are checked. Whether a
-    route or a map of roads has room on the map is not checked.
+    route or a network of roads (``brief.map``) fits into the square map is not checked.
 
     Args:
         brief: the requirements; the Brief need not be in normal form.

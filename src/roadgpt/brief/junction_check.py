@@ -58,8 +58,6 @@ def check_junction(junction: JunctionClause) -> None:
     arms = overlap(possible, span(junction.arms))
     if arms is None or arms.lo > arms.hi:
         raise BriefError(f"a {name} has {possible} arms, not {junction.arms}; change one of them")
-    if junction.take is not None and junction.exit is not None:
-        raise BriefError(f"at a {name}, a direction and an exit number are given; leave one of them out")
     _check_take(junction, name)
     if not is_ring:
         for field in ("size", "radius", "outer", "exit", "lanes"):
@@ -67,6 +65,11 @@ def check_junction(junction: JunctionClause) -> None:
                 raise BriefError(f"a {name} has no {field}, only a roundabout has; leave it out")
     elif junction.exit is not None:
         _check_exit(junction.exit, arms)
+        if junction.take == "back" and not meets(junction.exit, arms):
+            raise BriefError(
+                f"the last exit of a roundabout leads back, not exit {junction.exit} of {arms}; leave one of "
+                "them out"
+            )
     if junction.size == "mini" and arms.lo > MOST_ARMS_OF_MINI:
         raise BriefError(
             f"a mini roundabout is too small for {junction.arms} arms, it has room for {MOST_ARMS_OF_MINI}; "

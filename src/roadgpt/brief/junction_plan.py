@@ -48,7 +48,7 @@ def junction_plan(junction: JunctionClause) -> str:
 
 
 def word_of(field: str) -> str:
-    """Returns the key of a field of a JunctionClause in plans, such as "len" for "length"."""
+    """Returns the key with which plans write a field of JunctionClause, such as "len" for "length"."""
     return SHORT.get(field, SIDES.get(field, field))
 
 

@@ -44,11 +44,15 @@ def junction_text(junction: JunctionClause) -> str:
     return f"{' '.join(place)} {_way_on(junction)}".strip()
 
 
+LEADS = {"straight": "straight on"}
+
+
 def _way_on(junction: JunctionClause) -> str:
     if junction.kind in LANE_KINDS:
         return f"to the {junction.take}" if junction.take else ""
     if junction.exit is not None:
-        return f"take {exit_text(junction.exit)}"
+        leads = f", which leads {LEADS.get(junction.take, junction.take)}" if junction.take else ""
+        return f"take {exit_text(junction.exit)}{leads.replace('_', ' ')}"
     otherwise = "go on somewhere" if junction.degrees is None else "turn"
     way = TAKES[junction.take] if junction.take is not None else otherwise
     return way if junction.degrees is None else f"{way} by {junction.degrees} degrees"

@@ -106,19 +106,24 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth")
 
 
 def side_of(turn: float) -> Way:
-    """Returns the side to which a change of direction (``turn``, in degrees, left positive) leads."""
+    """Returns the way that a change of direction leads: "left", "right", or "straight" if it is small.
+
+    ``turn`` is the change of direction in degrees, positive to the left.
+    """
     return "left" if turn > SIDE else "right" if turn < -SIDE else "straight"
 
 
 def bends_as(take: Take | None, turn: float) -> bool:
-    """Returns whether a change of direction in degrees is as slight or as sharp as a take such as
-    "slight_left" says. The side is not compared; the result is True for takes without "slight" or "sharp".
+    """Returns whether a change of direction in degrees is as slight or as sharp as ``take`` requires.
+
+    ``take`` is the way that a route takes at a junction, such as "slight_left". Its side is not compared.
+    Without "slight" or "sharp" in ``take``, the result is True.
     """
     return abs(turn) in BENDS.get((take or "").partition("_")[0], Range())
 
 
 def is_about(degrees: float, asked: Amount) -> bool:
-    """Returns whether an angle in degrees is as required; a single number has the tolerance ``ABOUT``."""
+    """Returns whether an angle in degrees is as required; the tolerance of a single number is ``ABOUT``."""
     wanted, slack = span(asked), ABOUT if asked.exact else 0.0
     return degrees in Range(wanted.lo - slack, wanted.hi + slack)
 

@@ -18,7 +18,7 @@ WIDE_IN_TAPER = 0.196  # of the taper: the share in which the lane is still wide
 
 
 def check_lane_sequence(brief: "Brief") -> None:
-    """Checks the numbers of lanes before and behind each place, and the lengths of the lanes beside ramps.
+    """Checks how the number of lanes changes along a route, and how long the additional lanes at ramps are.
 
     Raises:
         BriefError: The numbers of lanes contradict each other, or the acceleration or deceleration lane of a

@@ -50,8 +50,8 @@ def says_left_hand(words: str, by_place: bool = False) -> bool:
 def with_driving_side(brief: Brief, words: str) -> Brief:
     """Returns the Brief with traffic on the left if the Brief or the words ask for it; otherwise unchanged.
 
-    The phrase "left-hand traffic" does not ask for other cars: without another word for traffic, "traffic" is
-    removed from ``beside``.
+    The phrase "left-hand traffic" does not ask for other cars: if no other word of the description does,
+    "traffic" is removed from ``beside``, the things that are mentioned but not required.
     """
     if not (brief.left_hand or says_left_hand(words)):
         return brief

@@ -81,7 +81,7 @@ def read_map(line: str) -> MapClause:
 
     Raises:
         BriefError: A word or number is not part of the plan language, a field is given twice, or the plan
-            gives neither a grid nor junctions, or both.
+            gives neither a grid nor junctions, or gives both at once.
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
@@ -131,10 +131,10 @@ def read_ways(text: str) -> tuple[Way, ...]:
 
 
 def with_route(asked: MapClause | None, text: str) -> MapClause:
-    """Returns a map whose route goes where a text such as "left,straight" says.
+    """Returns the map ``asked`` with the route that a text such as "left,straight" describes.
 
     Raises:
-        BriefError: ``asked`` is None, or the text cannot be read.
+        BriefError: ``asked`` is None, because the description asks for no map, or the text cannot be read.
     """
     if asked is None:
         raise BriefError(

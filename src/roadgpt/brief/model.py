@@ -130,6 +130,9 @@ class Brief(Frozen):
     """The last feature, if the clauses do not already name it."""
     motorway: bool = False
     """True if the description asks for a motorway; see ``brief.motorway``."""
+    alike: bool = False
+    """True if turns of one kind must have the same angle and radius, and straights the same length, as far as
+    they have no numbers of their own. Straights between the turns count if the clauses name none."""
     hard: bool = False
     """True if the road should be difficult for a lane keeper: tight turns, fast approaches, crests."""
     beside: tuple[Beside, ...] = ()
@@ -186,8 +189,8 @@ class Brief(Frozen):
     def lanes_text(self) -> str | None:
         """The numbers of lanes along and against the drive, such as "2+1"; None if neither is required.
 
-        A direction without a requirement gets one lane, but a motorway, which is one carriageway, then gets
-        no lane against the drive.
+        A direction without a requirement gets one lane. On a motorway, the direction against the drive then
+        gets none, because a motorway is built as one carriageway.
         """
         if self.lanes is None and self.against is None:
             return None
@@ -206,9 +209,10 @@ class Brief(Frozen):
 
     @property
     def roads(self) -> "tuple[Brief, ...]":
-        """The requirements for the roads before, between and after the junctions, or for the only road.
+        """The requirements for each road before, between and after the junctions.
 
-        The only road needs at least one turn if it has neither clauses nor a number of turns.
+        Without junctions, there is one road; it needs at least one turn if neither clauses nor a number of
+        turns are given.
         """
         if self.stretches:
             return self.stretches

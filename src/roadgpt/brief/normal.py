@@ -4,9 +4,9 @@
   and are cleared.
 - A slope with a number loses its adverb: 'steeply up' at 12 percent becomes 'up' at 12 percent. A grade in
   percent without a direction is uphill.
-- A clause with several straights, crests or dips is split into one clause each, as are alternating turns
-  whose first direction is known. Consecutive clauses for equal turns, S-bends or chicanes are merged into one
-  clause with the total count.
+- A clause with several straights, crests or dips is split into clauses with a single one. So is a clause
+  with alternating turns if the direction of the first is known. Consecutive clauses for equal turns, S-bends
+  or chicanes are merged into one clause with the total count.
 - A serpentine 'of 4 turns or more' becomes a serpentine without a count. ``alternating`` is not set for kinds
   that always alternate.
 - A requirement for every turn (sharpness, degrees, radius) moves to the clauses if they name the turns.
@@ -17,12 +17,13 @@
 - If a Brief names no other feature, 'N turns' becomes a clause, and 'N or more turns' a requirement for the
   whole road.
 - A Brief that names no features and no number of turns requires at least one turn. A Brief that names only
-  straights forbids turns, unless it has the requirement '0 or more turns', which is removed from all other
-  Briefs.
+  straights forbids turns, unless it has the requirement '0 or more turns'. This requirement is removed from
+  all other Briefs.
 """
 
 from math import inf
 
+from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, Kind, Side, Slope, at_least, exactly, span
 from roadgpt.brief.words import KINDS
 
@@ -67,7 +68,7 @@ def _normal_stretch(brief: Brief) -> Brief:
 
 
 def _simpler(brief: Brief) -> Brief:
-    clauses = [one for clause in brief.clauses for one in _singles(_plain(clause))]
+    clauses = [one for clause in with_like_numbers(brief).clauses for one in _singles(_plain(clause))]
     whole = _plain_slope(_without_empty_bounds(brief))
     whole = whole.model_copy(update=UNSAID)
     whole, clauses = _ends(whole, clauses)
@@ -134,7 +135,8 @@ def turns_of(clause: Clause) -> tuple[float, float]:
     """Returns the smallest and largest number of turns in a clause; the largest may be ``inf``."""
     own = KINDS[clause.kind].turns
     least, most = (own.lo, own.hi) if own else (1.0, 1.0)
-    lo, hi = max(span(clause.count).lo, 1.0), span(clause.count).hi
+    # a count of 0 is refused later, by brief.feasible
+    lo, hi = max(span(clause.count).lo, 1.0), max(span(clause.count).hi, 1.0)
     if clause.kind in ("s_bend", "chicane"):
         return lo * least, hi * most
     return (least, most) if clause.count == exactly(1) else (lo, hi)

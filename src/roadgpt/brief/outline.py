@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from math import inf
 from typing import Any, Literal, TypeVar
 
+from roadgpt.brief.like_numbers import with_like_numbers
 from roadgpt.brief.model import Amount, Brief, Clause, Side, Slope, span
 from roadgpt.brief.motorway import has_low_grades, has_wide_turns
 from roadgpt.brief.normal import BUMPS, clauses_turn, turns_of
@@ -70,6 +71,21 @@ class Feature:
         return ": " + ", ".join(said) if said else ""
 
 
+def both(one: Feature, other: Feature) -> Feature:
+    """Returns a feature with the requirements of two features; ranges are intersected and may become
+    empty. The name is that of the first, unless it says nothing more than its kind.
+    """
+    return replace(
+        one,
+        name=other.name if one.name == one.kind else one.name,
+        side=one.side or other.side,
+        degrees=overlap(one.degrees, other.degrees),
+        radius=overlap(one.radius, other.radius),
+        length=overlap(one.length, other.length),
+        grade=overlap(one.grade, other.grade),
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Group:
     """``lo`` to ``hi`` equal features in a row; ``hi`` is None if there is no upper limit."""
@@ -120,6 +136,8 @@ class Outline:
     """The range of the radius at the tightest place of the road, in metres; ``outline`` never sets it."""
     starts: Feature | None = None
     ends: Feature | None = None
+    alike: bool = False
+    """Whether turns of one group, and straights, must be equal, see ``Brief.alike``."""
     hard: bool = False
 
     @property
@@ -145,7 +163,7 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
             40 m, as gentle turns do; a motorway gets wide turns only if the map can hold them.
     """
     roomy = map_size >= ROOMY
-    brief = _with_figures_first(brief)
+    brief = _with_figures_first(with_like_numbers(brief))
     groups = tuple(_merged(group for clause in brief.clauses for group in _groups(clause, roomy)))
     grade, grade_range = _whole_grade(brief)
     whole: dict[str, Any] = {name: _near(getattr(brief, name), row) for name, row in ROAD.items() if row.said}
@@ -172,9 +190,23 @@ def outline(brief: Brief, map_size: float = inf) -> Outline:
         **whole,
         starts=_groups(brief.starts, roomy)[0].feature if brief.starts else None,
         ends=_last(brief.ends, roomy) if brief.ends else None,
+        alike=brief.alike,
         hard=brief.hard,
     )
+    found = _with_both_ends(found)
     return _widened(found) if has_wide_turns(brief, map_size) else found
+
+
+def _with_both_ends(found: Outline) -> Outline:
+    """Returns the Outline with two turns or more if the first and the last turn cannot be the same one."""
+    first, last = found.starts, found.ends
+    if found.names_all_turns or first is None or last is None or "straight" in (first.kind, last.kind):
+        return found
+    shared = [overlap(getattr(first, name), getattr(last, name)) for name in ("degrees", "radius", "grade")]
+    sides = {first.side, last.side} - {None}
+    if len(sides) < 2 and all(span is None or span.lo <= span.hi for span in shared):
+        return found
+    return replace(found, turns=Range(max(found.turns.lo, 2), found.turns.hi))
 
 
 def _with_figures_first(brief: Brief) -> Brief:

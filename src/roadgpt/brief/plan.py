@@ -31,7 +31,7 @@ WORDS = {
 }
 BARE = dict.fromkeys(("straight", "crest", "dip"), "length")
 """The field that a number without a key sets, by kind of clause; for turns, the number is their angle."""
-FLAGS = ("alternating", "hard", "motorway", "divided", "left_hand")
+FLAGS = ("alternating", "alike", "hard", "motorway", "divided", "left_hand")
 ONE_WAY = "oneway"
 NO_LANE = exactly(0)
 CENTRE = "centre="
@@ -50,6 +50,8 @@ ROAD_KEYS = {
 }
 PLACES = ("starts", "ends")
 INNER = "(starts|ends|beside)"
+ALIKE = "alike"
+"""A flag of a road; plans of whole routes, and older plans, have it among the things beside the road."""
 ONE = Amount(lo=1, hi=1)
 Model = TypeVar("Model", Brief, Clause)
 
@@ -129,7 +131,11 @@ def read_plan(line: str) -> Brief:
     }
     for place, inner in re.findall(rf"{INNER}\(([^()]*)\)", wishes):
         names = tuple(name.strip() for name in inner.split(","))
-        _set(fields, place, names if place == "beside" else _read_clause(inner))
+        if place == "beside" and ALIKE in names:
+            _set(fields, ALIKE, True)
+            names = tuple(name for name in names if name != ALIKE)
+        if names:
+            _set(fields, place, names if place == "beside" else _read_clause(inner))
     for word in re.sub(rf"{INNER}\([^()]*\)", " ", wishes).split():
         _read_mod(fields, word, ROAD_KEYS)
     return _made(Brief, fields, line)
@@ -170,6 +176,8 @@ def _read_map(line: str) -> Brief:
 def _read_whole(text: str, names: tuple[str, ...]) -> dict[str, object]:
     """Returns the fields of a Brief that are asked of a whole route or map; only those with these names."""
     asked = read_plan(f"| {text}") if text.strip() else Brief()
+    if asked.alike:  # which of several roads are alike is not said
+        asked = asked.model_copy(update={"alike": False, "beside": (*asked.beside, ALIKE)})
     fields = {name: getattr(asked, name) for name in names}
     if asked != Brief.model_validate(fields):
         known = " and ".join("len" if name == "length" else name for name in names)
@@ -202,7 +210,7 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
     key, equals, value = word.partition("=")
     if equals and key in keys:
         _set(fields, keys[key], read_amount(value))
-    elif word in FLAGS:
+    elif word in FLAGS and (keys is ROAD_KEYS or word != ALIKE):
         _set(fields, word, True)
     elif word == ONE_WAY and keys is ROAD_KEYS:
         _set(fields, "against", NO_LANE)
@@ -222,7 +230,8 @@ def _read_mod(fields: dict[str, object], word: str, keys: dict[str, str]) -> Non
 
 def _set(fields: dict[str, object], name: str, value: object) -> None:
     if name in fields:
-        raise BriefError(f"a plan gives {name} twice: '{value}'; give it once")
+        said = f": '{value}'" if isinstance(value, Amount | str) else ""
+        raise BriefError(f"a plan gives {name} twice{said}; give it once")
     fields[name] = value
 
 

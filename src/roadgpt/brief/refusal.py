@@ -41,7 +41,7 @@ BEYOND = {
     "degrees": "turns of more than 240 degrees",
     "length": "more than 1500 m of road on a map of 250 m",
     "turns": "more than 12 turns on a map of 250 m",
-    "loop": "a road that crosses itself",
+    "loop": "a closed loop, or a road that crosses itself",
 }
 """Causes for which a road cannot be built, with their wording in the message."""
 

@@ -75,6 +75,7 @@ def _wishes(brief: Brief) -> list[str]:
         _turns(brief),
         *(_side_count(amount, side) for side, amount in (("left", brief.left), ("right", brief.right))),
         "all turns alternating" if brief.alternating else "",
+        _alike(brief),
         f"every turn {brief.sharpness}" if brief.sharpness else "",
         f"every turn of {brief.degrees} degrees" if brief.degrees else "",
         f"every turn radius {brief.radius} metres" if brief.radius else "",
@@ -109,6 +110,20 @@ def _turns(brief: Brief) -> str:
     if brief.turns == at_least(0):
         return "with or without turns"
     return f"{_counted(brief.turns, 'turn')} in all" if brief.turns and brief.clauses else ""
+
+
+def _alike(brief: Brief) -> str:
+    """Returns which parts must be equal."""
+    if not brief.alike:
+        return ""
+    turning = [at for at, clause in enumerate(brief.clauses) if clause.kind not in STRAIGHT]
+    kinds = {brief.clauses[at].kind for at in turning}
+    inner = brief.clauses[turning[0] : turning[-1]] if turning else ()
+    is_spaced = all(clause.kind not in STRAIGHT for clause in inner)
+    straights = sum(clause.kind == "straight" for clause in brief.clauses)
+    said = "turns of one kind equal" if len(kinds) > 1 else "all turns equal"
+    said += " and evenly spaced" if is_spaced else ""
+    return said + (", and the straights equally long" if straights > 1 else "")
 
 
 def _side_count(amount: Amount | None, side: str) -> str:

@@ -4,6 +4,8 @@
                                                             |
                                                         Store (one file)
 
+A cell is one combination of a description, a designer, a driver, a simulator, a generator and a seed.
+
 Campaigns have two kinds of plug-ins: ``generators/`` propose tests, and ``executors/`` provide the workers
 that run them. ``begin`` makes a campaign's folder. ``work`` runs the remaining tests; after an interruption
 it resumes the campaign. ``status_of`` returns the progress. For one test, ``read_trace`` returns the stored

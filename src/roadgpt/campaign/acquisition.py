@@ -80,8 +80,8 @@ class CountedCells(NamedTuple):
 
 
 def is_far(shape: PlanShape, known: PlanShape | None, least: float) -> bool:
-    """Returns whether a shape is at least ``least`` metres RMS away from each shape in ``known``, which
-    ``stacked`` makes. Also returns True if ``known`` is None or ``least`` is 0.
+    """Returns whether a shape is at least ``least`` metres RMS away from each of the shapes that
+    ``stacked`` has combined into ``known``. Also returns True if ``known`` is None or ``least`` is 0.
     """
     return known is None or not least or float(apart(shape, known).min()) >= least
 

@@ -134,7 +134,7 @@ class BatchScheduler:
         return [*self._store.results(self.cell.name, between, (batch.first, batch.first + batch.n - 1))]
 
     def known(self, batch: int) -> range:
-        """Returns the indices of earlier batches whose roads every draft in this batch must differ from."""
+        """Returns the indices of earlier batches; every draft in this batch must differ from their roads."""
         last = batch - self._lag
         if last < 0 or self.cell.in_sequence:
             return range(last + 1)
@@ -149,5 +149,5 @@ class BatchScheduler:
 
 
 def designs_of(results: Iterable[Result]) -> list[Design]:
-    """Returns the designs of the results without junctions; leaves out results without such a design."""
+    """Returns the designs that have no junctions; leaves out the results that have no such design."""
     return [result.plain_design for result in results if result.plain_design is not None]

@@ -91,7 +91,7 @@ def behaviour_of_measures(found: Measures, heading: Array, brief: Brief | None) 
 
 
 def behaviour_of_line(points: Array, axes: Sequence[str], brief: Brief | None) -> dict[str, float]:
-    """Returns those features of ``axes`` that a road has without a drive, by name.
+    """Returns those of the features ``axes`` that can be computed without a drive, by name.
 
     Args:
         points: points of the road's centre line ``(n, 3)``, about one per metre.

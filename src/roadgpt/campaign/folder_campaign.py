@@ -35,8 +35,8 @@ def work_in(
 ) -> Generator[tuple[str, FinishedRun], None, None]:
     """Runs the remaining tests of folders of runs, lazily: each test runs while the caller iterates.
 
-    If no road can be designed for a folder, its ``failure`` gives the reason, and the folder stays without
-    tests.
+    If no road can be designed for a folder, ``RunFolder.failure`` gives the reason, and the folder stays
+    without tests.
 
     Args:
         home: the folder that messages refer to, and in which workers write their log.

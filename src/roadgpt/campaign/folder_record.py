@@ -86,7 +86,7 @@ class FolderRecord(FolderStore):
         return super()._execute(sql, values)
 
     def total(self) -> int | None:
-        """Returns the number of roads that were asked for."""
+        """Returns the number of roads requested; without ``campaign.json``, the number of runs."""
         return self.cell("").budget.tests
 
     def tests(self, cell: str = "", which: str | None = None) -> list[NumberedTest]:
@@ -104,7 +104,7 @@ class FolderRecord(FolderStore):
             raise UsageError(f"there is no run {number} in {self.folder}; {its}")
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
-        """Returns the Run of a test, always with its drive.
+        """Returns the Run of a test. The Run includes its drive, even if ``has_drive`` is False.
 
         Raises:
             UsageError: there is no such run, or it cannot be read.

@@ -1,4 +1,5 @@
-"""The store of campaigns whose tests are written into folders of runs: one folder for each cell.
+"""The store of campaigns whose tests are written into folders of runs: one folder for each cell. A cell is
+one combination of description, driver and other settings.
 
 The folders are the only record of the tests, and each can be copied on its own. The tables of
 ``campaign.store`` are built in memory from the folders, so that the same code schedules, resumes and counts
@@ -63,7 +64,7 @@ class FolderStore(Store):
         return f"continue with the same command and --out {self.folder}"
 
     def close(self) -> None:
-        """Closes the tables."""
+        """Closes the database in memory that holds the tables; the folders stay as they are."""
         self._db.close()
 
     def names(self) -> list[str]:
@@ -83,7 +84,7 @@ class FolderStore(Store):
         return self._cells[name] if name in self._cells else super().cell(name)
 
     def keep(self, ended: Sequence[tuple[str, FinishedTest]], *rest: Any) -> None:
-        """Writes the files of tests that have ended.
+        """Enters tests that have ended into the tables, and writes their files.
 
         A test for which no road could be designed is held back until a road has been designed for another
         test of the same cell.

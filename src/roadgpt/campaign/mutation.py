@@ -67,7 +67,7 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
 
 
 def crossed_over(one: Elements, other: Elements, rng: Rng) -> Elements:
-    """Returns the first elements of one road followed by the last elements of another road, at most 24.
+    """Returns the first elements of one road and then the last elements of another, at most 24 elements.
 
     The position at which each road is cut is random.
     """
@@ -104,7 +104,7 @@ def varied(parents: Sequence[Elements], rng: Rng, world: World, numeric: float, 
         rng: the random generator.
         world: determines the limits of radii and grades.
         numeric: as for ``mutated``.
-        rounds: how often the elements are mutated.
+        rounds: number of times that ``mutated`` is applied.
     """
     elements = crossed_over(parents[0], parents[1], rng) if len(parents) > 1 else parents[0]
     if len(parents) > 1 and rng.random() >= CHANGED_TOO:

@@ -59,9 +59,10 @@ class Plan(Frozen):
         return self.model_copy(update={"chat": chat, "patience": PATIENCE})
 
     def came_with(self, file: object) -> "Plan":
-        """Returns the Plan, and records that it came from a file that another person may have written.
+        """Returns the Plan read from ``file``, and records that another person may have written this file.
 
-        If a driver's file or a server is named only in that file, RoadGPT asks the user before using it.
+        If only this file names a driver's file, RoadGPT asks the user before running the driver. If only this
+        file names a server, the user's API key is not sent there.
         """
         chat = self.chat and self.chat.came_with(file)
         drivers = tuple(permission.driver_from_file(driver, file) for driver in self.drivers)
@@ -83,7 +84,7 @@ class Plan(Frozen):
         return self.goal in getattr(plugins.find("generators", generator), "goals", ())
 
     def requests(self) -> Iterator[tuple[Request, str]]:
-        """Yields the request and the generator of each cell, in order."""
+        """Yields the Request of each cell and the name of its generator, in the order of the cells."""
         every = product(
             self.prompts, self.designers, self.drivers, self.simulators, self.generators, self.seeds
         )

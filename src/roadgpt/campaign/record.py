@@ -291,7 +291,7 @@ class Record:
         return [Batch(*row) for row in rows]
 
     def waiting(self, cell: str) -> list[tuple[int, int, Proposal]]:
-        """Returns the number, batch and proposal of each test of a cell that was proposed and has not ended,
+        """Returns the proposed tests of a cell that have not ended: the number, batch and proposal of each,
         in order of the numbers.
         """
         rows = self.query(

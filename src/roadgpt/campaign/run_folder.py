@@ -1,5 +1,5 @@
-"""Uses a folder of runs as the store of one cell; the files in the folder are the only record of the cell's
-tests.
+"""Uses a folder of runs as the store of one cell, that is, of all tests with the same settings. The files in
+the folder are the only record of these tests.
 
 ``roadgpt run`` and each part of a study write such a folder, with the files of the SBFT competition. A test
 has ended when its ``test.NNNN.json`` exists: this file is written last, by the process that holds the

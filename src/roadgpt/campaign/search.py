@@ -76,7 +76,7 @@ def settings_of(cell: Cell) -> SearchSettings:
 
     Raises:
         UsageError: a setting is unknown or out of range, the cell's roads are splines, or the description
-            asks for what only networks have, such as junctions or medians.
+            requires something that only networks have, such as a junction or a median.
     """
     if cell.request.setup.geometry != "arcs":
         raise UsageError(f"the generator '{cell.generator}' searches roads of arcs; say geometry = \"arcs\"")
@@ -117,8 +117,8 @@ def make_candidates(tasks: Sequence[VariationTask], pool: Pool) -> list[Candidat
 def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]) -> list[Proposal]:
     """Returns up to n proposals made from candidates.
 
-    If there are fewer than n candidates, the workers draft the remaining roads, provided that the cell has a
-    description.
+    If there are fewer than n candidates and the cell has a Brief, the remaining proposals have no design: the
+    workers that run these tests design the roads.
     """
     seed = cell.request.seed
     found = [
@@ -132,6 +132,6 @@ def proposals_of(cell: Cell, first: int, n: int, candidates: Sequence[Candidate]
 
 
 def is_usable(result: Result) -> bool:
-    """Returns whether the road of a result was driven, so that a search can learn from it."""
+    """Returns whether a search can learn from a result: it has a design, a finite margin and features."""
     is_judged = result.margin is not None and np.isfinite(result.margin)
     return result.design is not None and is_judged and bool(result.features)

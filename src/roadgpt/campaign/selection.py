@@ -42,8 +42,8 @@ class Selection:
     """Number of the test; None: all tests."""
 
     def of(self, name: NumberedTest) -> "Selection":
-        """Returns the Selection of one test in this folder; its ``said`` is the test's folder and name,
-        such as 'hard/c01/17'.
+        """Returns a Selection of the test ``name`` in the same folder. ``said`` of the new Selection is the
+        folder with the name, such as 'hard/c01/17'.
         """
         return Selection(f"{self.folder}/{name}", self.folder, name.cell, name.number)
 
@@ -124,7 +124,8 @@ def chosen(place: Selection, choice: Choice | None) -> list[Selection]:
 
     Args:
         place: the Selection to split.
-        choice: which tests of the selection to return; None: all tests that have a road.
+        choice: "failures": the failed tests; "worst": only the worst test; "faults": one typical failure of
+            each fault; None: all tests whose Runs can be read.
 
     Raises:
         UsageError: a file cannot be read.

@@ -19,7 +19,7 @@ CONCERNS_ALL = (PartError, UsageError, ChatError)  # errors that are not due to 
 
 
 class Allowance(NamedTuple):
-    """The tokens and money that one test may spend on a language model; None: no limit."""
+    """The tokens and the USD that one test may spend on language models; a field of None sets no limit."""
 
     tokens: int | None = None
     cost: float | None = None
@@ -116,7 +116,8 @@ def execute(task: Task, cell: Cell, *earlier: tuple[Design, ...]) -> FinishedTes
 
 
 def run_test(task: Task, cell: Cell, earlier: tuple[tuple[Design, ...], ...], meter: Meter) -> Run:
-    """Returns the Run of a test; if no road can be designed, the Run has the outcome ERROR.
+    """Returns the Run of a test. The Run has the outcome ERROR if no road can be designed, or if the language
+    model gives no usable reply.
 
     All other errors of ``run.perform`` and ``run.prove`` are raised.
     """
@@ -152,8 +153,8 @@ def run_of(
 
 
 def seed_of_driver(number: int, proposal: Proposal) -> int:
-    """Returns the driver's seed in test ``number``. If a worker drafts the road, the draft has the same
-    seed.
+    """Returns the driver's seed in test ``number``. If the proposal has no design, the worker also uses this
+    seed to design the road.
     """
     return seed_of(proposal.seed, number) if proposal.design is None else proposal.seed
 

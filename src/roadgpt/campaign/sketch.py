@@ -1,4 +1,4 @@
-"""Makes sketches of roads: turns and straights with a place on the map, and their surrogate features.
+"""Makes sketches of roads: turns and straights, their place on the map, and the surrogate's features.
 
     VariationTask --mutate--> place on the map --> Sketch --chosen--> build --> every rule --> Candidate
 
@@ -40,7 +40,7 @@ BOLD = 2  # of TRIES; later tries mostly change only numbers, which violates few
 
 
 class Sketch(NamedTuple):
-    """A road that has room on the map, but has not been built or checked."""
+    """A road that fits on the map, but has not been built or checked."""
 
     elements: Elements
     place: MapPose
@@ -53,8 +53,8 @@ class Sketch(NamedTuple):
 
 
 def sketch(task: VariationTask) -> Sketch | None:
-    """Returns the sketch that a task describes; None if no mutation fits on the map and has the required
-    number of turns.
+    """Returns the sketch that a task describes; None if every road that was tried leaves the map, overlaps
+    itself or has the wrong number of turns, or if the road to mutate could not be drafted.
     """
     rng = np.random.default_rng(task.seed)
     if task.kind == "wild":

@@ -1,4 +1,4 @@
-"""Returns the state of a campaign, even while a process is working on it; SQLite counts the tests."""
+"""Returns the state of a campaign, such as its progress, even while a process is working on it."""
 
 import time
 from collections import Counter

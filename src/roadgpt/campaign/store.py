@@ -227,8 +227,8 @@ class Store(Record):
             db.execute("UPDATE meta SET value = 'yes' WHERE name = 'finished'")
 
     def set_plan(self, plan: str) -> None:
-        """Replaces the stored plan by one with different limits; everything else in the plan stays the
-        same.
+        """Replaces the stored plan, as JSON. The new plan may differ from the stored plan only in settings
+        that may change when a campaign is resumed, such as limits.
         """
         with self._whole() as db:
             db.execute("UPDATE meta SET value = ? WHERE name = 'plan'", (plan,))

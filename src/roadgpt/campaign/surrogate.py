@@ -54,8 +54,8 @@ class Surrogate:
         self._forest = grow(looks, targets, TREES, LEAF, seed=0)
 
     def opinions(self, features: Sequence[Array]) -> Array:
-        """Returns the predictions of each tree for n roads and k outcomes, ``(TREES, n, k)``, in the units of
-        the outcomes.
+        """Returns the predictions of each tree for n roads and k outcomes, in the units of the outcomes; the
+        array has the shape ``(TREES, n, k)``.
         """
         looks = np.asarray(features, float)
         found = np.asarray(self._forest.predict(looks) * self._scale + self._mean)

@@ -65,7 +65,7 @@ of them; which one depends on where the car leaves its lane.
 
 
 class RoadSamples(NamedTuple):
-    """A road as equally spaced samples, about 1 m apart; arrays ``(n,)``."""
+    """A road as n equally spaced samples, about 1 m apart; each array has the shape ``(n,)``."""
 
     s: Array
     """Stations in metres."""
@@ -78,7 +78,7 @@ class RoadSamples(NamedTuple):
 
 
 def surrogate_features_of(road: Road, world: World) -> NDArray[np.float64]:
-    """Returns the features of a road, ``(len(NAMES),)``, each scaled to a magnitude of about 1."""
+    """Returns the features of a road, each scaled to a magnitude of about 1; shape ``(len(NAMES),)``."""
     found = road.sample()
     middle = world.profile_of(road).middle(found.s)
     return features_of_samples(RoadSamples(found.s, found.curvature, found.grade, middle), world)
@@ -161,8 +161,12 @@ def _squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> 
 
 
 def hazard_of(signs: Sequence[Array]) -> Array:
-    """Returns an estimate of how hard each of n roads is, ``(n,)``, without a drive: the largest curvature of
-    the lane, averaged over about 13 m, as a multiple of 0.06 1/m. ``signs`` holds the features of each road.
+    """Estimates without a drive how hard each of n roads is; returns an array of shape ``(n,)``.
+
+    The estimate is the largest curvature of the lane, averaged over about 13 m, as a multiple of 0.06 1/m.
+
+    Args:
+        signs: the features of each road, as ``surrogate_features_of`` returns them.
     """
     table = np.asarray(signs)
     columns = [NAMES.index(f"{side}_{WINDOWS[2]}") for side in ("left", "right")]

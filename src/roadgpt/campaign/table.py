@@ -2,7 +2,8 @@
 
 results.csv    one row per test: its proposal, its outcome, and its features
 cells.csv      one row per cell: its settings, the number of tests with each outcome, the number of bins of
-               the feature map that contain failures, and how far the car left its lane in passed tests
+               the feature map that contain failures, and the farthest that the car was outside its
+               lane in any passed test
 """
 
 import csv

@@ -80,7 +80,7 @@ class Candidate(NamedTuple):
 def make_candidate(task: VariationTask) -> Candidate | None:
     """Returns the candidate that a task describes; None if no valid road was found that meets the Brief.
 
-    Tasks of the kind "wild" are not for this function, but for ``sketch.sketch``.
+    A task of the kind "wild" must be passed to ``sketch.sketch`` instead.
     """
     rng = np.random.default_rng(task.seed)
     setting = task.setting
@@ -128,9 +128,9 @@ def _between(task: VariationTask) -> tuple[Design, Road] | None:
 
 
 def room_for(elements: Elements, setting: VariationContext, rng: np.random.Generator) -> PlacedPlan | None:
-    """Places a road with these elements at random on the map.
+    """Places a road with these elements at a random position on the map.
 
-    Returns None if the road does not fit on the map, or meets itself.
+    Returns None if the road does not fit on the map, or if two parts of the road overlap.
     """
     written = [as_written(element) for element in elements]
     line = walk(written)
@@ -141,8 +141,8 @@ def room_for(elements: Elements, setting: VariationContext, rng: np.random.Gener
 
 
 def validated(design: Design, setting: VariationContext) -> tuple[Design, Road] | None:
-    """Builds the road of a design; returns both if the road satisfies all requirements and rules, else
-    None.
+    """Builds the road of a design; returns design and road if the road satisfies all requirements and rules,
+    otherwise None.
     """
     try:
         road = setting.world.lay(build(design))

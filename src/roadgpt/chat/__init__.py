@@ -72,7 +72,8 @@ def open_chat(settings: ChatSettings) -> Chat:
     replay, the answers come from that folder instead of a server.
 
     Raises:
-        ChatError: there is no key or no model, or the library of the provider is not installed.
+        ChatError: the server needs an API key and there is none, no model is named and the server does not
+            have exactly one, or the library of the provider is not installed.
         UsageError: both recording and replay are set, or there is no recording to replay.
         PartError: no provider of that name is installed.
     """
@@ -98,19 +99,23 @@ def _filled(settings: ChatSettings) -> ChatSettings:
 
 
 def asks_a_model(part: Any) -> bool:
-    """Returns True if a plug-in is a class whose constructor has a parameter ``settings``."""
+    """Returns whether a plug-in asks a language model: whether it is a class whose constructor has a
+    parameter ``settings``.
+    """
     return isinstance(part, type) and "settings" in inspect.signature(part).parameters
 
 
 def settings_for(part: Any, settings: ChatSettings | None) -> ChatSettings | None:
-    """Returns the ChatSettings for creating a plug-in: those given, else those that the user has
-    configured. Returns None if the plug-in takes no ChatSettings.
+    """Returns the ChatSettings for creating a plug-in: ``settings`` or, if ``settings`` is None, those that
+    the user has configured. Returns None if the plug-in takes no ChatSettings.
     """
     return (settings or configured()) if asks_a_model(part) else None
 
 
 def instantiate(part: Any, settings: ChatSettings | None = None) -> Any:
-    """Returns an instance of a plug-in, created with ``settings`` if its class takes ChatSettings."""
+    """Returns an instance of a plug-in, created with ``settings`` if its class takes ChatSettings. A plug-in
+    that cannot be called is returned unchanged.
+    """
     if asks_a_model(part):
         return part(settings)
     return part() if callable(part) else part

@@ -12,7 +12,10 @@ Origin = tuple[str, str, int | None]
 
 
 def address_of(base_url: str | None) -> str:
-    """Returns the URL of a server; if ``base_url`` has no path, the usual path is appended."""
+    """Returns the URL of a server without an endpoint such as ``/models``; None stands for OpenAI's server.
+
+    If ``base_url`` has no path, ``/v1`` is appended, or ``/openai/v1`` for Azure.
+    """
     place = (base_url or OPENAI).rstrip("/")
     for door in DOORS:
         place = place.removesuffix(door)
@@ -23,8 +26,8 @@ def address_of(base_url: str | None) -> str:
 
 
 def origin_of(base_url: str | None) -> Origin:
-    """Returns the scheme, host and port of a URL, in normal form. For None, they are those of OpenAI's
-    server.
+    """Returns the scheme, host and port of a URL, in normal form; None stands for OpenAI's server. The port
+    is None if the URL has no valid port and the scheme is neither http nor https.
     """
     parts = urlsplit((base_url or OPENAI).strip())
     scheme = parts.scheme.lower()

@@ -77,7 +77,7 @@ class ApiClient:
         return self._sent(self._client.responses.with_raw_response.create, body)
 
     def begin_conversation(self) -> dict[str, Any]:
-        """Starts a conversation that the server stores; returns the server's description of it."""
+        """Starts a conversation that the server stores; returns the server's answer, which holds the id."""
         return self._sent(self._client.conversations.with_raw_response.create, {})
 
     def models(self) -> list[dict[str, Any]]:

@@ -138,9 +138,9 @@ def _fault_in(problem: Mapping[str, Any]) -> str:
 def key_for(base_url: str | None) -> Key | None:
     """Returns the API key for a server; None if there is none.
 
-    If a server is named only in a file of the working folder, it gets only a key from such a file, unless it
-    runs on this computer: then it may get any key. If a server is named only in a plan, a campaign or a run,
-    it gets no key. The reason for both rules is that somebody else may have written these files.
+    A server that is named only in a file of the working folder gets only a key from such a file; if the
+    server runs on this computer, it may get any key. A server that is named only in a plan, a campaign or a
+    run gets no key. The reason for both rules is that somebody else may have written these files.
 
     Raises:
         UsageError: a settings file cannot be read.
@@ -188,9 +188,10 @@ def trust_server(base_url: str, wanted: str | None, place: object) -> None:
 
 
 def untrusted_source(base_url: str | None) -> str:
-    """Returns the configuration file that names this server; empty if the user named the same server.
+    """Returns the file that names this server, if another person may have written the file: a file of the
+    working folder, a plan, a campaign or a run.
 
-    It is also empty for OpenAI's server, and for a server that no file names.
+    Returns an empty text if the user named the server too, if no file names it, and for OpenAI's server.
     """
     if not base_url:
         return ""

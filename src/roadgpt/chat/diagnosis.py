@@ -13,7 +13,7 @@ PATIENCE = 5.0  # s
 
 
 def diagnose() -> str:
-    """Returns the result of the check as a sentence.
+    """Returns a text that names the model, the server and the library, or says that no model is configured.
 
     Raises:
         ChatError: a model or a server is configured but cannot be asked.

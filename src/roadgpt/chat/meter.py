@@ -116,8 +116,8 @@ def occasion() -> str:
 
 
 class Account:
-    """Counts what one Chat spends. It also adds this to the campaign's meter or, without a campaign, to a
-    meter of its own.
+    """Counts what one Chat spends, and adds the same amounts to the campaign's Meter. Without a campaign,
+    they are added to the Chat's own Meter.
     """
 
     def __init__(self, settings: ChatSettings) -> None:

@@ -163,9 +163,9 @@ class ChatSettings(ChatValue):
         return price
 
     def essence(self) -> Self:
-        """Returns the settings that must stay the same when a campaign is resumed; all others are set to
-        their defaults. Those others are the limits of tokens and money, the price, the time-out, the
-        retries and the folders of recordings.
+        """Returns a copy of the settings in which those that may change when a campaign is resumed have their
+        defaults: the limits of tokens and money, the price, the time-out, the retries and the folders of
+        recordings.
         """
         usual = type(self)()
         spare = ("timeout", "retries", "max_tokens", "max_cost", "price", "record", "replay")

@@ -51,8 +51,9 @@ class ExchangeStore:
     def take(self, question: dict[str, Any], occasion: str, turns: Turns) -> dict[str, Any] | None:
         """Returns the next recorded answer to a question for an occasion; None if no answer is left.
 
-        If the occasion has no answers, those that were recorded without an occasion are used. If there are
-        none of these, a question without an occasion gets the answers of all occasions, one after another.
+        If no answers were recorded for the occasion, those recorded without an occasion are used. If
+        ``occasion`` is empty and no answers were recorded without an occasion, the answers of all occasions
+        are used, one after another.
         """
         name = name_of(question)
         answers = self._answers(name)

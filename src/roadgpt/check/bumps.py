@@ -20,11 +20,11 @@ def asks_for_bumps(brief: Brief | None) -> bool:
 
 
 def bumps_asked(road: Road, brief: Brief | None) -> list[tuple[float, float]]:
-    """Returns the start and end stations, in metres, of the parts between turns where a crest or dip is
+    """Returns the start and end stations, in metres, of the parts of a road where a crest, a dip or a hump is
     requested.
 
-    If the description does not fix the number of turns before the crest or dip, all parts between turns are
-    returned. Each part extends 30 m into the neighbouring turns.
+    A part reaches from one turn to the next, or to an end of the road, and 30 m into the turns beside it. If
+    the description does not fix the number of turns before a crest, dip or hump, all parts are returned.
     """
     if brief is None or not asks_for_bumps(brief):
         return []

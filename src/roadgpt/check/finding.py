@@ -7,8 +7,8 @@ from dataclasses import dataclass
 class Finding:
     """One violation of a rule: the name of the rule and a sentence that describes the violation.
 
-    ``s`` is the station in metres and (x, y) the point of the violation in metres. They are None for a
-    violation that concerns the whole road.
+    ``s`` is the station and (x, y) the point of the violation, in metres. All three are None for a violation
+    that concerns the whole road. If only the point is known, only ``s`` is None.
     """
 
     rule: str

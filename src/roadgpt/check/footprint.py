@@ -113,7 +113,7 @@ class Footprint:
 
     @cached_property
     def ends(self) -> dict[RoadEnd, EndPose]:
-        """The pose at each end of each road."""
+        """The EndPose of both ends of every road of the network."""
         owner, length = self._pieces.owner, self._pieces.length
         last = np.flatnonzero(np.diff(owner, append=-1))
         x, y, heading = (column.tolist() for column in self._places(last, length[last]))
@@ -186,10 +186,12 @@ class Footprint:
         return np.concatenate((low, high), axis=1)
 
     def outermost(self, n: int, side: int) -> tuple[float, float, float]:
-        """Returns the point (x, y) at which the carriageway of the road with index ``n`` reaches one of its
-        bounds, and the station of the road there, in metres.
+        """Returns the point (x, y) where the carriageway of a road extends farthest to one side, and the
+        station of the road there, in metres.
 
-        ``side`` is the index of this bound in a row of ``bounds``, 0 to 3.
+        Args:
+            n: index of the road in ``network.roads``.
+            side: 0 for the smallest x, 1 for the smallest y, 2 for the largest x, 3 for the largest y.
         """
         right, left, s, first = self._edges
         here = slice(first[n], first[n + 1])

@@ -80,7 +80,7 @@ class MeasuredJunction:
 
     @property
     def ways_on(self) -> tuple[Way, ...]:
-        """The sides to which traffic can leave: ``sides`` without those of ``only_in``."""
+        """The sides on which traffic can leave the junction: ``sides`` without those of ``only_in``."""
         on = list(self.sides)
         for side in self.only_in:
             on.remove(side)
@@ -147,10 +147,10 @@ def _narrow_part(member: NetworkRoad, at_end: bool) -> float:
 
 
 def is_beside_ramp(network: Network, one: NetworkRoad, two: NetworkRoad) -> bool:
-    """Returns whether road ``one`` begins at a merge, or road ``two``, which continues it, ends at an exit.
+    """Returns whether a change of lanes from road ``one`` to the next road, ``two``, belongs to a ramp.
 
-    In the first case, the lane for acceleration belongs to road ``one``; in the second, the lane for
-    deceleration belongs to road ``two``.
+    This is so if ``one`` begins at a merge and has the lane for acceleration, or if ``two`` ends at an exit
+    and has the lane for deceleration.
     """
     ends = (RoadEnd(one.id, "start"), "merge"), (RoadEnd(two.id, "end"), "diverge")
     return any(
@@ -187,8 +187,8 @@ def side_of_ramp(network: Network, junction: Junction) -> Side:
 def lengths_beside_ramp(network: Network, junction: Junction) -> tuple[float, float]:
     """Returns the lengths in metres of the lane for acceleration or deceleration and of its taper.
 
-    The taper is the part in which the lane is at most 0.9 of its full width. Both lengths are 0 if there is
-    no such lane.
+    The taper is the part in which the lane is at most 0.9 of its full width; the first length does not
+    include the taper. Both lengths are 0 if there is no lane for acceleration or deceleration.
     """
     way = _way_of_ramp(network, junction)
     beside = network.road((way.outgoing if junction.kind == "merge" else way.incoming).road)
@@ -263,7 +263,7 @@ def _wrapped(angle: float) -> float:
 
 
 def kinds_of(gaps: list[float]) -> tuple[JunctionKind, ...]:
-    """Returns the kinds that fit the angles in degrees between neighbouring arms; empty if none fits."""
+    """Returns the kinds of junction that fit the angles between neighbouring arms, degrees; may be empty."""
     found: list[JunctionKind] = []
     least, *_, most = sorted(gaps)
     if len(gaps) == 3:

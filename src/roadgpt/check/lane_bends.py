@@ -23,11 +23,11 @@ class LaneBend(NamedTuple):
 
 
 def tightest_bend(member: NetworkRoad, share: float, only_right: bool = False) -> LaneBend | None:
-    """Returns the tightest bend of a line through the right lane of a connecting road.
+    """Returns the tightest bend of a line along the right lane of a connecting road (through a junction).
 
-    The line is at ``share`` of the width of the lane to the right of the centre line: 0.5 for the middle of
-    the lane, 1 for its right edge. Where the width varies, the line is not an arc even if the centre line is
-    one. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
+    The line lies to the right of the centre line, at a distance of ``share`` times the width of the lane: 0.5
+    for the middle of the lane, 1 for its right edge. Where the width varies, the line is not an arc even if
+    the centre line is an arc. Source: the curvature of x(s) = c(s) + d(s) n(s), by Frenet's formulas.
 
     Args:
         member: The connecting road.

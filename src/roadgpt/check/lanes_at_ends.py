@@ -35,7 +35,9 @@ def gap(network: Network, one: LaneEnd, other: LaneEnd) -> float:
 
 
 def reached(network: Network, connection: Connection) -> Iterator[LaneEnd]:
-    """Yields the ends of the lanes out of a junction to which the lanes of a connection lead."""
+    """Yields the lanes into which a connection through a junction leads, each as the end of the outgoing road
+    and the id of the lane.
+    """
     for lanes in connection.lanes:
         yield connection.outgoing, lanes.outgoing
 

@@ -42,12 +42,12 @@ class MeasuredMap:
     """For each straight road between two junctions, the distance in metres between their middles."""
 
     def number(self, kind: JunctionKind) -> int:
-        """Returns the number of junctions that may be called by this kind."""
+        """Returns the number of junctions that have this kind among their ``kinds``."""
         return sum(kind in node.kinds for node in self.nodes)
 
 
 def measured_map(network: Network) -> MeasuredMap:
-    """Returns the measures of a network."""
+    """Measures a network; a roundabout counts as one junction."""
     found = [_node(network, junctions) for _, junctions in network.nodes]
     number_of = {junction.id: n for n, (_, group) in enumerate(network.nodes) for junction in group}
     roads = roads_outside_junctions(network)

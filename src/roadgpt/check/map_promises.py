@@ -1,4 +1,5 @@
-"""Requires a map of roads to be what was asked for: blocks or junctions, dead ends, signs, distances, route.
+"""Checks whether a map of roads meets its description: blocks or junctions, dead ends, signs, distances, and
+the turns of the route.
 
 Everything is measured on the finished network, by ``check.map_measures`` and ``check.junction_measures``.
 """

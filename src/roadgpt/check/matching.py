@@ -45,7 +45,7 @@ class Match(NamedTuple, Generic[T]):
 
 
 def fits(stretch: MeasuredFeature, feature: Feature) -> bool:
-    """Returns whether a measured turn or straight meets all requirements for the requested one."""
+    """Returns whether ``stretch``, a measured turn or straight, meets all requirements of ``feature``."""
     if stretch.kind != feature.kind or feature.side not in (None, stretch.side):
         return False
     wrong = _wrong(stretch, feature)
@@ -96,10 +96,10 @@ def best_match(
     of_turns: Callable[[Group, int, int], Match[T]],
     of_gap: Callable[[int, tuple[Feature, ...]], Match[T]],
 ) -> Match[T]:
-    """Returns, of all ways to match a road with an Outline, the one with the fewest wrong features.
+    """Returns the match of a road with an Outline in which the fewest features are not as requested.
 
     Args:
-        asked: the requirements.
+        asked: the Outline. Each group requests straights, or turns in a row that meet the same limits.
         count: number of turns of the road.
         of_turns: function that matches a group with turns of the road, given the group, the index of the
             first turn and the number of turns.
@@ -131,8 +131,10 @@ def best_match(
 
 
 def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...]:
-    """Compares the turns and straights of a road with those of an Outline in driving order, and returns the
-    complaints.
+    """Compares the turns and straights of a road with those of an Outline in driving order; returns one
+    Complaint for each requirement that the road does not meet.
+
+    If no match is possible, returns a single Complaint about the number of turns.
     """
     turns, gaps = found.turns, found.gaps
 
@@ -154,8 +156,8 @@ def sequence_complaints(found: Measures, asked: Outline) -> tuple[Complaint, ...
 def sides_of(group: Group, sides: Sequence[Side | None]) -> list[Side | None]:
     """Returns the side that is required of each turn of a group; None if either side is allowed.
 
-    ``sides`` are the measured sides of the turns. If the turns must alternate and the group does not say how
-    they begin, the measured side of the first turn is taken.
+    ``sides`` are the measured sides of the turns. If the turns must alternate and the group does not state
+    the side of the first turn, its measured side is taken as required.
     """
     first = group.feature.side or (sides[0] if sides and group.alternating else None)
     other = OTHER_SIDE[first] if first and group.alternating else first

@@ -1,4 +1,4 @@
-"""Makes the findings of the rules of networks, each with the road or junction and its place on the route."""
+"""Makes the Findings of the network rules; each names the road or junction, and its station on the route."""
 
 import math
 
@@ -39,9 +39,10 @@ def road_finding(
 
 
 def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | None:
-    """Returns the station in metres at which a route first passes station ``s`` of a road.
+    """Returns the distance in metres along a route to the place that is ``s`` metres along a road.
 
-    The result is None if there is no route, or if the road is not on the route.
+    If the route uses the road more than once, the first time counts. The result is None if there is no route,
+    or if the road is not on the route.
     """
     if route is None:
         return None
@@ -52,9 +53,10 @@ def station_on(route: Route | None, member: NetworkRoad, s: float) -> float | No
 
 
 def station_near(route: Route | None, member: NetworkRoad, x: float, y: float) -> float | None:
-    """Returns the station in metres at which a route first passes the place of a road nearest to (x, y).
+    """Returns the distance in metres along a route to the place on a road that is nearest to (x, y).
 
-    The result is None if there is no route, or if the road is not on the route.
+    If the route uses the road more than once, the first time counts. The result is None if there is no route,
+    or if the road is not on the route.
     """
     if station_on(route, member, 0.0) is None:
         return None
@@ -74,7 +76,7 @@ def more_room(junction: Junction) -> str:
 
 
 def owner_of(network: Network, member: NetworkRoad) -> str:
-    """Returns the name of the junction or roundabout to which a road belongs, otherwise that of the road."""
+    """Returns the name of the junction or roundabout to which a road belongs, else of the road itself."""
     if member.junction is not None:
         return name_of(network.junction(member.junction))
     ring = network.roundabout_of.get(member.id)

@@ -133,7 +133,7 @@ def _broken_lanes(start: float, road: Road, asked: Brief) -> Iterator[Finding]:
 
 
 def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
-    """Yields what is wrong with a junction or a place where lanes change, as text."""
+    """Yields each requirement that a junction or a place where lanes change does not meet, as text."""
     if isinstance(found, MeasuredLanes):
         yield from lane_complaints(found, asked)
     elif asked.kind in LANE_KINDS:
@@ -143,7 +143,7 @@ def place_complaints(found: MeasuredJunction | MeasuredLanes, asked: JunctionCla
 
 
 def lane_complaints(found: MeasuredLanes, asked: JunctionClause) -> Iterator[str]:
-    """Yields what is wrong with a place where lanes change, as text."""
+    """Yields each requirement that a place where lanes change does not meet, as text."""
     if found.kind != asked.kind:
         yield f"asked for a {asked.name}, has a {NAMES[found.kind][0]}"
     side = asked.take or asked.side
@@ -171,7 +171,7 @@ def length_range(length: Amount) -> Range:
 
 
 def junction_complaints(found: MeasuredJunction, asked: JunctionClause) -> Iterator[str]:
-    """Yields what is wrong with a junction, as text."""
+    """Yields each requirement that a junction does not meet, as text."""
     is_any = asked.kind == "junction" and not {"roundabout", *RAMPS} & {*found.kinds}
     if not is_any and asked.kind not in found.kinds:
         gaps = ", ".join(f"{gap:.0f}" for gap in found.gaps)

@@ -193,10 +193,11 @@ def measured_length(nodes: Array) -> float:
 
 
 def smallest_radius(nodes: Array) -> tuple[float, int]:
-    """Returns the smallest of the ``radii`` of nodes ``(n, 2)`` in metres, and the index of the middle node
-    of that circle.
+    """Returns the smallest radius in metres of the circles in ``radii(nodes)``, and the index of the middle
+    one of the three nodes on the smallest circle.
 
-    The radius is infinite if no three nodes form a circle: on a straight road, or with fewer than six nodes.
+    The radius is infinite on a straight road, and with fewer than six nodes: a circle goes through nodes i,
+    i+2, i+4, and the last such triple of nodes is left out.
     """
     found = radii(nodes)
     if not found.size:

@@ -62,7 +62,7 @@ class Commands(click.Group):
     def resolve_command(
         self, ctx: click.Context, args: list[str]
     ) -> tuple[str | None, click.Command | None, list[str]]:
-        """Returns the command that the first arguments name; earlier names of commands work too.
+        """Returns the name of the command, the command and its arguments; earlier names of commands work too.
 
         Raises:
             click.UsageError: There is no such command; the message says what to type instead.

@@ -49,8 +49,8 @@ def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool)
 
 
 def faults_of(status: "Status") -> "Faults | None":
-    """Returns the faults of a campaign, or, if these were not tested, the groups of similar failures among at
-    most ``COMPARED`` failures; None if no test was driven.
+    """Returns the distinct faults of a campaign; if ``roadgpt faults`` has not yet determined them, groups
+    of similar failures among at most ``COMPARED`` failures. Returns None if no test was driven.
     """
     from roadgpt.campaign.faults.fault import faults_in
 
@@ -131,9 +131,10 @@ def headline(status: "Status") -> str:
 
 
 def cell_lines(cells: "Sequence[CellStatus]", width: int = 10_000) -> list[str]:
-    """Returns a table with a line for each campaign cell; columns beyond ``width`` characters are left out.
+    """Returns a table with a line for each cell; columns beyond ``width`` characters are left out.
 
-    The last column counts as only ``LEAST`` characters wide, so its texts may extend beyond ``width``.
+    A cell is one combination of the campaign's descriptions, designers, drivers and other settings. The
+    last column counts as only ``LEAST`` characters wide, so its texts may extend beyond ``width``.
     """
     rows = [HEAD, *map(_columns, cells)]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]

@@ -26,7 +26,7 @@ HEADINGS = {
     "Evaluate": {
         "check": "Check roads against the rules.",
         "report": "Write a report on a folder of runs, a campaign or a study.",
-        "study": "Repeat the evaluation of the RoadGPT thesis, or survey people.",
+        "study": "Repeat the evaluation of RoadGPT's thesis, or survey people.",
     },
     "Exchange": {
         "export": "Write roads for other tools: OpenDRIVE, OpenSCENARIO and others.",

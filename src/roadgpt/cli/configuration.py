@@ -56,7 +56,7 @@ def layers_of(ctx: click.Context | None = None) -> "Sequence[Layer]":
 
 
 def settable_options() -> "list[Option]":
-    """Returns every option that a configuration file can set, in the order of ``roadgpt run``."""
+    """Returns the options that configuration files can set, in the order that ``roadgpt run`` declares."""
     from roadgpt.cli.commands import run
     from roadgpt.cli.option import Option
 

@@ -106,8 +106,8 @@ def _command(quiet: WithoutFailure, **world: Any) -> str:
 
 
 def of_status(status: "Status") -> WithoutFailure | None:
-    """Summarises a campaign or a folder of runs. Returns None if it is still running, if any test failed, or
-    if none passed.
+    """Summarises a campaign or a folder of runs. Returns None if its tests are still running, if any test
+    failed, or if none passed.
     """
     if status.is_running or status.outcomes.get("FAIL") or not status.outcomes.get("PASS"):
         return None

@@ -14,7 +14,9 @@ from roadgpt.cli.streams import warn
 
 @contextmanager
 def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
-    """Replaces click's error message if an argument looks like a description that begins with a dash."""
+    """Replaces click's error message within a ``with`` block if an argument looks like a description that
+    begins with a dash; the new message says where to put the description.
+    """
     given = list(args)  # click takes them out of its list
     try:
         yield
@@ -23,8 +25,16 @@ def dash_advice(ctx: click.Context, args: Sequence[str]) -> Iterator[None]:
         if words is None:
             raise
         raise click.UsageError(
-            f'put a description that begins with a dash last, after two dashes: roadgpt run -- "{words}"', ctx
+            f'put words that begin with a dash last, after two dashes: {_command_line(ctx)} -- "{words}"', ctx
         ) from error
+
+
+def _command_line(ctx: click.Context) -> str:
+    """Returns the command with the arguments that stand before its last one, such as ``roadgpt edit RUN``."""
+    if ctx.parent is None:
+        return "roadgpt run"
+    arguments = [each for each in ctx.command.params if isinstance(each, click.Argument)]
+    return " ".join(["roadgpt", str(ctx.info_name), *(str(each.name).upper() for each in arguments[:-1])])
 
 
 def _description(args: Sequence[str]) -> str | None:

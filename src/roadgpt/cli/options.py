@@ -52,7 +52,7 @@ WORLD = (
     _judged("--oob-tolerance", "Share of the car that may be outside its lane.", measure(0, 1, above=True),
             0.95),
     _judged("--lane-departure", "Also fail if a front tyre crosses the lane marking.", bool),
-    _world("--lanes", "Lanes ahead + oncoming. [default: 1+1, or as described]",
+    _world("--lanes", "Own + oncoming lanes. [default: 1+1, or as described]",
            lanes),
     _world("--lane-width", "Width of every lane, m.", measure(2, 10, "metres"), 4),
     _world("--lane-width-end", "Lane width at the road's end, m, reached gradually. [default: the same]",
@@ -66,16 +66,17 @@ WORLD = (
 """The options that set fields of the World."""
 
 SETUP = (
-    _run("--reader", "Reader: model (built in), chat (a language model), plan (reads plans).",
-         str, "model", guard=reader_guard),
-    _run("--designer", "Designer: planner (by rules), chat (a language model), thesis (as in the thesis).",
-         str, "planner", guard=designer_guard),
+    _run("--reader", "Reads the description: model (neural networks), chat (a language model), plan (plans "
+         "only).", str, "model", guard=reader_guard),
+    _run("--designer", "Designs roads: planner (a search), chat (a language model), thesis (chat as in "
+         "RoadGPT's thesis).", str, "planner", guard=designer_guard),
     _run("--driver", "A name, or FILE.py:CLASS.", driver, "beamng_like", heading=Heading.DRIVE,
          guard=driver_guard),
     _run("--simulator", "What simulates the car.", str, "mujoco", heading=Heading.DRIVE),
     _run("--keep-driving", "Continue to the end after the car leaves its lane.", bool, heading=Heading.DRIVE),
     _run("--geometry",
-         "How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in the thesis).",
+         "How a design becomes a road: arcs (lines, arcs, clothoids), or spline (as in RoadGPT's "
+         "thesis).",
          click.Choice(["arcs", "spline"]), "arcs", is_rare=True),
     _run("--rules", "Which rules a road must satisfy: RoadGPT's own (strict), or those of the SBFT tool "
          "competition.", click.Choice(["strict", "sbft"]), "strict", is_rare=True),
@@ -99,7 +100,7 @@ CHAT = (
     _chat("--max-cost", "Stop when the language model has cost this many USD.",
           measure(0, 1e6, "USD", above=True)),
     _rare("--price",
-          "USD per million input and output tokens, such as 0.15/0.60. [default: from a table]"),
+          "USD per million input and output tokens, such as 0.15/0.60. [default: OpenAI's prices]"),
     _rare("--record", "Save every exchange with the server in this folder."),
     _rare("--replay", "Use the answers saved in this folder; ask no server."),
     _rare("--rounds", "Maximum number of requests to the model for one road. [default: 3]",
@@ -136,14 +137,14 @@ _place = partial(_beamng, guard=place_guard)
 
 # fmt: off
 BEAMNG = (
-    _beamng("--beamng-home", "Start the BeamNG.tech in this folder (for --simulator beamng).", _whole_folder,
+    _beamng("--beamng-home", "Folder of the BeamNG.tech to start (for --simulator beamng).", _whole_folder,
             key="home", guard=path_guard),
     _beamng("--beamng-user", "BeamNG's user folder; each further worker gets one next to it.", _whole_folder,
             key="user", guard=path_guard),
     _place("--beamng-host", "Host of a BeamNG that is already running.", key="host"),
     _place("--beamng-port", "Port of BeamNG. [default: 25252]", whole(1, 65535, "a port"), key="port"),
-    _beamng("--beamng-level", "Level for the roads. [default: tig (of SBFT) if installed, else a flat one]",
-            key="level"),
+    _beamng("--beamng-level", "BeamNG level for the roads. [default: SBFT's level tig if installed, else a "
+            "flat one]", key="level"),
     _beamng("--beamng-aggression", "Aggression of BeamNG's AI, 0.3 to 1. [default: 0.7]", measure(0.3, 1),
             key="aggression"),
     _beamng("--beamng-recycle", "Restart BeamNG after this many roads. [default: 100]",
@@ -154,7 +155,7 @@ BEAMNG = (
 )
 
 AXES = _files(
-    "--axes", "Axes of pictures: equal (to scale), or thesis (fixed ranges, as in the RoadGPT thesis: top "
+    "--axes", "Axes of pictures: equal (to scale), or thesis (fixed ranges, as in RoadGPT's thesis: top "
     "view 220 m x 220 m; height profile 200 m long and 20 m high).", click.Choice(["equal", "thesis"]),
     "equal", is_rare=True, table="run",
 )

@@ -30,7 +30,7 @@ def replay_lines(run: Run, folder: Path | None = None) -> list[str]:
 
 
 def request_words(request: Request, roads: int, brief: Brief | None) -> list[str]:
-    """Returns the arguments with which ``roadgpt run`` makes the first roads of a request.
+    """Returns the arguments with which ``roadgpt run`` makes the first ``roads`` roads of a request.
 
     Args:
         request: The request.

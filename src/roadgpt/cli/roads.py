@@ -54,7 +54,8 @@ def roads_named(
             raised.
 
     Raises:
-        UsageError: A name is wrong, or the folder has no road that matches the choice.
+        UsageError: A name is wrong, no road of a folder matches the choice, or the only road of a folder is
+            to be yielded and the folder has none or several.
     """
     seen = set()
     for file in files:
@@ -230,10 +231,12 @@ def run_of(named: NamedRoad, world: "World", geometry: "Geometry") -> "Run":
 
 
 def each_road(files: Sequence[str], screen: Screen, look: Callable[[str], Row]) -> None:
-    """Calls ``look`` for every file, and prints the resulting rows and a table of them.
+    """Calls ``look`` for every file, and prints the resulting rows and a table of their outcomes.
+
+    A file that cannot be used gets a row with an error.
 
     Raises:
-        UsageError: Only one file is given, it cannot be used, and the output is not JSON.
+        UsageError: The only file that was given cannot be used, and the output is not JSON.
         PartError: A plug-in is not installed.
     """
     with screen:

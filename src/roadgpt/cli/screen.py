@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class Screen:
-    """Prints each road when it is finished, and at the end a table of outcomes.
+    """Prints the result of each road when it is finished, and at the end a table of outcomes.
 
     Rows of roads and other text go to standard output; if the rows are JSON, other text goes to standard
     error. The progress bar goes to standard error if that is a terminal. A total of 0 means that the number
@@ -85,7 +85,7 @@ class Screen:
         self._tell(len(self.rows), rate=f"{self._rate():.1f} roads/s")
 
     def runs(self, runs: "Iterable[Run]", folder: Path) -> None:
-        """Prints each run of a folder as soon as it is finished.
+        """Prints the result of each run of a folder as soon as the run is finished.
 
         Text that is printed while a run is made, for example by a user's driver, goes to standard error.
         """

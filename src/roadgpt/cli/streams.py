@@ -68,8 +68,8 @@ def _nothing(number: int, mode: int) -> int:
 
 
 def drop_output() -> None:
-    """Redirects standard output to the null device, because Python flushes standard output once more at
-    exit, which would fail.
+    """Redirects standard output to the null device after a write to it has failed. Python flushes standard
+    output once more at exit, and this would fail, too.
     """
     nothing = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nothing, sys.stdout.fileno())

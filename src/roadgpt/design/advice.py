@@ -82,8 +82,8 @@ def too_fast(world: World, slower: float | None) -> str:
 def main_reason(failed: Counter[str]) -> str:
     """Returns the reason why most drafts failed; "too large" if ``failed`` is empty.
 
-    If at least 60 failures occurred after the plan of a draft had been accepted, only these count. ``failed``
-    holds the reasons, with the number of times that each occurred.
+    ``failed`` holds the reasons, with the number of times that each occurred. Reasons in ``OF_THE_PLAN``,
+    such as "too large", do not count if at least 60 drafts failed for other reasons.
     """
     broken = Counter({reason: count for reason, count in failed.items() if reason not in OF_THE_PLAN})
     fitted = broken.total() >= MANY

@@ -96,6 +96,7 @@ def demands(asked: Outline) -> list[str]:
     counts = {name: getattr(asked, name) for name in COUNTS if name != "turns" or not names_turns}
     out += [f"{span} {COUNTS[name]}s" for name, span in counts.items() if span != Range()]
     out.append("turns alternate between left and right" if asked.alternating else "")
+    out.append("turns of one kind equal and evenly spaced, straights equally long" if asked.alike else "")
     each = asked.each_turn.limits()
     out.append(f"every turn{each}" if each else "")
     mean = f" (mean slope {asked.grade_range} %)" if asked.grade_range else ""

@@ -17,7 +17,7 @@ class Line(NamedTuple):
 
 
 class Disc(NamedTuple):
-    """The circular area of a junction, of which all roads that do not lead to the junction keep clear."""
+    """The circular area of a junction; only roads that lead to the junction may enter it."""
 
     z: complex
     """Its centre as x + iy in metres."""

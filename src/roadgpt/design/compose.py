@@ -99,9 +99,10 @@ def _from_corner_to_corner(elements: list[Element], world: World) -> list[Elemen
 
 
 def asked_length(outline: Outline, windows: Windows) -> Range | None:
-    """Returns the required length of the road in metres; None if there is none.
+    """Returns the range of lengths in metres that the road may have; None if any length will do.
 
-    If only a climb is required, the road must be long enough for it at a moderate grade.
+    If a climb but no length is required, the range begins at the length that the climb needs at a moderate
+    grade.
     """
     if outline.length or not outline.climb:
         return outline.length

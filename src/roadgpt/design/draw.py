@@ -113,7 +113,7 @@ def drawn_turns(
     angles = [degrees.lo + _share(rng, haste) * (degrees.hi - degrees.lo) for degrees in ranges]
     angles = _uncoiled(angles, ranges, hands, 215 + 115 * rng.random())
     if outline.turning:
-        angles = _summed(angles, ranges, _target(outline.turning, rng))
+        angles = _summed(angles, ranges, drawn_target(outline.turning, rng))
         turns = [replace(t, degrees=Range(a - KEPT, a + KEPT)) for t, a in zip(turns, angles, strict=True)]
     longest = longest_turn(len(turns), outline, world) * (1 - 0.6 * haste)
     return [
@@ -123,7 +123,7 @@ def drawn_turns(
 
 
 def longest_turn(turns: int, outline: Outline, world: World) -> float:
-    """Returns the greatest length of a turn in metres, for a road with this number of turns."""
+    """Returns the greatest length of a turn in metres, for a road with ``turns`` turns."""
     wide = outline.each_turn.radius
     longest = max(LONGEST_TURN, wide.lo * radians(WIDE_ANGLE)) if wide and wide.lo > WIDEST else LONGEST_TURN
     by_map = min(2.2 * world.site.map_size / (turns + 1.2), longest)
@@ -147,7 +147,7 @@ def _uncoiled(angles: list[float], ranges: Sequence[Range], hands: Sequence[int]
     return [degrees.lo + f * (a - degrees.lo) for a, degrees in zip(angles, ranges, strict=True)]
 
 
-def _target(asked: Range, rng: np.random.Generator) -> float:
+def drawn_target(asked: Range, rng: np.random.Generator) -> float:
     """Chooses the sum of the angles of all turns at random, in degrees, within the required range."""
     low = asked.lo if asked.lo > 0 else 0.6 * asked.hi
     high = asked.hi if asked.hi < inf else 1.3 * asked.lo
@@ -244,7 +244,7 @@ def drawn_straight(wish: Feature, rng: np.random.Generator, haste: float, least:
 
 
 def inside(least: float) -> float:
-    """Returns the design length in metres of a straight of which ``least`` metres must be measured."""
+    """Returns the length in metres that a straight is given so that ``least`` metres of it are measured."""
     return 1.05 * least + 3.0
 
 

@@ -1,8 +1,8 @@
 """Converts elements to RoadGPT's segments and back.
 
 In RoadGPT's format, a turn of more than 70 degrees is split into several segments; an element is the whole
-turn. Elements that the planner drafted are recovered from their segments exactly, to the last digit that is
-written.
+turn. Elements that the planner drafted can be recovered from their segments exactly, because their numbers
+are rounded to the precision of design files.
 """
 
 from collections.abc import Iterator, Sequence
@@ -158,7 +158,7 @@ def _of_group(group: Sequence[Segment]) -> Iterator[Element]:
 
 
 def required_hills(plan: Sequence[Element]) -> int:
-    """Returns how often a road changes between climbing and falling by the required grades alone."""
+    """Returns how often the required grades force a road to change between climbing and falling."""
     required = (element.required_grade for element in plan)
     climbs = [grade.lo > 0 for grade in required if grade and 0 not in grade]
     return sum(one != other for one, other in pairwise(climbs))

@@ -44,7 +44,8 @@ def corrected_draft(
     share: float,
     bumps: bool,
 ) -> tuple[tuple[Segment, ...], list[Complaint]]:
-    """Returns the segments of a draft, corrected in up to eight rounds, and Complaints about the result.
+    """Returns the segments of a draft, corrected in up to eight rounds, and a Complaint for each requirement
+    that they still violate.
 
     Args:
         elements: the elements of the draft, with inclines.

@@ -31,7 +31,7 @@ Cell = tuple[int, int]
 
 
 def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, haste: float) -> MapDraft | None:
-    """Returns the draft of a grid; None if this one has no room for its bends.
+    """Returns a random draft of a grid; None if the draft leaves too little room for its bends.
 
     Args:
         asked: the number of columns and rows of blocks, their side, and the number of dead ends.
@@ -62,10 +62,10 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
-    """Returns a random whole number from ``least`` to ``most`` that an amount allows.
+    """Returns a random whole number that ``asked`` allows and that lies between ``least`` and ``most``.
 
-    If the amount has no upper limit, the result exceeds the lowest possible number by 2 at most. The amount
-    must allow a number from ``least`` to ``most``; None allows all of them.
+    If ``asked`` has no upper limit, the result exceeds the lowest possible number by 2 at most. There must be
+    at least one possible number. If ``asked`` is None, all numbers from ``least`` to ``most`` are allowed.
     """
     both = overlap(span(asked), Range(least, most))
     assert both is not None

@@ -68,7 +68,10 @@ class _Way(NamedTuple):
 def grown(
     order: TurnSequence, outline: Outline, windows: Windows, world: World, rng: np.random.Generator
 ) -> PlacedPlan | None:
-    """Returns a road of the required length; None if it ran out of room, or if no length is required.
+    """Returns a road of the required length, drafted turn by turn; None if it found no room on the map.
+
+    Also returns None if no length is required, if there are no turns, or if a sum of all turning angles is
+    required.
 
     Args:
         order: the turns, each to the left or right, and the required straights between them.

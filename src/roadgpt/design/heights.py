@@ -73,7 +73,7 @@ class Windows:
     def of(self, feature: Feature) -> Range | None:
         """Returns the range of grades for the design of a feature, a little inside its required range.
 
-        If no grade is required of the feature, the range for the whole road is returned.
+        If no grade is required of the feature, returns the range for the whole road; None if it is open.
 
         Raises:
             DesignError: the required grade is steeper than allowed, or contradicts that of the whole road.
@@ -97,7 +97,7 @@ class Windows:
         return own
 
     def row(self, straights: Sequence[Feature]) -> list[Range | None]:
-        """Returns each straight's range of grades, chosen unlike its neighbour's if no grade is required."""
+        """Returns a range of grades per straight; where none is required, one unlike the neighbour's."""
         out = [self.of(straight) for straight in straights]
         for i, straight in enumerate(straights):
             known = out[i - 1] if i else (out[i + 1] if i + 1 < len(out) else None)

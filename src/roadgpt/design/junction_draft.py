@@ -55,7 +55,7 @@ def drawn_junction(asked: JunctionClause, after: int, rng: Rng, haste: float) ->
 
     Args:
         asked: the requirements.
-        after: number of segments of the route before the junction.
+        after: number of segments of the route after which the junction follows.
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the junction.
     """
@@ -125,10 +125,11 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
     """Returns the directions of the arms in degrees from the direction of arrival, from right to left."""
     if (across := _across(clause, rng)) is not None:
         angles = [across - 180, 0.0, across]
-        left_out = int(rng.integers(3)) if clause.kind == "t_junction" else None
+        left_out = _missing_arm(clause, rng) if clause.kind == "t_junction" else None
         return [angle for n, angle in enumerate(angles) if n != left_out]
     if clause.kind == "t_junction":
-        usual = ((-90.0, 90.0), (0.0, 90.0), (-90.0, 0.0))[int(rng.integers(3))]
+        missing = _missing_arm(clause, rng)
+        usual = [angle for n, angle in enumerate((-90.0, 0.0, 90.0)) if n != missing]
         return [_near(angle, STRAIGHT if angle == 0 else ACROSS, rng) for angle in usual]
     if clause.kind == "crossroads":
         if clause.skew:
@@ -143,6 +144,16 @@ def _angles(clause: JunctionClause, rng: Rng) -> list[float]:
             left, right = (float(gap) for gap in rng.uniform(*gaps, size=2))
         return [-180 + right, 180 - left]
     return _around(clause, rng)
+
+
+def _missing_arm(clause: JunctionClause, rng: Rng) -> int:
+    """Returns which of the ways to the right, straight on and to the left a T-junction does not have.
+
+    "At the T-junction turn left" usually means that the road ends there; a priority road goes on.
+    """
+    drawn = int(rng.integers(3))
+    ends = clause.take in ("left", "right") and not clause.ways and clause.control != "priority"
+    return 1 if ends and not (clause.only_in or clause.only_out) else drawn
 
 
 def _across(clause: JunctionClause, rng: Rng) -> float | None:
@@ -169,6 +180,8 @@ def _around(clause: JunctionClause, rng: Rng) -> list[float]:
     possible = Range(ARMS[clause.kind].lo, MOST_ARMS_OF_MINI) if clause.size == "mini" else ARMS[clause.kind]
     counts = overlap(possible, span(clause.arms)) or possible
     asked = span(clause.exit)
+    if clause.take == "back" and clause.exit is not None:
+        counts, asked = overlap(counts, asked) or counts, Range()
     fewest = max(counts.lo, min(asked.lo + 1, counts.hi))  # the last exit would lead back
     if clause.kind == "roundabout" and clause.arms is None and clause.take is not None:
         fewest = max(fewest, 4.0 if clause.take == "straight" else 3.0)
@@ -228,9 +241,9 @@ def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | N
     The index is that of the last arm and one more if the route turns back at a roundabout.
     """
     count = len(angles)
-    if clause.take == "back":
-        return count
     exits = span(clause.exit)
+    if clause.take == "back":
+        return count if clause.exit is None or count + 1 in exits else None
     allowed = [n for n in range(count) if n + 1 in exits]
     if clause.exit is not None and not allowed:
         return count if count + 1 in exits else None
@@ -239,7 +252,7 @@ def _taken(clause: JunctionClause, angles: Sequence[float], rng: Rng) -> int | N
         allowed = [n for n in allowed if one_way[n] is None and _turns(clause, angles[n])]
         return allowed[int(rng.integers(len(allowed)))] if allowed else None
     taken = _towards(clause, angles)
-    return taken if taken is None or _turns(clause, angles[taken]) else None
+    return taken if taken in allowed and _turns(clause, angles[taken]) else None
 
 
 def _turns(clause: JunctionClause, angle: float) -> bool:

@@ -42,7 +42,7 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     Args:
         asked: the requirements.
         room: length in metres that is available for the acceleration or deceleration lane with its taper. If
-            no length is required, the lane fits into this room or is 20 m long without its taper.
+            no length is required, the lane is made to fit, but is at least 20 m long without its taper.
     """
     assert asked.kind in RAMPS
     taper = RAMP_TAPER if asked.taper is None else _length(asked.taper) / (1 - WIDE_IN_TAPER)
@@ -88,8 +88,9 @@ def counted_from_lanes(brief: Brief, places: Sequence[PlaceDesign], width: float
     The Brief measures lengths from where a lane that ends or begins is ``LEAST_WIDTH`` wide. The roads,
     however, meet where the lane's taper ends or begins.
 
-    At a lane change, the Brief measures lengths from the middle of the road behind the place. If only the
-    road before the place has a required length, the road behind gets a length of 40 to 80 m.
+    A car changes lanes in the middle of the road behind the place of a ``lane_change``. If only the road
+    before this place has a required length, the Brief measures it up to that middle, and the road behind gets
+    a length of 40 to 80 m.
 
     Args:
         brief: the requirements.
@@ -132,8 +133,9 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     crossings before and behind a merge or an exit, a road is a one-way carriageway instead: with one lane on
     a ramp, and usually two elsewhere.
 
-    A road behind a junction keeps the lanes of the road before if the route leads straight on. If the route
-    turns, the road keeps them only where the lanes of both directions are required before the junction.
+    If no lanes are required for a road behind a junction, it usually gets the lanes of the road before the
+    junction if the route leads straight on. If the route turns, it gets these lanes only if the lanes of both
+    directions are required for the road before the junction.
 
     Args:
         brief: the requirements.

@@ -1,4 +1,4 @@
-"""Defines the draft of a map of roads: nodes and roads in plan view, before they are placed on the map."""
+"""Defines the draft of a map of roads: nodes and roads in plan view, before they are placed."""
 
 import cmath
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ class MapDraft:
         return number
 
     def neighbours(self) -> list[list[int]]:
-        """Returns for each node the numbers of the nodes to which a road leads from it."""
+        """Returns, for each node, the numbers of the nodes to which roads join it."""
         found: list[list[int]] = [[] for _ in self.nodes]
         for one, other in self.roads:
             found[one].append(other)
@@ -61,7 +61,7 @@ class MapDraft:
         return found
 
     def corners(self) -> NDArray[np.complex128]:
-        """Returns the points that must lie on the map, x + iy in metres, ``(n,)``.
+        """Returns the points that must lie in the square of side ``map_size``, x + iy in metres, ``(n,)``.
 
         These are all nodes, and 16 points around each roundabout. The width of roads is not included.
         """
@@ -82,7 +82,7 @@ def drawn_kerb(rng: Rng, haste: float) -> float:
 def drawn_stub(rng: Rng, haste: float) -> float:
     """Returns a random length in metres of a dead end, from its contact: the point where the junction ends.
 
-    The larger ``haste``, from 0 to 1, the shorter is the dead end.
+    The larger ``haste``, from 0 to 1, the shorter the dead end.
     """
     low, high = STUBS
     return low + (high - low) * (1 - haste) * float(rng.random())

@@ -1,7 +1,7 @@
 """Draws a route through the draft of a map of roads.
 
-If the description says where the route turns, the route does so. Otherwise, it passes several junctions and
-turns to both sides where possible.
+If the description says where the route turns, the route takes these turns. Otherwise, it passes several
+junctions and turns to both sides where possible.
 """
 
 import cmath
@@ -41,7 +41,7 @@ def drawn_route(draft: MapDraft, rng: Rng) -> list[int] | None:
 
 
 def named_route(draft: MapDraft, ways: Sequence[Way], rng: Rng) -> list[int] | None:
-    """Returns the numbers of the nodes along a route that takes the given ways at its junctions, in order.
+    """Returns the numbers of the nodes along a route that turns as ``ways`` says at its junctions, in order.
 
     Returns None if there is no such route. The route starts and finishes at ends where possible, and
     otherwise at junctions. No node is passed twice.

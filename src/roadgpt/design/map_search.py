@@ -1,7 +1,8 @@
-"""Searches for a map of roads: tries random drafts until one fits on the map and breaks no rule.
+"""Searches for a map of roads: tries random drafts until one fits and breaks no rule.
 
-A draft is a grid, or junctions joined by roads. The draft is rotated and moved onto the square map, and
-heights and a route are drawn at random. The rules must then accept the network that is built from the draft.
+A draft is a grid, or junctions joined by roads. The draft is rotated and moved into a square with sides of
+``map_size``, and heights and a route are drawn at random. The rules must then accept the network that is
+built from the draft.
 """
 
 from collections import Counter
@@ -68,7 +69,7 @@ class MapSearch:
 
         Raises:
             DesignError: no draft was accepted; the message says why most of them failed.
-            UsageError: the World asks for lanes or banked bends that networks do not have.
+            UsageError: the World has lanes or superelevation that networks cannot have.
         """
         profile_of_map(None, self.world)
         hastes = (max(0.0, (n - NO_HASTE) / (drafts / 2)) ** 0.5 for n in range(drafts))

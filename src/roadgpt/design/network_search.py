@@ -157,8 +157,8 @@ class NetworkSearch:
             clause = self._at_end_of_ramp(number) or self._with_ring_lanes(number)
             junction = drawn_junction(clause, 1, self.rng, haste)
             if junction is None:
-                is_ring = clause.kind == "roundabout"
-                why = "such an island is too small for so many arms" if is_ring else "it has no such ways on"
+                is_small = clause.kind == "roundabout" and not (clause.take and clause.exit)
+                why = "such an island is too small for so many arms" if is_small else "it has no such ways on"
                 self.failed[f"{why} at a {clause.name}"] += 1
                 return None
             found.append(junction if lanes is None else junction.model_copy(update={"lanes": lanes}))

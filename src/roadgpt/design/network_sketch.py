@@ -54,8 +54,8 @@ def sketched(
     """Returns the sketch of a route.
 
     Args:
-        lines: the roads before, between and after the places that the route passes.
-        places: these places: junctions, ramps, and places where lanes change; one fewer than the roads.
+        lines: the roads before, between and after ``places``.
+        places: the junctions, ramps and lane changes that the route passes; one fewer than the roads.
         profiles: the cross-section of each road.
     """
     pen = _Pen(lines[0], profiles[0].reach)

@@ -1,8 +1,10 @@
 """States what is wrong with a design in sentences that name its segments, so that a model can correct it.
 
-segment 3: grade 17 % > 15 %
-turn count is 4, asked for 3
-segment 5: leaves the map at (214, 35); x and y run from 0 to 200 m
+Examples of such sentences:
+
+    segment 3: grade 17 % > 15 %
+    turn count is 4, asked for 3
+    segment 5: leaves the map at (214, 35); x and y run from 0 to 200 m
 """
 
 import re

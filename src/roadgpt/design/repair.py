@@ -18,14 +18,13 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from roadgpt.brief.model import Brief
-from roadgpt.brief.outline import Feature, Group, Outline, outline
+from roadgpt.brief.outline import Feature, Group, Outline, both, outline
 from roadgpt.brief.words import Range
 from roadgpt.check.matching import Match, best_match, fits, sides_of
 from roadgpt.check.measures import MeasuredFeature
 from roadgpt.design.differences import changes_between
 from roadgpt.design.fit import Requirements, fit
 from roadgpt.design.road_elements import RoadElements, elements_as_proposed
-from roadgpt.design.sequence import both
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, World
 

@@ -7,7 +7,7 @@ from roadgpt.chat import Usage
 
 
 class DesignReport(Frozen):
-    """The report of one draft by a designer that asks a language model."""
+    """How a language model made one draft: its proposal, the changes to it, requests, time and cost."""
 
     rounds: int = 0
     """Number of requests to the model."""

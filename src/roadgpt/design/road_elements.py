@@ -171,7 +171,7 @@ def shows_slopes(found: Measures, elements: Sequence[RoadElement]) -> bool:
 
 
 def features_of(elements: Sequence[RoadElement], found: Measures) -> tuple[MeasuredFeature | None, ...]:
-    """Returns the measured feature of each element; None if it is not measured as a feature of its own.
+    """Returns the measured feature of each element; None for an element without a feature of its own.
 
     The measured turns must correspond to those of the elements. If there are several elements between two
     turns, the straight measured there is assigned to the longest of them.

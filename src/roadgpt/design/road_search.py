@@ -33,7 +33,8 @@ from roadgpt.design.grade_correction import corrected_draft
 from roadgpt.design.growth import grown, is_long
 from roadgpt.design.heights import Windows, drawn_heights
 from roadgpt.design.layout import MapPose, PlacedPlan, keeps_clear, place, smallest_box, walk
-from roadgpt.design.sequence import drawn_sequence
+from roadgpt.design.like_parts import LikePartDraw, with_like_parts
+from roadgpt.design.sequence import TurnSequence, drawn_sequence
 from roadgpt.design.variety import ENOUGH, PlanShape, Shapes, nearest, shape_of
 from roadgpt.design.vertical import EASES, Pace
 from roadgpt.design.writing import design_at
@@ -139,8 +140,8 @@ class DraftSearch:
         """Returns the first draft that is accepted, as in ``run``; None if no draft is accepted.
 
         Args:
-            drafts: number of random drafts. A road of required length gets some drafts more, which are grown
-                turn by turn; a long one (see ``is_long``) gets only these.
+            drafts: number of random drafts. If the length of the road is required, additional drafts are
+                grown turn by turn; a long road (see ``is_long``) has only grown drafts.
         """
         alike: list[tuple[float, int, PlacedPlan]] = []
         finished = 0
@@ -178,6 +179,10 @@ class DraftSearch:
                 return found
         return None
 
+    def _sequence(self, plain: bool, haste: float) -> TurnSequence:
+        order = drawn_sequence(self.outline, self.rng, plain)
+        return with_like_parts(order, LikePartDraw(self.outline, self.windows, self.world, self.rng, haste))
+
     def _growth(self) -> PlacedPlan | None:
         """Returns a plan that was drafted turn by turn on the map.
 
@@ -185,7 +190,7 @@ class DraftSearch:
         """
         if self.outline.length is None:
             return None
-        order = drawn_sequence(self.outline, self.rng, plain=True)
+        order = self._sequence(plain=True, haste=0.5)
         found = grown(order, self.outline, self.windows, self.world, self.rng)
         if found is None:
             self.failed["too large"] += 1
@@ -203,7 +208,7 @@ class DraftSearch:
         return next((k for k, w in zip(limits, worlds, strict=True) if fits(self.brief, w)), None)
 
     def _plan(self, haste: float) -> PlacedPlan | None:
-        order = drawn_sequence(self.outline, self.rng, plain=haste > 0.5)
+        order = self._sequence(plain=haste > 0.5, haste=haste)
         elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
         if elements is None:
             self.failed["longer than was asked for"] += 1
@@ -240,7 +245,7 @@ class DraftSearch:
             haste: from 0 to 1; the larger it is, the shorter the road.
             plain: whether the road has as few turns as the requirements allow.
         """
-        order = drawn_sequence(self.outline, self.rng, plain)
+        order = self._sequence(plain, haste)
         elements = composed(order, self.outline, self.windows, self.world, self.rng, haste)
         if elements is None:
             return None

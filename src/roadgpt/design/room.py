@@ -43,10 +43,8 @@ def world_remarks(brief: Brief, usual: World, found: World) -> tuple[str, ...]:
 
 
 def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
-    """Yields a sentence if the words ask for lanes, and one if they ask for a centre line that the road does
-    not get.
-
-    For networks, there are no sentences.
+    """Yields a sentence if the description asks for lanes, and another if it asks for a centre line that the
+    road does not get. For networks, yields nothing.
 
     Args:
         brief: the requirements.
@@ -66,7 +64,7 @@ def lane_remarks(brief: Brief, found: World) -> Iterator[str]:
 
 
 def map_remark(usual: World, found: World) -> str:
-    """Returns a sentence that says how large the map has become; empty if it is as large as before.
+    """Returns a sentence that gives the new size of the map; empty if the size has not changed.
 
     Args:
         usual: the World that was given.

@@ -8,6 +8,7 @@ import numpy as np
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS
+from roadgpt.brief.mirror import mirrored
 from roadgpt.brief.model import Brief
 from roadgpt.design.advice import larger_map, main_reason
 from roadgpt.design.lane_draft import drawn_ramp
@@ -31,6 +32,7 @@ def room_for_route(brief: Brief, world: World) -> float | None:
 
     Returns None if the World's map is large enough, or if no larger map would help.
     """
+    brief = mirrored(brief) if brief.left_hand else brief  # drafts are made with traffic on the right
     likely = _likely_room(brief)
     try:
         failed = _failed(brief, world) if likely <= world.site.map_size else None

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
-from roadgpt.brief.outline import Feature, Outline
+from roadgpt.brief.outline import Feature, Outline, both
 from roadgpt.brief.words import Range, overlap
 from roadgpt.errors import DesignError
 
@@ -162,20 +162,6 @@ def _shares(one: Feature, other: Feature) -> bool:
     """Returns whether one straight can meet the requirements of both."""
     return all(
         a.lo <= a.hi for a in (overlap(one.length, other.length), overlap(one.grade, other.grade)) if a
-    )
-
-
-def both(one: Feature, other: Feature) -> Feature:
-    """Returns a feature with the requirements of two features; ranges are intersected and may become
-    empty.
-    """
-    return replace(
-        one,
-        side=one.side or other.side,
-        degrees=overlap(one.degrees, other.degrees),
-        radius=overlap(one.radius, other.radius),
-        length=overlap(one.length, other.length),
-        grade=overlap(one.grade, other.grade),
     )
 
 

@@ -205,7 +205,7 @@ def joined(
 ) -> tuple[Segment, ...]:
     """Returns the segments with a vertical radius wherever the grade changes.
 
-    Each radius is as large as ``ease`` asks for, or smaller if there is not enough room.
+    Each chosen radius is the one that ``ease`` gives, or smaller if there is not enough room.
 
     Args:
         segments: the segments of a design, in driving order.

@@ -51,7 +51,7 @@ def draft_village(
 ) -> MapDraft | None:
     """Returns the draft of a map of roads with junctions.
 
-    Returns None if a junction found no place, or if the number of dead ends is not the required one.
+    Returns None if there was no room for a junction, or if the number of dead ends is not the required one.
 
     Args:
         asked: the kinds of junctions, how many of each, the distance between them, and the number of dead

@@ -29,8 +29,8 @@ def camera_of(driver: Any) -> CameraSpec | None:
 
 
 class CameraSensor:
-    """Renders the road as the driver's camera sees it; the image depends only on the road, the world and the
-    pose of the car."""
+    """Renders the road as the driver's camera sees it; the image depends only on the road, the world, and
+    the pose, steering and braking of the car."""
 
     def __init__(self, camera: CameraSpec, road: "Road", world: "World") -> None:
         """Mounts a camera on a car on this road.

@@ -108,7 +108,8 @@ def bound(function: Function, arguments: tuple[Any, ...]) -> Function:
 def inlined(function: Function) -> Function:
     """Returns a small function that is inlined into the compiled functions that call it.
 
-    Its machine code is cached as part of theirs. If nothing can be compiled, it is returned unchanged.
+    Its machine code is cached with the calling functions. If nothing can be compiled, the function is
+    returned unchanged.
     """
     if not COMPILES:
         return function

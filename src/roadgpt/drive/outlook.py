@@ -1,4 +1,4 @@
-"""Tells a driver of a route which junctions lie ahead, and which lanes are beside its own."""
+"""Computes which junctions lie ahead of a driver, and how many lanes are beside the driver's own lane."""
 
 from bisect import bisect_right
 from typing import TYPE_CHECKING

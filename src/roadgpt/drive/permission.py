@@ -1,5 +1,5 @@
 """Decides which drivers may be run. If a driver's file is named only in a stored file, such as a run's
-``run.json``, it is not run until the user names it or agrees.
+``run.json``, its code is not run until the user names the driver or agrees.
 
 Plug-ins need no permission, because the user has installed them.
 """
@@ -63,7 +63,7 @@ def check_named_driver(spec: str | None, drivers: set[str], place: object) -> No
     """Checks that the driver given with ``--driver`` is one of the drivers used in the run or campaign.
 
     Raises:
-        UsageError: the driver is not used there.
+        UsageError: the run or campaign does not use this driver.
     """
     if spec is not None and _whole(spec) not in {*map(_whole, drivers)}:
         told = ", ".join(sorted(drivers)) or "nobody"

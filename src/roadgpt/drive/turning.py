@@ -52,9 +52,9 @@ def turning_speed(curvature: float) -> float:
 
 
 def highest_speeds(road: "Road", line: DrivingLine) -> list[float] | None:
-    """Returns the speeds in m/s that bends in junctions and stop signs allow, one for each station of a line.
+    """Returns the speed in m/s that stop signs and the bends of junctions allow, at each station of a line.
 
-    Where neither sets a limit, the speed is infinite. The result is None on a road without junctions.
+    Where nothing limits the speed, it is infinite. The result is None on a road without junctions.
     """
     ways = passages(road)
     if not ways:
@@ -109,14 +109,15 @@ def kept_in_lane(
 
 
 class StopSigns:
-    """Makes a driver stop at the stop signs of a route: the car stands once before each line."""
+    """Makes a driver stop at the stop signs of a route: the car stops once before each stop line."""
 
     def __init__(self, road: "Road") -> None:
         """Prepares the stop lines of a route; on a road without stop signs, no command is changed."""
         self._lines = [way.stop_line for way in passages(road) if way.stop_line is not None]
 
     def obeyed(self, view: View, command: Command) -> Command:
-        """Returns the command, with the brakes applied where the car has to stop before a line."""
+        """Returns the command, changed near a stop line: the car brakes to a stop before the line, and rolls
+        on slowly if it has stopped too early."""
         if not self._lines:
             return command
         left = self._lines[0] - view.s - FRONT

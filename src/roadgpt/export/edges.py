@@ -46,7 +46,7 @@ def stations(road: Road, reach: float, chord: float = CHORD) -> Array:
 
 
 def normals(road: Road, s: Array) -> Array:
-    """Returns unit vectors ``(n, 3)`` that are normal to the road surface and point upwards."""
+    """Returns the upward unit normals ``(n, 3)`` of the road surface at stations ``s``."""
     heading, grade = road.heading(s), road.grade(s)
     if road.profile is None or road.profile.superelevation_angle is None:
         up = np.stack([-grade * np.cos(heading), -grade * np.sin(heading), np.ones_like(grade)], axis=-1)

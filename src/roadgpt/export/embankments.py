@@ -32,7 +32,7 @@ def embankments(road: Road, profile: Profile, s: Array, land: Land) -> Iterator[
         road: The road.
         profile: The cross-section of the road; the slopes begin at the outer edges of the shoulders.
         s: Stations ``(n,)`` in metres of the points along both edges.
-        land: The surrounding land; each slope ends in it.
+        land: The surrounding land; each slope ends just below its surface.
     """
     heading, (left, right) = road.heading(s), profile.rims(s)
     for side, rim in ((-1.0, right), (1.0, left)):

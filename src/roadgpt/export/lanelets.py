@@ -93,8 +93,8 @@ def lanelets_of(road: Road, world: World) -> list[Lanelet]:
 
 
 def leading_to(lanelets: Iterable[Lanelet], network: Network, end: RoadEnd) -> list[Lanelet]:
-    """Returns the last lanelet of each lane that leads towards one end of a road, from the centre line
-    outwards.
+    """Returns the last lanelet of each lane that leads towards ``end``, one of the two ends of a road. The
+    lanes are in order from the centre line outwards.
     """
     ids = network.road(end.road).ids_towards(end.contact)
     last = {each.lane: each for each in lanelets if each.road == end.road and not each.is_followed_on_road}

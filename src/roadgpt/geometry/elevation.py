@@ -148,7 +148,7 @@ class CubicProfile:
     def cubics(self, s: ArrayLike) -> Array:
         """Returns the coefficients ``(n, 4)`` of the cubics that apply at stations ``s`` of shape ``(n,)``.
 
-        Each cubic is rewritten as a function of the distance from its ``s``.
+        Each cubic is rewritten as a function of the distance from its station in ``s``.
         """
         u, table = self._place(s)
         a, b, c, d = table

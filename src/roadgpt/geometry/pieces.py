@@ -113,8 +113,8 @@ class PieceCurve:
 def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[Array, Array]:
     """Returns points ``(n, 2)`` in metres and headings ``(n,)`` in radians on several curves.
 
-    The rows of each curve follow those of the curve before. The values are those of ``at`` and ``heading``,
-    but computed faster.
+    The results of all curves are concatenated in the order of ``curves``. They are the same as those of
+    ``at`` and ``heading``, but are computed faster.
 
     Args:
         curves: One or more curves.

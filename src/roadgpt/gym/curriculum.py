@@ -45,7 +45,7 @@ class Curriculum(gymnasium.Wrapper[Any, Any, Any, Any]):
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Runs a step of the environment. At the end of an episode, records whether the agent reached the
-        goal, and advances to the next description if it did so often enough."""
+        goal, and advances to the next description if the agent did so in enough of the last episodes."""
         seen, reward, terminated, truncated, info = self.env.step(action)
         if terminated or truncated:
             self._count(info.get("ended") == "goal")

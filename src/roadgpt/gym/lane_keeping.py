@@ -113,7 +113,13 @@ class LaneKeeping(gymnasium.Env[State, NDArray[np.float32]]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[State, dict[str, Any]]:
         """Makes a new road and places the car at its start; ``options["prompt"]`` is a description for this
-        road only."""
+        road only.
+
+        Raises:
+            BriefError: ``options["prompt"]`` cannot be read, or demands something that the world does not
+                allow.
+            DesignError: no valid road was found for the description.
+        """
         super().reset(seed=seed)
         brief = self._briefs[int(self.np_random.integers(len(self._briefs)))]
         if options and "prompt" in options:

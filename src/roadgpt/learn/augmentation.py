@@ -65,8 +65,8 @@ def _description(pair: Pair, other: Pair | None, rng: np.random.Generator) -> Pa
 
 
 def both_changes(one: Pair, other: Pair, rng: np.random.Generator) -> tuple[str, str] | None:
-    """Returns the text and plan of two change requests as one; None if a plan is a refusal, or both texts
-    together are too long.
+    """Returns one text and one plan that join two change requests; None if a plan is a refusal, or if the
+    joined text would be too long.
     """
     if any(pair.plan.startswith("!") for pair in (one, other)) or len(one.text + other.text) > LONGEST:
         return None

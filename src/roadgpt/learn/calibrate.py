@@ -27,7 +27,7 @@ PULL = 0.1  # weight decay, so that few pairs do not lead to extreme weights
 
 @dataclass(frozen=True, slots=True)
 class EnsembleCalibration:
-    """What is fitted to the readings of an ensemble: the lowest probability at which a refusal is accepted,
+    """Values fitted to the readings of an ensemble: the lowest probability at which a refusal is accepted,
     and the weights of the confidence model.
     """
 
@@ -72,7 +72,7 @@ def calibrated_ensemble(
     reader: ModelReader, ensemble: Ensemble, pairs: Sequence[Pair], caution: float = 1.0
 ) -> EnsembleCalibration:
     """Returns the calibration of an ensemble, fitted to valid descriptions of the kind that this ensemble
-    reads. A wrong reading counts as ``caution`` right readings.
+    reads. In the fit of the confidence model, a wrong reading counts ``caution`` times, a right one once.
     """
     read = [(reader.uncalibrated(pair.text, 2.0), _bare(pair.plan)) for pair in pairs]
     return EnsembleCalibration(
@@ -86,7 +86,7 @@ def _is_route(pair: Pair) -> bool:
 
 
 def normal_change(line: str) -> str:
-    """Returns the normal form of a plan of changes."""
+    """Returns a plan of changes as ``change_plan`` writes it, so that two plans can be compared as text."""
     return change_plan(read_change_plan(line))
 
 

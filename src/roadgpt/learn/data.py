@@ -125,7 +125,7 @@ def examples(
         seed: seed of the series.
         hand: the hand-written pairs.
         pieces: the vocabulary of word pieces.
-        of_series: the share of each series of pairs.
+        of_series: the share of each series of pairs, by the name of the series.
     """
     streams = _streams(seed, hand)
     names = [name for name in of_series if name in streams]
@@ -147,11 +147,11 @@ def examples(
 
 
 def is_for_roads_only(pair: Pair) -> bool:
-    """Returns whether the plan of a single road lists in ``beside(...)``, or refuses, something that routes
-    consist of, such as a junction.
+    """Returns whether a pair is suitable only for the networks that read single roads.
 
-    Only the networks for single roads learn such names, because a name of this kind in a reading passes the
-    description on to the network for routes.
+    In such a pair, the plan of a single road names a part of routes, such as a junction, in ``beside(...)``
+    or in a refusal. If a network for single roads writes such a name, the description is passed on to the
+    network for routes, which must therefore not learn these names.
     """
     if pair.is_change or pair.family.startswith(NETWORK):
         return False

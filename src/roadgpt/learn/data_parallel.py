@@ -1,4 +1,4 @@
-"""Trains in several processes, each on one core, which regularly average their weights (local SGD)."""
+"""Trains a network in several processes, one per core, that regularly average their weights (local SGD)."""
 
 import multiprocessing
 import os

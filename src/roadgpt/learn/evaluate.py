@@ -42,8 +42,11 @@ class Reading:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """The number of readings, and shares from 0 to 1. Some shares count the readings that are right, as a
-    whole or in one aspect. The others count the descriptions that were refused, rightly or wrongly.
+    """The number of readings, the number of descriptions that should be refused, and shares from 0 to 1.
+
+    ``exact`` is the share of all readings that are right. ``refused_rightly`` is the share of refused ones
+    among the ``refusals`` descriptions that should be refused. The other shares refer to valid descriptions:
+    those for which one aspect was read correctly, and those that were refused (``refused_wrongly``).
     """
 
     number: int
@@ -144,7 +147,7 @@ def by(found: Sequence[Reading], key: Callable[[Pair], str]) -> dict[str, Score]
 
 
 def confusion(found: Sequence[Reading]) -> Counter[tuple[str, str]]:
-    """Counts which words of the labels' plans were replaced by which other words, over all wrong readings.
+    """Counts, over all wrong readings, which words of the right plan were read as which other words.
 
     The words of a plan are compared without regard to their order, and those that differ are paired
     alphabetically; '-' stands for no word. A wrong refusal counts as the pair ('a road', 'refused').

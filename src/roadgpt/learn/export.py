@@ -27,7 +27,7 @@ EMBEDDING = "embedding.bin"
 
 
 class EncoderGraph(nn.Module):
-    """Maps pieces (batch, n) to keys and values of shape (layers, 2, batch, heads, n, head size)."""
+    """Maps word pieces (batch, n) to keys and values of shape (layers, 2, batch, heads, n, head size)."""
 
     def __init__(self, reader: ReaderNetwork) -> None:
         super().__init__()
@@ -75,7 +75,7 @@ def export(reader: ReaderNetwork, folder: Path, ending: str = "", bits: Literal[
     Args:
         reader: the network.
         folder: where the files are written.
-        ending: suffix of "encoder" and "decoder" in the names of the files.
+        ending: what follows "encoder" and "decoder" in the names of the files.
         bits: number of bits that the weights use; with 7, files are an eighth smaller when compressed.
     """
     from onnxruntime.quantization import QuantType, quantize_dynamic
@@ -128,12 +128,12 @@ def export_checkpoints(
     """Writes all files that the reader needs, from the checkpoints of up to three training runs.
 
     Args:
-        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``. The key of each folder is the suffix
-            of "encoder" and "decoder" in the names of the network's files: "", ``SECOND`` or ``ROUTES``.
+        checkpoints: folders with ``checkpoint.pt`` and ``pieces.txt``. The key of each folder ("", ``SECOND``
+            or ``ROUTES``) is what follows "encoder" and "decoder" in the names of the network's files.
         folder: where the graphs, the pieces, the filler words, the meanings and the settings are written.
         held_back: pairs that the networks were not trained on, for the calibration of the confidence.
         fillers: words that mean nothing in a plan; see ``word_meanings.filler_words``.
-        meanings: for each word, the tokens that it usually asks for; see ``word_meanings.word_meanings``.
+        meanings: for each word, the plan tokens for which it stands; see ``word_meanings.word_meanings``.
 
     Raises:
         LearnError: there is no checkpoint, or the embeddings of the networks differ.

@@ -20,7 +20,8 @@ TO_DESIGN = "Design a road for the description and answer with its road segments
 
 
 def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
-    """Yields one line of JSON for each pair: a chat in which a description is answered with its Brief."""
+    """Yields one line of JSON for each pair: a chat in which a description is answered with its Brief. If the
+    plan is a refusal, the answer is a sentence of advice."""
     for pair in pairs:
         answer = ADVICE.get(pair.plan) or read_plan(pair.plan).model_dump_json(exclude_defaults=True)
         yield _chat(TO_BRIEF, pair.text, answer)
@@ -29,7 +30,7 @@ def brief_chats(pairs: Iterable[Pair]) -> Iterator[str]:
 def design_chats(pairs: Iterable[Pair], world: World, seed: int) -> Iterator[str]:
     """Yields chats in which a description is answered with a Design, one line of JSON each.
 
-    Descriptions for which no road can be designed are skipped.
+    Refusals, and descriptions for which no road can be designed, are skipped.
     """
     for number, pair in enumerate(pairs):
         if pair.plan in REFUSALS:

@@ -58,8 +58,11 @@ def draw_route(language: str, rng: np.random.Generator, symbol: str = "networks"
 def assembled_route(raw: str) -> str:
     """Returns the standard form of the plan that the grammar rules wrote.
 
+    If the plan contains a refusal, only the refusal is returned.
+
     Raises:
-        Discarded: the plan has more than six junctions, or a part of the plan does not have exactly one kind.
+        Discarded: the plan has more than six junctions, a part between two ``//`` names several kinds of
+            junction, or a clause of a road names no kind of element, or several.
         RoadGPTError: the plan cannot be read, or demands something impossible.
     """
     if refusal := REFUSAL.search(raw):

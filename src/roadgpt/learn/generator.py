@@ -49,7 +49,7 @@ class Pair:
 
 def pairs(seed: int, languages: dict[str, float] | None = None) -> Iterator[Pair]:
     """Yields an endless series of pairs; the same seed gives the same pairs. ``languages`` gives the share of
-    each language by its code; None: ``SHARES``.
+    each language by its code; the default is ``SHARES``.
     """
     rng = np.random.default_rng(seed)
     while True:
@@ -89,7 +89,7 @@ def changed(seed: int) -> Iterator[Pair]:
 
 
 def drawn_language(shares: dict[str, float], rng: np.random.Generator) -> str:
-    """Returns the code of a random language."""
+    """Returns the code of a random language; ``shares`` gives the share of each language by its code."""
     codes, weights = list(shares), np.cumsum(list(shares.values()))
     return codes[int(np.searchsorted(weights, rng.random() * weights[-1], side="right"))]
 
@@ -151,6 +151,8 @@ def _composed(rng: np.random.Generator) -> Pair | None:
 
 def assembled(raw: str) -> str | None:
     """Returns the standard form of the plan that the grammar rules wrote; None if the plan makes no sense.
+
+    If the plan contains a refusal, only the refusal is returned.
 
     Raises:
         Discarded: a clause of the plan names no kind of element, such as "turn" or "straight", or several.

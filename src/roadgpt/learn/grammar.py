@@ -207,8 +207,8 @@ def grammar_of(language: str, phrases: str = "") -> Grammar:
 
     Args:
         language: code of the language.
-        phrases: empty for descriptions; "contrasts", "specs" or "networks" for descriptions with further
-            symbols, "changes" for change requests.
+        phrases: "" for the grammar of descriptions; "contrasts", "specs" or "networks" to add further symbols
+            to it; "changes" for the grammar of change requests.
 
     Raises:
         LearnError: there are no phrases in this language.

@@ -1,7 +1,7 @@
 """Makes trained weights fit a larger network, so that training goes on instead of beginning anew.
 
 New tokens get small random embeddings. A new decoder layer is a copy of the layer before it, but its outputs
-are zero. So before it is trained further, the larger network writes what the smaller one wrote.
+are zero. Before further training, the larger network therefore writes the same plans as the smaller one.
 """
 
 import re

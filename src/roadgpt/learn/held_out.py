@@ -15,11 +15,12 @@ HELD_OUT = frozenset((
 
 
 def is_held_out(text: str) -> bool:
-    """Returns True if this is a held-out description, regardless of capitals, accents and punctuation."""
+    """Returns whether a text is a held-out description, regardless of capitals, accents and punctuation."""
     return fingerprint(text) in HELD_OUT
 
 
 def fingerprint(text: str) -> str:
-    """Returns the hash of the words of a text, in lower case without accents and punctuation."""
+    """Returns the first 12 hexadecimal digits of the SHA-256 hash of a text's words, in lower case,
+    without accents and punctuation."""
     bare = " ".join(re.findall(r"[^\W_]+", plain(text)))
     return sha256(bare.encode()).hexdigest()[:12]

@@ -23,6 +23,8 @@ SPLITS = ("train", "validation", "test")
 def read_pairs(paths: Iterable[Path], is_change: bool = False) -> tuple[list[Pair], list[str]]:
     """Returns all usable pairs of JSON-lines files, and one sentence for each line that is not usable.
 
+    A line is not usable if ``read_pair`` rejects it, or if its text is held out or repeats an earlier one.
+
     Args:
         paths: the files.
         is_change: whether the texts are change requests instead of descriptions.

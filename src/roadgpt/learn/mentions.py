@@ -1,5 +1,5 @@
 """Adds phrases to descriptions: things that plans list in ``beside(...)`` ("in the rain"), denials of such
-things ("no traffic"), and talk that asks for nothing. Denials and talk do not change the plan.
+things ("no traffic"), and small talk. Denials and small talk do not change the plan.
 """
 
 import json
@@ -9,6 +9,8 @@ from importlib.resources import files
 
 import numpy as np
 
+from roadgpt.brief.plan import ALIKE, read_plan
+from roadgpt.brief.plan import plan as plan_of
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.learn.noise import tidy
@@ -38,8 +40,8 @@ NUMBERS = {"lanes": (2, 6), "lane_width": (2, 5), "speed": (20, 120)}
 def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
     """Returns the text and plan with a mention ("in the rain") or a denial ("no traffic") added.
 
-    Returns None if the plan is a refusal, names the thing already or would list too many names, or if there
-    are no phrases in the language.
+    Returns None if the plan is a refusal, already lists what would be mentioned or denied, or would list too
+    many names, or if there are no phrases in the language.
     """
     is_said = rng.random() < 0.7
     denied = DENIED_ON_ROUTES if is_of_junctions(plan) else DENIED
@@ -61,7 +63,7 @@ def with_mention(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 
 def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
-    """Returns the text with a greeting, a reason or the like before it, after it, or both."""
+    """Returns the text with small talk, such as a greeting or a reason, before it, after it, or both."""
     told = TALK.get(language, TALK["en"])
     way = rng.random()
     if way < 2 / 3:
@@ -80,11 +82,15 @@ def names_in(plan: str) -> list[str]:
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
-    """Returns the plan with these names in ``beside(...)``, which replace the names that were there."""
+    """Returns the plan with these names in ``beside(...)``, which replace the names that were there.
+
+    On a single road, "alike" becomes the flag of that name.
+    """
     bare = NAMED.sub("", plan).rstrip(" |")
     whole = "||" if is_of_junctions(plan) else "|"
     joint = " " if whole in bare else f" {whole} "
-    return f"{bare}{joint}beside({', '.join(names)})".strip()
+    line = f"{bare}{joint}beside({', '.join(names)})".strip()
+    return plan_of(read_plan(line)) if ALIKE in names and whole == "|" else line
 
 
 def _numbered(phrase: str, name: str, rng: np.random.Generator) -> str:

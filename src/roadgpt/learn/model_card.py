@@ -18,9 +18,9 @@ def card(
     shown: Sequence[Reading],
     training: str,
 ) -> str:
-    """Returns the model card as Markdown.
+    """Returns the model card of a reader as Markdown.
 
-    The card quotes no description from the test split, because people who write more pairs may read the card.
+    The card quotes no description from the test split, because people who write training pairs may read it.
 
     Args:
         weights: folder of the exported model.

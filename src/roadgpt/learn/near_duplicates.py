@@ -1,4 +1,4 @@
-"""Finds descriptions that are nearly the same: those that have more than 60 % of their 5-grams in common.
+"""Finds descriptions that are nearly the same: more than 60 % of the shorter one's 5-grams are in both.
 
 Numbers and words of the same kind (such as left and right, or turn and bend) are masked first, so texts that
 fill the same template with different words are found too.
@@ -25,8 +25,8 @@ MASK_OF = {word: mask for mask, its in MASKS.items() for word in its.split()}
 
 @dataclass(frozen=True, slots=True)
 class NearDuplicate:
-    """Two descriptions, by index, that have too many 5-grams in common; ``shared`` is the common fraction, 0
-    to 1.
+    """Two descriptions, by index, that have too many 5-grams in common; ``shared`` is the fraction, 0 to 1,
+    of the shorter one's 5-grams that the other one also has.
     """
 
     shared: float

@@ -30,7 +30,7 @@ BEYOND_BY = {
 
 def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
     """Returns the description with a contradicting requirement added, and the refusal that a reader should
-    answer; None if no suitable wording is available.
+    give as its answer; None if no suitable wording is available.
     """
     kinds = [kind for kind in _holds(plan) if language in CONFLICTS[kind]]
     if not kinds:
@@ -44,7 +44,7 @@ def contradicted(text: str, plan: str, language: str, rng: np.random.Generator) 
 
 def overdone(text: str, plan: str, language: str, rng: np.random.Generator) -> tuple[str, str] | None:
     """Returns the description with an impossible requirement added, and the refusal that a reader should
-    answer; None if no suitable wording is available.
+    give as its answer; None if no suitable wording is available.
     """
     if language not in BEYOND or plan.startswith("!"):
         return None

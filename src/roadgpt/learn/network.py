@@ -195,8 +195,11 @@ class ReaderNetwork(nn.Module):
         return functional.linear(self.final(x), self.tokens.weight) * self.shape.width**-0.5 * 8 + self.bias
 
     def forward(self, pieces: Tensor, tokens: Tensor) -> Tensor:
-        """Returns the scores of the next token at every position, (batch, length, tokens); piece 0 is
-        padding.
+        """Returns the scores of the next token at every position of the plans, (batch, length, tokens).
+
+        Args:
+            pieces: the descriptions, (batch, pieces); piece 0 is padding.
+            tokens: the plans, (batch, length).
         """
         seen = (pieces == 0)[:, None, None, :] * -1e4
         return self.write(tokens, self.encode(pieces, seen), seen)

@@ -20,7 +20,7 @@ def exported_weights(folder: Path, ending: str = "") -> dict[str, Floats]:
 
     Args:
         folder: the folder of an exported reader.
-        ending: what follows "encoder" and "decoder" in the names of the network's files.
+        ending: the text between "encoder" or "decoder" and ".onnx" in the names of the network's files.
 
     Raises:
         LearnError: the folder has no exported reader.

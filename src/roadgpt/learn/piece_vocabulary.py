@@ -1,4 +1,6 @@
-"""Selects the part of BERT's vocabulary that descriptions of roads need: Latin letters, numbers, slots."""
+"""Selects the part of BERT's vocabulary that descriptions of roads need: Latin letters, numbers up to 20, and
+unused entries that stand for slots (the numbers of a description).
+"""
 
 import re
 from collections.abc import Sequence
@@ -12,7 +14,7 @@ SPECIAL = ("[UNK]", "[CLS]", "[SEP]")
 
 
 def trimmed(vocabulary: Sequence[str]) -> list[str]:
-    """Returns the pieces of the vocabulary that are kept, with the padding piece first."""
+    """Returns the pieces of BERT's vocabulary that the network uses, with the padding piece first."""
     kept = ["[PAD]", *(f"[unused{number}]" for number in range(1, MARKS)), *SPECIAL]
     seen = set(kept)
     for piece in vocabulary:

@@ -66,8 +66,8 @@ def routes(roads: Sequence[Pair], junctions: Sequence[Pair], rng: np.random.Gene
     nothing if no language has suitable pairs of both kinds.
 
     Args:
-        roads: pairs of roads.
-        junctions: pairs of routes with junctions.
+        roads: pairs whose descriptions are of roads without junctions.
+        junctions: pairs whose descriptions are of routes with junctions.
         rng: source of randomness.
     """
     of_roads, of_junctions = _by_language(roads, _is_road), _by_language(junctions, _is_open)

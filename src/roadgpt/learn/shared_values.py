@@ -19,7 +19,8 @@ FEWEST = 2
 def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
     """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road.
 
-    Values that occur more than once in the text are not moved.
+    A value is moved only if each of its numbers occurs exactly once in the description, two or more turns
+    share it, and the plan has no such value for the whole road yet.
 
     Args:
         line: a plan, or a refusal.

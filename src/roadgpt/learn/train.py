@@ -46,11 +46,11 @@ class TrainingSettings:
     zero.
     """
     decoder_layers: int | None = None
-    """Number of decoder layers: a multiple of the number in the initial weights. None keeps that number, or
-    takes 3 for a new network.
+    """Number of decoder layers; if training starts from the installed reader, a multiple of its number. None
+    keeps that number, or takes 3 for a new network.
     """
     ending: str = ""
-    """The suffix of 'encoder' and 'decoder' in the file names of the network that training starts from."""
+    """What follows 'encoder' and 'decoder' in the file names of the network that training starts from."""
     seed: int = 1
     save_every: int = 100
     """Number of steps from one checkpoint to the next."""
@@ -73,8 +73,8 @@ def train(
     report: Callable[[str], None] = print,
     check: Callable[[], None] = lambda: None,
 ) -> ReaderNetwork:
-    """Trains from the checkpoint in the folder, or from ``weights`` if there is none, writes checkpoints into
-    the folder, and returns the trained network.
+    """Trains a network and returns it. The training begins with the checkpoint in the folder, or with
+    ``weights`` if there is no checkpoint, and writes checkpoints into the folder.
 
     Args:
         folder: where ``checkpoint.pt`` and ``losses.jsonl`` are written.

@@ -1,7 +1,8 @@
 """Finds what the words of descriptions mean, by counting which tokens the plans of these descriptions have.
 
 There are two results. Filler words, such as "the", "please" or "question", mean nothing in a plan, so
-readers do not report them as unused. For each other word, the result is the tokens that it usually asks for.
+readers do not report them as unused. Each other word asks for certain tokens: those that a plan usually has
+if the word is in its description.
 """
 
 from collections import Counter
@@ -72,8 +73,8 @@ def _counted(pairs: Iterable[Pair], has_groups: bool) -> _Counts:
 
 
 def filler_words(pairs: Iterable[Pair]) -> list[str]:
-    """Returns the filler words in alphabetical order: all function words, and frequent words that ask for no
-    token; words of negation are left out.
+    """Returns the filler words in alphabetical order: all function words, and words in at least 10 pairs that
+    ask for no token; words of negation are left out.
 
     Args:
         pairs: hand-written pairs, in which words are counted.
@@ -85,14 +86,15 @@ def filler_words(pairs: Iterable[Pair]) -> list[str]:
 
 
 def word_meanings(pairs: Iterable[Pair]) -> dict[str, list[str]]:
-    """Returns for each word the tokens that it usually asks for, the token with the largest lift first; see
-    ``RELATED``.
+    """Returns for each word the tokens that it usually asks for, the token with the largest lift first.
 
-    Tokens with less than half of the largest lift are left out: "priority" often occurs with crossroads, but
-    does not ask for crossroads. A word asks for a group of tokens only if it asks for nothing else.
+    The lift is how many times more often than by chance the word and the token occur together; see
+    ``RELATED``. Tokens with less than half of the word's largest lift are left out: "priority" often occurs
+    with crossroads, but does not ask for crossroads. A group of tokens is returned only for a word that asks
+    for no single token. Words of negation have no entry.
 
     Args:
-        pairs: hand-written pairs, in which words are counted; changes and refusals are left out.
+        pairs: hand-written pairs, in which words are counted; change requests and refusals are not counted.
     """
     counts = _counted((p for p in pairs if not p.is_change and not p.plan.startswith("!")), has_groups=True)
     lifts: dict[str, dict[str, float]] = {}

@@ -1,8 +1,8 @@
 """Computes the lane arrows that are painted on roads before junctions.
 
 An arrow shows the directions into which the connections of its lane lead. The shape is that of StVO sign 297
-(Germany). The Vienna Convention on Road Signs and Signals, Annex 2, asks for arrows at least 2 m long before
-junctions where the road has enough lanes.
+(Germany). The Vienna Convention on Road Signs and Signals, Annex 2, asks for arrows before junctions where
+the road has enough lanes; they are at least 2 m long.
 """
 
 from collections.abc import Iterator
@@ -63,9 +63,14 @@ class PaintedArrow:
 def arrows(network: Network) -> tuple[PaintedArrow, ...]:
     """Returns the arrows on all roads, ordered by junction, then by arm, then by lane from mid-road outwards.
 
-    There are none before roundabouts, where every lane leads round the ring; on a two-way road with a single
-    lane towards the junction; where an arm of a merge or exit leads to one road only; and where the road is
-    too short or the lane too narrow.
+    An arm has no arrows in any of these cases:
+
+    - It leads to a roundabout, where every lane leads round the ring.
+    - It is a two-way road with a single lane towards the junction.
+    - It belongs to a merge or exit and leads to one road only.
+    - It is too short.
+
+    Besides, a lane has no arrow if it is too narrow or leads nowhere.
     """
     return tuple(
         arrow

@@ -22,7 +22,7 @@ class Builder:
     _last: int = 0
 
     def number(self) -> int:
-        """Returns the next free id. No road has the id of a junction."""
+        """Returns the next free id. Roads and junctions are numbered in one series."""
         self._last += 1
         return self._last
 
@@ -106,7 +106,7 @@ def _driving(lanes: Sequence[Lane]) -> tuple[Lane, ...]:
 
 
 def width_at(width: Width, s: float) -> float:
-    """Returns a width in metres at a station."""
+    """Returns the value in metres, at station ``s``, of a width that is constant or varies along a road."""
     return float(width.cubic(s)[0]) if isinstance(width, CubicProfile) else width
 
 
@@ -130,7 +130,7 @@ def one_way(
         length: Length of the road in metres.
         offset: The offset of the left edge of the leftmost lane from the reference line, positive to the
             left, at the start and at the end of the road.
-        between: The line between two lanes. The outer edges have none.
+        between: The marking between two lanes. The outer edges have no marking.
     """
     marks: list[Marking] = [*[between] * (len(widths) - 1), "none"]
     lanes = tuple(

@@ -110,11 +110,11 @@ def connected(
     Args:
         builder: The network.
         junction: The id of the junction.
-        node: The point in metres.
+        node: The point in metres at which the two reference lines meet.
         ends: The arm on which traffic arrives, and the arm on which it leaves.
         distances: The distances in metres from the node to the contacts of these two arms.
-        way: The lanes that continue each other; at least one pair.
-        between: The line between two of these lanes.
+        way: At least one pair of lanes: a lane into the junction, and the lane out of it that continues it.
+        between: The marking between two lanes of the connecting road.
     """
     start, end = ends
     x, y, z = node

@@ -1,12 +1,12 @@
 """Computes which lanes lead to which arms at a junction, for traffic on the right.
 
 Traffic that turns right to the rightmost arm uses the rightmost lane. Traffic that turns left to the leftmost
-arm uses the leftmost lane. All lanes lead to an arm between these, as far as this arm has lanes for them; two
-or more such arms divide the lanes among them. Without such an arm, the left and the right turn divide the
-lanes. There are two exceptions:
+arm uses the leftmost lane. If there is one arm between these two, all lanes lead to it, as far as it has
+lanes for them; two or more arms between them divide the lanes. If there is no arm between them, the left and
+the right turn divide the lanes. There are two exceptions:
 
-- Where a lane would lead to no arm, the lanes are divided so that none leads to two arms.
-- Several lanes turn together to an arm with more than two lanes to which no way leads straight on.
+- If a lane would then lead to no arm, the lanes are divided so that no lane leads to two arms.
+- If an arm has more than two lanes and no arm leads straight on to it, several lanes turn to it side by side.
 
 The ways from one arm never cross each other.
 """
@@ -25,7 +25,7 @@ junction, the second that of the lane out of the junction; both count from 0 at 
 
 
 def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]]:
-    """Yields the index of each arm that traffic can reach from one arm, with the lanes that lead there.
+    """Yields the index of each arm that traffic can reach from one arm, with the lanes that lead to it.
 
     The arms are yielded counter-clockwise from the arm of arrival, that is from right to left.
 

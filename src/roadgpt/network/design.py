@@ -1,6 +1,6 @@
 """Defines the NetworkDesign: the design of a route with the junctions that it passes.
 
-It is written in RoadGPT's JSON format, with additional fields:
+The design is written in RoadGPT's JSON format, with additional fields:
 
     "lanes": {"forward": 1, "backward": 1, "width": 3.5}
     "junction1": {"after": 2, "kind": "crossroads", "take": "left", "control": "yield", "kerb": 10,

@@ -1,7 +1,8 @@
-"""Computes where the ground beside a route ends: the paved area of the network with its shoulders.
+"""Computes where the ground beside a route ends.
 
-At each station the ground reaches from the reference line of the route along its normal, on both sides, to
-the first edge of this area. The height of the ground is that of the route at the same station.
+The ground is the paved area of the network with its shoulders. At each station the ground reaches, at right
+angles to the route and on both sides, from the reference line of the route to the first edge of this area.
+The height of the ground is that of the route at the same station.
 """
 
 from collections.abc import Sequence
@@ -52,7 +53,8 @@ def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
 def windows(route: "Route") -> list[tuple[float, float]]:
     """Returns the first and the last station in metres of each stretch of a route around its junctions.
 
-    A stretch reaches ``AROUND`` metres beyond a junction; stretches that overlap are returned as one.
+    A stretch begins ``AROUND`` metres before a junction and ends as far behind it, or where the route ends;
+    stretches that overlap are returned as one.
     """
     found: list[tuple[float, float]] = []
     for each in route.passages:
@@ -67,8 +69,8 @@ def windows(route: "Route") -> list[tuple[float, float]]:
 def shoulders_on_ground(route: "Route") -> tuple[CubicProfile, CubicProfile]:
     """Returns the widths in metres of the left and the right shoulder of a route, along its stations.
 
-    Outside the stretches of ``windows`` they are those of the roads; within, they reach to the edge of the
-    ground.
+    Outside the stretches that ``windows`` returns, the shoulders are as wide as those of the roads; inside,
+    they reach to the edge of the ground.
     """
     assert route.profile is not None
     ground, profile = ground_of(route), route.profile

@@ -179,14 +179,15 @@ class _RouteGrowth:
 def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) -> list[Profile]:
     """Returns the cross-sections of the arms in the order of ``all_arms``.
 
-    The arm that the route takes has the cross-section ``after``. Any other arm has in each direction
+    The arm that the route takes has the cross-section ``after``. The first rule that applies to another arm
+    gives its number of lanes in each direction:
 
-    - as many lanes as the ring at a roundabout,
-    - else as many as the road that the route takes, if the arm lies opposite this road and the road has more
-      than two lanes in a direction, or more than one if the road of arrival is one-way: otherwise some of its
-      lanes would lead nowhere,
-    - else as many as the road of arrival, if the arm lies straight ahead,
-    - else one.
+    - An arm of a roundabout has as many lanes as the ring.
+    - An arm opposite the arm that the route takes has as many lanes as the arm taken, if that arm has more
+      than two lanes in a direction, or more than one and the road of arrival is one-way. With fewer lanes
+      opposite, some lanes of the arm taken would lead nowhere.
+    - An arm straight ahead has as many lanes as the road of arrival.
+    - Any other arm has one lane.
 
     A one-way arm has only the lanes of its direction.
 
@@ -251,7 +252,7 @@ def _way(connections: Sequence[Connection], start: RoadEnd, end: RoadEnd) -> int
 
 
 def continued_lanes(place: LanesChangeDesign, before: Profile, after: Profile) -> tuple[tuple[int, int], ...]:
-    """Returns pairs of lane ids that continue each other where lanes change: before it and behind it."""
+    """Returns pairs of lane ids: a lane before a place where lanes change, and its continuation behind it."""
     is_left = place.side == "left"
     drop, gain = place.kind == "lane_drop" and is_left, place.kind == "lane_gain" and is_left
     count = min(before.count[0], after.count[0])
@@ -303,7 +304,7 @@ def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:
     """Returns the length in metres of a route at a place, without the roads before and behind the place.
 
-    It is 0 where lanes change. The arguments and errors are those of ``passing_length``.
+    The length is 0 at a LanesChangeDesign. The arguments and errors are those of ``passing_length``.
     """
     if isinstance(place, JunctionDesign):
         return passing_length(place, before, after)
@@ -357,6 +358,8 @@ def roads_around(builder: Builder, ring: Roundabout, to: int) -> list[int]:
 
 def controls_of(junction: JunctionDesign) -> tuple[Control, ...]:
     """Returns the sign or light of the road of arrival, then those of the arms in the order of ``all_arms``.
+
+    They depend on the ``control`` of the junction:
 
     - With "lights", every arm has lights.
     - Otherwise every arm of a roundabout gives way; with "stop", the road of arrival has a stop sign instead.

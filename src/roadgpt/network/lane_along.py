@@ -87,7 +87,7 @@ def change_windows(length: float, count: int) -> list[tuple[float, float]]:
 
     Args:
         length: The length of the road in metres.
-        count: The number of lane changes; the road is divided into as many equal parts.
+        count: The number of lane changes; each lies in the middle of one of as many equal parts of the road.
     """
     part = length / count if count else 0.0
     half = min(LONGEST, SHARE * part) / 2
@@ -95,9 +95,9 @@ def change_windows(length: float, count: int) -> list[tuple[float, float]]:
 
 
 def added(terms: Sequence[Term], length: float) -> Width:
-    """Returns the weighted sum of widths along a road of this length in metres.
+    """Returns the weighted sum of widths along a road that is ``length`` metres long.
 
-    The sum is a number if no term has a CubicProfile, else a CubicProfile.
+    The sum is a number if all widths are numbers; otherwise it is a CubicProfile.
     """
     if not any(isinstance(width, CubicProfile) for _, width in terms):
         return sum(factor * width for factor, width in terms if not isinstance(width, CubicProfile))
@@ -117,7 +117,7 @@ def added(terms: Sequence[Term], length: float) -> Width:
 def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
     """Returns a width as one cubic for each station, a function of the distance from this station.
 
-    The stations are read one by one, which is fast for a few of them only.
+    The stations are evaluated one by one, which is fast only if there are few.
     """
     if not isinstance(width, CubicProfile):
         return [(float(width), 0.0, 0.0, 0.0)] * len(stations)
@@ -126,7 +126,7 @@ def cubics_at(width: Width, stations: Sequence[float]) -> list[Cubic]:
 
 
 def profile_of(stations: Sequence[float], table: Array) -> CubicProfile:
-    """Returns a profile of ``n`` cubics with these stations and the coefficients ``(n, 4)``."""
+    """Returns a CubicProfile with a cubic at each station; ``table`` has their coefficients, ``(n, 4)``."""
     rows = [(a, b, c, d) for a, b, c, d in table.tolist()]
     return CubicProfile(tuple(stations), tuple(rows))
 

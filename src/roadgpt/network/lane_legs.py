@@ -11,7 +11,7 @@ Ways = dict[int, int]
 
 
 def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]) -> list[Leg]:
-    """Returns the legs of a route that follows roads in this order: one for each lane on each road.
+    """Returns the legs of a route along ``roads``: on each road, one leg for each lane that the route uses.
 
     A route begins in the outermost lane from which it can go on (the rightmost one, with traffic on the
     right). It changes lanes only where its lane does not lead to the next road or would prevent a required
@@ -19,9 +19,10 @@ def legs_along(network: Network, roads: Sequence[int], shifts: Mapping[int, int]
 
     Args:
         network: The network.
-        roads: Ids of one or more roads, each joined to the next one, connecting roads among them.
-        shifts: The lane changes that are required: for the id of a road, the number of lanes to the left,
-            negative to the right.
+        roads: Ids of one or more roads in driving order, including connecting roads; each road is joined to
+            the next one.
+        shifts: The required lane changes, by the id of the road: the number of lanes to the left, negative to
+            the right.
 
     Raises:
         UsageError: Two roads are not joined, or a lane that the route needs cannot be reached.

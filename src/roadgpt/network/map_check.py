@@ -18,9 +18,9 @@ Place = tuple[float, float, float]
 def check_graph(kinds: Sequence[str], places: Sequence[Place], roads: Sequence[tuple[int, int]]) -> None:
     """Checks the roads and nodes of a map.
 
-    Every road joins two existing nodes at least ``NEAREST`` apart, which no other road joins. Every node has
-    as many roads as its kind needs, far enough apart in direction. Roads connect all nodes, and not all nodes
-    are bends.
+    Every road must join two existing nodes that are at least ``NEAREST`` metres apart, and no two roads may
+    join the same nodes. Every node must have as many roads as its kind needs, with large enough angles
+    between them. The roads must connect all nodes, and at least one node must not be a bend.
 
     Args:
         kinds: The kind of each node.

@@ -110,7 +110,7 @@ class MapDesign(FrozenFields):
 
     @cached_property
     def neighbours(self) -> dict[int, tuple[int, ...]]:
-        """For each node, the nodes to which roads lead from there, counter-clockwise by direction."""
+        """For each node, the nodes at the other ends of its roads, counter-clockwise by direction."""
         found: dict[int, list[int]] = {number: [] for number in range(1, len(self.nodes) + 1)}
         for one, other in self.roads:
             found[one].append(other)
@@ -119,9 +119,9 @@ class MapDesign(FrozenFields):
 
     @cached_property
     def chains(self) -> tuple[tuple[int, ...], ...]:
-        """The roads from one junction or end to the next, each as the nodes along the road, bends among them.
+        """The chains of roads that lead over bends from one junction or end of a road to the next.
 
-        Each road is listed once, in one of its two directions.
+        Each chain is given by the nodes along it, and is listed once, in one of its two directions.
         """
         found: dict[tuple[int, ...], None] = {}
         for start, ends in self.neighbours.items():
@@ -138,7 +138,7 @@ class MapDesign(FrozenFields):
 
     @property
     def driven(self) -> Iterator[tuple[int, ...]]:
-        """The roads of the route in driving order, each as the nodes along the road."""
+        """The route, cut at its junctions: for each part, the nodes along this part."""
         first = 0
         for n in range(1, len(self.route)):
             if self.node(self.route[n]).kind != "bend":

@@ -72,10 +72,10 @@ def profile_of_map(lanes: MapLanes | None, world: World) -> Profile:
 def signs_at(node: MapNode, directions: Sequence[float]) -> tuple[Control, ...]:
     """Returns the sign or light of each arm of a junction.
 
-    At a roundabout, all arms have lights with "lights" and stop signs with "stop", and otherwise give way. At
-    any other junction, all arms have lights with "lights" and no signs with "none". Otherwise the two arms
-    that are most nearly opposite are the main road and have priority; the others have a stop sign with
-    "stop", and give way with "yield" or "priority".
+    The ``control`` of the node decides. With "lights", all arms have lights. Otherwise all arms of a
+    roundabout have stop signs with "stop", and give way with any other value. At other junctions, no arm has
+    a sign with "none". Otherwise the two arms that are most nearly opposite are the main road and have
+    priority; the other arms have stop signs with "stop", and give way with "yield" or "priority".
 
     Args:
         node: The junction.
@@ -232,7 +232,7 @@ class _MapGrowth:
 
 
 def junction_of(node: MapNode) -> JunctionDesign:
-    """Returns the kind, kerb and radius of a node as a JunctionDesign, whose other fields mean nothing."""
+    """Returns a JunctionDesign with the kind, kerb and radius of a node; do not use its other fields."""
     radius = ISLAND if node.radius is None else node.radius
     return JunctionDesign.model_construct(
         after=1, take=1, kind=cast(PlainKind, node.kind), kerb=node.kerb, radius=radius

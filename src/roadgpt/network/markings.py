@@ -1,4 +1,4 @@
-"""Computes what is painted on the roads of a network, and where signs and lights stand at its junctions.
+"""Computes the lines painted on the roads of a network, and where signs and lights stand at its junctions.
 
 The lines along a road are those of its profile. Inside junctions there are only edge lines along the kerbs,
 and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop or to
@@ -53,7 +53,7 @@ class JunctionSign(NamedTuple):
 
 
 def strokes(network: Network) -> tuple[PaintedStroke, ...]:
-    """Returns everything that is painted on the roads of a network."""
+    """Returns all lines and crosswalks that are painted on a network; ``arrows`` returns the lane arrows."""
     found = [stroke for member in network.roads for stroke in _of_road(network, member)]
     for (_, junctions), paved in zip(network.nodes, network.paved_nodes, strict=True):
         found += _kerb_lines(network, paved, junctions[0].node[2])

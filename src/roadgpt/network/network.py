@@ -69,9 +69,9 @@ class NetworkRoad:
 
     @property
     def shoulder(self) -> float:
-        """The difference in metres between the reach of the road with its shoulders and without them.
+        """The ``reach`` of the road's profile less its ``paved_reach``, in metres.
 
-        It is the width of the shoulders if both sides of the road are alike.
+        This is the width of the shoulders if both sides of the road are alike.
         """
         return self.profile.reach - self.profile.paved_reach
 
@@ -88,11 +88,13 @@ class NetworkRoad:
         return self.profile.along if contact == "end" else self.profile.against
 
     def side_towards(self, contact: Contact) -> int:
-        """Returns the side of the traffic towards an end: 1 left of the reference line, -1 right of it."""
+        """Returns the side on which traffic drives towards an end: 1 left of the reference line, -1 right."""
         return self.profile.side if contact == "end" else -self.profile.side
 
     def begin_towards(self, contact: Contact, s: float) -> float:
-        """Returns the offset in metres, at station ``s``, of the inner edge of the lanes towards an end."""
+        """Returns the offset in metres, at station ``s``, at which the lanes towards an end begin: that of
+        their edge nearest to the centre line.
+        """
         offset, (left, right) = self.profile.offset, self.profile.begins
         line = float(self.profile.centre(s)) if isinstance(offset, CubicProfile) else offset
         return line + left if self.side_towards(contact) > 0 else line - right
@@ -259,17 +261,17 @@ class Network:
     def right_hand(self) -> "Network":
         """The network itself, or its mirror image if traffic drives on the left.
 
-        Computations for traffic on the right use this network, so that they need no second case.
+        Computations that use this network need not handle traffic on the left.
         """
         return self.mirrored if self.left_hand else self
 
     def leaves_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of the road towards which the lane of a leg leads."""
+        """Returns the end of a road at which traffic in the lane of ``leg``, part of a route, leaves it."""
         is_along = self.road(leg.road).profile.leads_along(leg.lane)
         return RoadEnd(leg.road, "end" if is_along else "start")
 
     def enters_by(self, leg: Leg) -> RoadEnd:
-        """Returns the end of the road from which the lane of a leg leads."""
+        """Returns the end of a road at which traffic in the lane of ``leg``, part of a route, enters it."""
         is_along = self.road(leg.road).profile.leads_along(leg.lane)
         return RoadEnd(leg.road, "start" if is_along else "end")
 
@@ -280,7 +282,7 @@ class Network:
 
     @cached_property
     def junction_at(self) -> dict[RoadEnd, int]:
-        """For each end of a road at a junction, the id of the junction."""
+        """Maps each end of a road at a junction to the id of the junction."""
         return {arm.end: junction.id for junction in self.junctions for arm in junction.arms}
 
     @cached_property
@@ -290,17 +292,17 @@ class Network:
 
     @cached_property
     def connection_of(self) -> dict[int, tuple[Junction, Connection]]:
-        """For the id of each connecting road, its junction and its connection."""
+        """Maps the id of each connecting road to its junction and its connection."""
         return {each.road: (junction, each) for junction in self.junctions for each in junction.connections}
 
     @cached_property
     def continued_at(self) -> dict[RoadEnd, Continuation]:
-        """For each end of a road in a continuation, this continuation."""
+        """Maps each end of a road that is part of a continuation to the continuation."""
         return {end: each for each in self.continuations for end in (each.before, each.after)}
 
     @cached_property
     def roundabout_of(self) -> dict[int, Roundabout]:
-        """For the id of each junction, connecting road or ring road of a roundabout, this roundabout."""
+        """Maps the id of each junction, connecting road and ring road of a roundabout to the roundabout."""
         pairs = [
             (number, ring)
             for ring in self.roundabouts

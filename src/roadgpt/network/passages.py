@@ -1,4 +1,6 @@
-"""Lists the ways of a route through junctions. A roundabout has several junctions and is one passage."""
+"""Lists the passages of a route: its ways through junctions. The way through a roundabout is one passage,
+though a roundabout has several junctions.
+"""
 
 from itertools import groupby
 from typing import TYPE_CHECKING, NamedTuple

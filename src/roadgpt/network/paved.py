@@ -29,7 +29,7 @@ NEAR = 1e-3  # m, largest distance from a junction to a hole that the junction e
 
 
 def paved_by(roads: Sequence[Road]) -> Area:
-    """Returns the area that the carriageways of roads cover together, without holes up to ``SLIVER``."""
+    """Returns the area that carriageways of roads cover together; holes up to ``SLIVER`` m^2 are filled."""
     return covered_by(areas_of(roads))
 
 
@@ -45,10 +45,10 @@ def areas_of(roads: Sequence[Road]) -> NDArray[np.object_]:
 
 
 def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
-    """Returns the area that several areas cover together, without holes up to ``SLIVER``.
+    """Returns the area that several areas cover together; holes up to ``SLIVER`` m^2 are filled.
 
-    The corners of ``areas`` should be rounded to ``GRID``; those of the union are rounded here. This takes
-    half of the time of a union that rounds its corners itself.
+    The corners of ``areas`` should be rounded to ``GRID``. The corners of the union are rounded afterwards,
+    which takes half as long as letting shapely round them during the union.
     """
     import shapely
 
@@ -56,7 +56,7 @@ def covered_by(areas: Sequence[Area] | NDArray[np.object_]) -> Area:
 
 
 def filled(area: Area) -> Area:
-    """Returns an area without its holes of ``SLIVER`` or less."""
+    """Returns an area with all holes up to ``SLIVER`` m^2 filled."""
     import shapely
 
     parts = []
@@ -68,10 +68,10 @@ def filled(area: Area) -> Area:
 
 
 def without_small_islands(whole: Area, nodes: Sequence[Area], least: Sequence[float]) -> tuple[Area, ...]:
-    """Returns the paved area of a network and then the paved areas of its junctions, small islands included.
+    """Returns the paved areas of a network and then of each of its junctions, with small islands paved over.
 
     An island may lie between the ways of a junction and the end of a road. It is then a hole in the area of
-    the network, but not in that of the junction.
+    the network, but not in the area of the junction; if it is small, it is added to both areas.
 
     Args:
         whole: The paved area of the network.
@@ -108,10 +108,10 @@ def ribbon(road: Road) -> "Polygon":
 
 
 def ribbons(roads: Sequence[Road]) -> NDArray[np.object_]:
-    """Returns one polygon for each road: its carriageway, with the right edge first.
+    """Returns one polygon for each road: its carriageway, beginning with the right edge.
 
     Both ends of the line between the directions are corners of the polygon, because lanes of other roads may
-    end there. Otherwise rounding would leave a gap between the end of this road and such a lane.
+    have a corner there. Without them, rounding would leave a gap between the end of the road and such a lane.
     """
     import shapely
 
@@ -146,11 +146,11 @@ def _pieces_of(road: Road) -> PieceCurve:
 
 
 def stations_of(road: Road) -> Array:
-    """Returns stations in metres along a road, so close together that its edges deviate from the chords
-    between them by ``SAG`` at most.
+    """Returns stations in metres along a road, so close together that chords between them deviate from the
+    edges of the road by at most ``SAG`` metres.
 
-    The ends of all pieces of the reference line are among the stations; if widths vary, there is one at least
-    about every metre.
+    The ends of all pieces of the reference line are stations; if widths vary, there is also a station about
+    every metre.
     """
     profile = road.profile
     assert profile is not None

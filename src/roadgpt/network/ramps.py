@@ -43,15 +43,15 @@ def length_at_ramp(ramp: RampDesign) -> float:
 
 
 def is_on_left(ramp: RampDesign) -> bool:
-    """Returns whether a ramp lies on the left, on a road with traffic on the right."""
+    """Returns whether a ramp lies on the left of its road, where traffic drives on the right."""
     return ramp.side == "left"
 
 
 def lines_at_ramp(ramp: RampDesign) -> tuple[list[complex], list[complex]]:
     """Returns sketches of the route at a ramp, and of the road that the route does not take.
 
-    Each sketch is a list of points x + iy in metres. The route arrives at 0 along +x; the last two points of
-    its sketch give the direction behind the ramp.
+    Each sketch is a list of points x + iy in metres. The route begins at the origin and leads along +x; the
+    last two points of its sketch give the direction in which it goes on.
     """
     length, is_merge, by_ramp = length_beside(ramp), ramp.kind == "merge", ramp.take == "ramp"
     node = CONTACT if is_merge else length + CONTACT
@@ -75,7 +75,7 @@ def _steps(start: complex, way: complex, length: float) -> list[complex]:
 
 @dataclass
 class RampBuilder:
-    """Builds one merge or exit into a network, with the road that the route does not take."""
+    """Adds one merge or exit to a network, and also the road there that the route does not take."""
 
     builder: Builder
     ramp: RampDesign
@@ -116,7 +116,7 @@ class RampBuilder:
         return self.end.ahead(length_beside(self.ramp) + CONTACT)
 
     def build(self, going_on: int) -> list[int]:
-        """Builds the place and returns the ids of the roads that the route passes there, in driving order.
+        """Builds the merge or exit, and returns the ids of its roads on the route, in driving order.
 
         Args:
             going_on: The id of the road on which the route goes on. It begins at ``where_it_goes_on`` and is

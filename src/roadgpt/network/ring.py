@@ -43,10 +43,9 @@ def contact_distance(radius: float, lanes: int = 1) -> float:
 
 
 def mouth_of(radius: float, directions: Sequence[float]) -> float:
-    """Returns half of the length in metres of each mouth, along the edge of the island.
+    """Returns half the length in metres of every mouth, measured along the edge of the island.
 
-    The result is at most ``MOUTH``, and so short that at least ``BETWEEN`` metres of ring remain between two
-    mouths.
+    The result is at most ``MOUTH``, and small enough to leave ``BETWEEN`` metres of ring between two mouths.
 
     Args:
         radius: The radius of the central island in metres.

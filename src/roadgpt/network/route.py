@@ -1,4 +1,4 @@
-"""Defines the Route: a way through a network, which is itself a Road.
+"""Defines the Route: a way through a network. A Route is itself a Road.
 
 The centre line of a Route consists of the reference lines of its roads, one after another. Everything that
 can be done with a Road can be done with a Route: check, drive, judge and draw it.
@@ -28,8 +28,9 @@ from roadgpt.road.reversal import reversed_cubics, reversed_road
 class Route(Road):
     """A way through a network.
 
-    Its profile has the lane that the route follows, and on each side one lane as wide as all other lanes
-    there. Inside junctions there are no oncoming lanes, and no shoulders until ``on_ground`` adds them.
+    Its profile has the lane that the route follows, and on each side of this lane a single lane that is as
+    wide as all lanes of that side together. Inside junctions the profile has no oncoming lanes, and no
+    shoulders until ``on_ground`` adds them.
     """
 
     network: Network
@@ -88,7 +89,7 @@ class Route(Road):
 
     @cached_property
     def roads(self) -> tuple[tuple[float, NetworkRoad], ...]:
-        """The roads outside junctions and roundabouts, each after its start station in metres."""
+        """The roads outside junctions and roundabouts, as pairs (station in metres of its start, road)."""
         own = zip(self.starts, self.legs, strict=False)
         firsts = [next(group) for _, group in groupby(own, key=lambda each: each[1].road)]
         members = [(start, self.network.road(leg.road)) for start, leg in firsts]

@@ -46,7 +46,7 @@ def read_road(path: str | Path, geometry: Geometry = "arcs", world: World | None
     Args:
         path: The file, or a folder that holds ``road.json``.
         geometry: How a design becomes a road: "arcs" or "spline", as for ``roadgpt.build``.
-        world: The World, as for ``made_from``; None for the usual World.
+        world: The World, as for ``made_from``; None for the default World.
 
     Raises:
         UsageError: The file cannot be read, is not valid, or holds no road; see also ``made_from``.
@@ -69,7 +69,7 @@ def read_any_design(data: Mapping[str, Any]) -> tuple[AnyDesign, tuple[str, ...]
 
 
 def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -> Road:
-    """Returns the road of a blueprint, laid in a World.
+    """Returns the road that a blueprint describes, with lanes and banked bends of a World if it has none.
 
     Args:
         blueprint: A design with or without junctions, a map, or a road.
@@ -88,7 +88,7 @@ def made_from(blueprint: Blueprint, world: World, geometry: Geometry = "arcs") -
 
 
 def network_made_from(design: NetworkDesign | MapDesign, world: World) -> Route:
-    """Returns the route of a design with junctions or of a map, before ``Route.on_ground``.
+    """Returns the route of a design with junctions or of a map; ``Route.on_ground`` is not applied to it.
 
     Raises:
         UsageError: The design cannot be built; see ``build_route`` and ``build_map``.

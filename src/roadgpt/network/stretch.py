@@ -1,4 +1,4 @@
-"""Builds the road between two junctions from segments. It is level where it meets a junction."""
+"""Builds the road between two junctions from segments. The road is level where it meets a junction."""
 
 import math
 from collections.abc import Sequence
@@ -29,9 +29,9 @@ def road_of(
         start: The point in metres at which the road begins.
         heading: The heading there in radians.
         profile: The cross-section.
-        is_level: Whether the grade is 0 at the start, and whether it is 0 at the end. Between such an end and
-            the grade of the first or last segment there is a vertical curve within this segment, with the
-            usual radius or, where there is too little room, a smaller one.
+        is_level: Whether the road is level at the start, and whether it is level at the end. A level end is a
+            few metres long; a vertical curve within the first or last segment joins it to the grade of this
+            segment. The radius is ``CREST_RADIUS``, or smaller where the segment is too short.
     """
     x, y, z = start
     plan = PieceCurve(x, y, heading, joined(pieces_of(segments)))
@@ -39,7 +39,7 @@ def road_of(
 
 
 def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool]) -> GradeProfile:
-    """Returns the heights along segments that start at ``z`` metres; for ``is_level``, see ``road_of``."""
+    """Returns the heights along segments, from a height of ``z`` metres; for ``is_level`` see ``road_of``."""
     found = elevation_of(segments, z)
     knots = list(zip(found.stations, found.grades, strict=True))
     if is_level[0]:

@@ -58,9 +58,9 @@ def profiles_between(
         shoulder: The width of every shoulder in metres.
 
     Raises:
-        UsageError: A road would have no lane or too many, or other lanes than a lane drop or gain leaves; a
-            ramp on the left would cross oncoming lanes; or the ramp that the route takes has oncoming traffic
-            or more than one lane.
+        UsageError: A road would have no lane or too many; the lanes of a road contradict the lane drop, gain
+            or change before it; a ramp on the left would cross oncoming lanes; or the ramp that the route
+            takes has oncoming traffic or more than one lane.
     """
     lanes = [first]
     for number, place in enumerate(places, 1):

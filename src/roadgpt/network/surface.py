@@ -67,8 +67,8 @@ class NetworkSurface:
 
     @property
     def reach(self) -> float:
-        """An upper bound in metres of the distance from a road's reference line to the outer edge of the
-        shoulder.
+        """An upper bound in metres, for all ``roads``, of the distance from the reference line of a road to
+        the outer edge of its shoulder.
 
         Raises:
             ValueError: There are no roads.

@@ -36,7 +36,9 @@ __all__ = [
 
 @in_our_style
 def draw(run: Run, folder: Path | str, axes: Scale = "equal", formats: Sequence[Format] = PNG) -> list[Path]:
-    """Draws all pictures of a Run into an existing folder, and returns their paths (none without a road).
+    """Draws all pictures of a Run into an existing folder, and returns their paths.
+
+    A Run without a road has no pictures, so the list of paths is then empty.
 
     Args:
         run: the Run; it may be invalid, and it need not have a drive.

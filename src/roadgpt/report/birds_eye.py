@@ -171,7 +171,7 @@ def _draw_rim(axes: Axes, pieces: Array, found: list[Severity]) -> None:
 
 
 class KeyEntry(NamedTuple):
-    """One entry of a key: a sample and what it means."""
+    """One entry of a picture's key: a sample of a line, and the meaning of the line."""
 
     text: str
     width: float

@@ -37,10 +37,10 @@ def shade_junctions(axes: Axes, road: Road, names: Literal["top", "foot"] | None
     """Shades the stretches inside junctions on axes whose x is the distance along the road.
 
     Args:
-        axes: The axes, with the limits of x.
-        road: The road; one without junctions leaves the axes as they are.
-        names: Where to write the names of the junctions: at the top or at the foot of the axes; None: no
-            names are written.
+        axes: The axes; the limits of x must be set already.
+        road: The road; if it has no junctions, nothing is drawn.
+        names: Where to write the names of the junctions, at the top or at the foot of the axes; None writes
+            no names.
     """
     figure = axes.get_figure(root=True)
     assert figure is not None

@@ -122,8 +122,8 @@ def _draw_route(axes: Axes, route: Route, per_inch: float) -> None:
 
 
 def signs_shown(road: Road, per_inch: float) -> tuple[JunctionSign, ...]:
-    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. Empty for a road
-    without junctions, and if there are more than 50 m per inch.
+    """Returns the signs and lights to draw in a picture with ``per_inch`` metres per inch. There are none for
+    a road without junctions, or if ``per_inch`` is more than 50.
     """
     return signs(road.network) if isinstance(road, Route) and per_inch <= NEAR else ()
 

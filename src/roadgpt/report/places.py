@@ -107,7 +107,7 @@ def name_places(axes: Axes, places: Sequence[MarkedPlace], length: float, at_top
 
     Args:
         axes: the axes.
-        places: the places of a road; each label is farther from the border of the axes than the label before.
+        places: the places of a road; each next label is written farther from the border of the axes.
         length: the length of the road in metres.
         at_top: whether to write the labels at the top of the axes instead of the bottom.
     """

@@ -54,8 +54,8 @@ class _TurnLayout(NamedTuple):
 def pieces_of(segments: Sequence[Segment]) -> list[Piece]:
     """Returns the lines, arcs and clothoids of all segments in order.
 
-    Every segment keeps its length and its change of heading exactly. It also keeps its radius if the turn
-    fits into this length and at most one of its neighbours turns the same way.
+    Every segment keeps its length and its change of heading exactly. A radius that the segment states is kept
+    if the turn fits into this length and at most one of the neighbouring segments turns the same way.
     """
     bends = [_bend(segment) for segment in segments]
     joints = _settled_joints(bends)

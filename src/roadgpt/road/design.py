@@ -95,7 +95,7 @@ class Design(FrozenFields):
 
 
 def as_written(value: Any) -> Any:
-    """Returns whole numbers as integers, and any other value unchanged."""
+    """Returns a float that is a whole number as an integer, and any other value unchanged."""
     return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
@@ -198,7 +198,10 @@ def _segment(number: int, raw: Any) -> tuple[Segment, list[str]]:
 
 
 def no_truths(what: str, data: Mapping[str, Any]) -> None:
-    """Raises UsageError if a value, or a number in a list, is true or false; ``what`` names the data."""
+    """Raises UsageError if a value of ``data``, or an entry of a list in it, is a Boolean.
+
+    ``what`` names the data in the error message.
+    """
     for name, value in data.items():
         values = value if isinstance(value, (list, tuple)) else (value,)
         if any(isinstance(each, bool) for each in values):
@@ -206,7 +209,7 @@ def no_truths(what: str, data: Mapping[str, Any]) -> None:
 
 
 def first_error(error: ValidationError) -> str:
-    """Returns the first error as 'field: what to do'."""
+    """Returns the first error that pydantic found, as the text 'field: what to do'."""
     problem = error.errors()[0]
     place = ".".join(str(part) for part in problem["loc"])
     said = _advice(problem["type"], problem.get("ctx", {})) or str(problem["msg"])

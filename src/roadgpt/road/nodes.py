@@ -16,9 +16,9 @@ STUB = 5.0  # m, level, before the first segment, so that the car starts on leve
 
 
 def nodes_of(design: Design) -> Array:
-    """Returns nodes ``(n, 3)`` in metres.
+    """Returns the nodes of the spline of a Design, ``(n, 3)`` in metres.
 
-    They are the start, the end of a level stretch of 5 m before the first segment, and the end of every
+    The nodes are the start, the end of a level stretch of 5 m before the first segment, and the end of every
     segment.
     """
     nodes = [design.starting_point]

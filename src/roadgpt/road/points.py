@@ -39,10 +39,13 @@ MOST_ROWS = 200_000  # of a table
 
 
 def points_in(data: Any) -> list[Any] | None:
-    """Returns the first list of road points in parsed JSON; None if there is none.
+    """Returns the road points in parsed JSON; None if there are none.
+
+    If a dictionary has several lists of points, such as control points and interpolated points, one of them
+    is returned: the list whose key comes first in ``KEYS``.
 
     Raises:
-        UsageError: The data hold more than one road.
+        UsageError: The data are a list of more than one road.
     """
     if isinstance(data, dict):
         for key in KEYS:

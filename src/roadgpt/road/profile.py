@@ -123,7 +123,7 @@ class Profile:
         Args:
             forward: Number of lanes in the direction of the road, one or more.
             backward: Number of oncoming lanes. With 0 the road is one-way.
-            lane_width: Width of every lane.
+            lane_width: Width of every lane in metres.
             shoulder: Width of the shoulder on each side in metres; 0 for none.
             superelevation_angle: The angle in radians by which the surface is rotated about the centre line,
                 positive where it falls to the right; None for a level cross-section.
@@ -139,7 +139,7 @@ class Profile:
 
     @cached_property
     def mirrored(self) -> "Profile":
-        """The cross-section with left and right exchanged: that of traffic on the other side."""
+        """The cross-section with left and right exchanged, and with traffic on the other side of the road."""
         angle = self.superelevation_angle
         return replace(
             self,
@@ -185,12 +185,12 @@ class Profile:
         return range(-self.side * first, -self.side * (first + self.count[1]), -self.side)
 
     def leads_along(self, lane: int) -> bool:
-        """Returns whether the lane with this id leads along the road, and not against it."""
+        """Returns whether the lane with this OpenDRIVE id leads along the road, and not against it."""
         return lane * self.side > 0
 
     @property
     def boundaries_to_left(self) -> int:
-        """The index in ``boundaries`` of the left edge of the driven lane."""
+        """The number of boundaries left of the driven lane: the index of its left edge in ``boundaries``."""
         along, against = self.count
         return along - 1 - self.driven if self.left_hand else against + (self.median > 0) + self.driven
 
@@ -203,28 +203,28 @@ class Profile:
 
     @property
     def has_shoulders(self) -> bool:
-        """Whether there is a shoulder on either side."""
+        """Whether there is a shoulder on at least one side."""
         return any(lane.kind == "shoulder" for lane in (*self.left, *self.right))
 
     @cached_property
     def paved_reach(self) -> float:
         """The largest distance in metres between the centre line and an edge of the carriageway.
 
-        If the widths of several lanes vary, it is an upper bound.
+        If the widths of several lanes vary, the value is an upper bound.
         """
         return self._with_offset(_driving(self.left), _driving(self.right))
 
     @cached_property
     def reach(self) -> float:
-        """The largest distance in metres between the centre line and the outer edge of a shoulder.
+        """The largest distance in metres between the centre line and the edge of a lane or shoulder.
 
-        If the widths of several lanes or shoulders vary, it is an upper bound.
+        If the widths of several lanes or shoulders vary, the value is an upper bound.
         """
         return self._with_offset(self.left, self.right)
 
     @property
     def offset_range(self) -> tuple[float, float]:
-        """The smallest and the largest offset of the line between the lanes."""
+        """The smallest and the largest offset of the line between the lanes on the left and on the right."""
         return _extremes(self.offset)
 
     def _with_offset(self, left: Sequence[Lane], right: Sequence[Lane]) -> float:
@@ -247,7 +247,7 @@ class Profile:
         return _at(self.along[self.driven].width, s)
 
     def shoulder(self, s: ArrayLike) -> Array:
-        """Returns the width of the shoulder beside the lanes along the road."""
+        """Returns the width of the shoulder beside the lanes along the road; 0 if there is none."""
         return _sum(self.along[len(_driving(self.along)) :], s)
 
     def middle(self, s: ArrayLike) -> Array:
@@ -273,7 +273,7 @@ class Profile:
         return Edges(centre + begin[0], centre - begin[1])
 
     def rims(self, s: ArrayLike) -> Edges:
-        """Returns the offsets of the outer edges of the shoulders."""
+        """Returns the offsets of the outer edges of the shoulders; without a shoulder, of the lanes."""
         left, right = self.sides(s)
         return Edges(left + _sum(self.left, s), right - _sum(self.right, s))
 
@@ -339,7 +339,7 @@ class Profile:
         return Edges(left.left, right.right)
 
     def superelevation(self, s: ArrayLike) -> Array:
-        """Returns the angle in radians of the surface, positive where it falls to the right."""
+        """Returns the superelevation in radians, positive where the surface falls to the right."""
         if self.superelevation_angle is None:
             return np.zeros(np.shape(s))
         return _at(self.superelevation_angle, s)
@@ -349,7 +349,7 @@ NEGATIVE = 1e-6  # m, rounding of cubics whose width ends at 0
 
 
 def as_cubics(width: Width) -> CubicProfile:
-    """Returns a width as cubics from station 0 on; before its first station, a width is constant."""
+    """Returns a width as cubics from station 0 on; before its first cubic begins, the width is constant."""
     if not isinstance(width, CubicProfile):
         return CubicProfile((0.0,), ((width, 0.0, 0.0, 0.0),))
     if width.stations[0] <= 0:

@@ -1,7 +1,7 @@
 """Reads and writes cross-sections as the field ``profile`` of a road file.
 
 A width is a number, or rows ``[s, a, b, c, d]``. At a distance ``u`` in metres after station ``s``, the width
-is ``a + b u + c u^2 + d u^3`` metres. The superelevation is always written as such rows, in radians.
+is ``a + b u + c u^2 + d u^3`` metres. The superelevation is always written as rows, with values in radians.
 """
 
 from collections.abc import Mapping, Sequence

@@ -19,9 +19,9 @@ def in_short_segments(design: Design) -> Design:
     """Returns a design of short straight segments that approximates the given design.
 
     If the new design is built with the geometry "spline", the road follows the lines, arcs and clothoids of
-    the given design. The geometry "spline" puts a level stub at the start of the road. The grade is therefore
-    built up over a few segments after the stub, so that the spline does not overshoot there. This shifts the
-    heights of the rest of the road by a constant.
+    the given design. The geometry "spline" puts a level stretch of 5 m at the start of the road. The grade is
+    therefore built up over two segments after this stretch, so that the spline does not overshoot there. The
+    reduced grade shifts the heights of the rest of the road by a constant.
     """
     road = build(design)
     first = min(STUB, road.length / 2)

@@ -57,8 +57,8 @@ def read_blueprint(
 
     Args:
         path: The file, or a folder that holds ``road.json``.
-        others: Called first with the parsed JSON of a file. It returns what this function then returns, for
-            data that it knows, and None for all other data.
+        others: A function that is called first, with the parsed JSON of a file. If it knows the data, its
+            result is returned; for all other data, it has to return None.
 
     Raises:
         UsageError: The file cannot be read, is not valid, or holds no road.

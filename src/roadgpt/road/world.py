@@ -30,7 +30,7 @@ only those that differ from their default.
 
 
 def lanes_in(text: str) -> str:
-    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) without blanks.
+    """Returns a text such as "2 + 1" (2 lanes along the road, 1 against it) with its blanks removed.
 
     Raises:
         ValueError: The text has another form; the message says which form is needed.
@@ -131,7 +131,10 @@ class CrossSection(BaseModel):
 
 
 class Limits(BaseModel):
-    """What the validity rules allow, and when a test fails. Most defaults are those of the RoadGPT thesis."""
+    """Defines what the validity rules allow, and when a test fails.
+
+    Most defaults are those of the RoadGPT thesis.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
@@ -281,9 +284,10 @@ class World(BaseModel):
         return self.changed(friction=friction)
 
     def with_lanes_of(self, brief: "Brief | None") -> "World":
-        """Returns the World with the lanes and the centre line that a Brief requires of a single road.
+        """Returns the World with the ``lanes`` and ``centre_line`` that a Brief of a single road requires.
 
-        Lanes and lines that were given to this World are kept, even if they equal the defaults.
+        Lanes and lines that were given to this World are kept, even if they equal the defaults. Without a
+        Brief, or with a Brief for a network, the World is returned unchanged.
         """
         if brief is None or brief.is_of_network:
             return self
@@ -308,8 +312,8 @@ class World(BaseModel):
     def lay(self, road: Road) -> Road:
         """Returns the road with the lanes and banked bends of this World's ``section``.
 
-        A road that has a Profile of its own keeps it. If ``section`` has the usual two lanes of one width and
-        no banked bends, the road is returned unchanged.
+        A road that has a Profile of its own keeps it. If ``section`` has two lanes of constant width with the
+        default centre line and no banked bends, the road is returned unchanged.
         """
         section = self.section
         if road.profile is not None or all(getattr(section, name) == usual for name, usual in OWN.items()):

@@ -1,4 +1,4 @@
-"""The whole pipeline from words to verdict. Main functions: ``perform`` and ``prove``.
+"""Runs the pipeline from a description in words to a verdict. Main functions: ``perform`` and ``prove``.
 
     words --read--> Brief --draft--> Design --build--> Road --inspect--> Findings --simulate--> Drive
                                ^                                  |        (none)                 |

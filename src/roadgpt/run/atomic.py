@@ -52,11 +52,11 @@ def write_lines(path: Path, lines: Iterable[str]) -> None:
 
 
 def refuse_links(*paths: Path) -> None:
-    """Raises an error if one of the paths is a link. In a folder from somebody else, a link may point to any
-    file, and writing to the link would change that file.
+    """Refuses paths that are links. In a folder from somebody else, a link may point to any file, and writing
+    to the link would change that file.
 
     Raises:
-        UsageError: one of these paths is a link, or neither a file nor a folder.
+        UsageError: one of the paths is a link, or neither a file nor a folder.
     """
     for path in paths:
         if path.is_symlink() or (path.exists() and not (path.is_file() or path.is_dir())):
@@ -127,7 +127,7 @@ def missing(folder: Path) -> tuple[Path, ...]:
 
 
 def take_away(files: Iterable[Path], folders: Iterable[Path]) -> None:
-    """Removes the files, and then each of the folders that is empty."""
+    """Removes the files, and then those of the folders that are empty; skips files that are in use."""
     for path in files:
         with suppress(OSError):  # Windows removes no file that is open
             path.unlink()

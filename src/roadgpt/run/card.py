@@ -11,7 +11,7 @@ CARD = "campaign.json"
 
 
 class Card(Frozen):
-    """The content of ``campaign.json``."""
+    """The content of ``campaign.json``: a Request, the number of roads, and whether the campaign is done."""
 
     format: Literal[1] = 1
     request: Request
@@ -23,7 +23,7 @@ def seed_in(folder: Path) -> int | None:
     """Returns the seed of the campaign in a folder; None if the folder holds no campaign.
 
     Raises:
-        UsageError: its ``campaign.json`` is damaged.
+        UsageError: the campaign's ``campaign.json`` is damaged or has another version.
     """
     return read_card(folder).request.seed if (folder / CARD).is_file() else None
 

@@ -23,7 +23,7 @@ BEFORE = "before"
 
 @dataclass(frozen=True)
 class Original:
-    """The road to change, with the world, setup and seed of its Run."""
+    """The Design to change, with the World, Setup and seed of its Run; the seed is 0 if there is no Run."""
 
     design: Design
     world: World
@@ -43,7 +43,7 @@ def original_in(path: str, world: World, setup: Setup) -> Original:
         setup: the Setup for the Design.
 
     Raises:
-        UsageError: there is no such file, or it holds no Design.
+        UsageError: there is no such file, or it holds points or a road with junctions instead of a Design.
     """
     if not Path(path).exists():
         raise UsageError(f"there is no {path}; give the folder of a run, or the file of a road")
@@ -59,7 +59,7 @@ def original_of(run: Run, path: str) -> Original:
     """Returns the Design of a Run as the Original to change; ``path`` is the path of the Run.
 
     Raises:
-        UsageError: the Run has no Design.
+        UsageError: the Run has no design, or its design has junctions.
     """
     if run.design is None:
         raise UsageError(f"{path} was made from points and has no design; only a design can be changed")

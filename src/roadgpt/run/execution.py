@@ -59,8 +59,8 @@ FIELDS = ExecutionRecord._fields
 
 
 def records_of(road: Road, drive: Drive, world: World) -> list[ExecutionRecord]:
-    """Returns the Drive sampled at 10 Hz, plus its last step and every step at which the car leaves its
-    lane."""
+    """Returns records of the Drive at 10 Hz, and also of its last step and of every step at which the car
+    leaves its lane."""
     oracle = consult(road, drive, world)
     keep = _steps(drive["time"], np.diff(oracle.oob_counter, prepend=0) > 0)
     ahead, velocity = _directions(drive)

@@ -26,13 +26,13 @@ def export(run: Run, folder: Path | str, formats: Sequence[str], name: str = NAM
 
 
 def poses_of(run: Run) -> Poses | None:
-    """Returns the poses of the car during the drive; None if the car did not move."""
+    """Returns the poses of the car during the drive; None without a drive of at least two time steps."""
     return Poses.of(run.drive.columns) if run.drive is not None and len(run.drive) > 1 else None
 
 
 @dataclass(frozen=True)
 class Exporting:
-    """Writes road files into the folder of each Run of a campaign, before its pictures are drawn."""
+    """A ``Draw`` that writes the road files of each Run of a campaign before ``draw`` draws the pictures."""
 
     formats: tuple[str, ...]
     tell: Callable[[str], None]
@@ -41,7 +41,7 @@ class Exporting:
     draw: Draw | None = None
 
     def of_run(self, run: Run, folder: Path) -> None:
-        """Writes the road files of one Run in all formats, then its pictures."""
+        """Writes the road of one Run in all formats; then ``draw``, if given, draws the Run's pictures."""
         for format_ in self.formats if run.road is not None else ():
             try:
                 export(run, folder, [format_])
@@ -51,6 +51,6 @@ class Exporting:
             self.draw.of_run(run, folder)
 
     def of_campaign(self, folder: Path) -> None:
-        """Writes the pictures that show all roads of the campaign."""
+        """Lets ``draw``, if given, draw the picture of all roads of the campaign."""
         if self.draw is not None:
             self.draw.of_campaign(folder)

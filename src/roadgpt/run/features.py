@@ -1,4 +1,4 @@
-"""Computes the features by which the SBFT competition maps tests: two of the road and three of the drive.
+"""Computes the five features of a test in the SBFT competition: two of the road and three of the drive.
 
     MAX_CURV   1/m: largest curvature of circles through points i, i+2, i+4; the last triple is left out
     DIR_COV    share of 25 bins, from 0 to 360 degrees, that contain a direction of the road (angle to north)
@@ -38,7 +38,7 @@ def features_of(points: ArrayLike, records: Sequence[ExecutionRecord] = ()) -> d
 
 
 def features_of_drive(steering: Sequence[float], distances: Sequence[float]) -> dict[str, float]:
-    """Returns the features of a drive, by name; with fewer than three records there are none.
+    """Returns the features of a drive, by name; an empty dictionary for fewer than three records.
 
     Args:
         steering: angle of the steering wheel in degrees at each record.

@@ -21,7 +21,7 @@ class LostDrives(Generic[Key]):
         """Keys of the lost drives."""
 
     def count(self, key: Key, is_lost: bool) -> bool:
-        """Counts a drive; returns True if the last three drives were all lost."""
+        """Counts the drive that ``key`` identifies; returns True if the last three drives were all lost."""
         if not is_lost:
             self.lost.clear()
             return False

@@ -40,7 +40,7 @@ class Setup(Frozen):
     """
 
     def came_with(self, file: object) -> Self:
-        """Returns the Setup, and records that it came from a file of unknown origin. A driver in a Python
+        """Returns a copy that is marked as coming from a file of unknown origin. A driver in a Python
         file and the language model's server are then used only with the user's permission.
 
         See ``roadgpt.provenance``. A driver needs no permission if the user has named its file too, for
@@ -52,7 +52,10 @@ class Setup(Frozen):
 
 
 class Request(Frozen):
-    """A request for roads, without their number. The same Request gives the same files, except for times."""
+    """The values that roads are made from, except for the number of roads.
+
+    The same Request gives the same files, except for times.
+    """
 
     words: str = ""
     """The description; empty if the roads were not made from words."""
@@ -67,7 +70,7 @@ class Request(Frozen):
         return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
 
     def came_with(self, file: object) -> Self:
-        """Returns the Request, and records that it came from a file of unknown origin.
+        """Returns a copy that is marked as coming from a file of unknown origin.
 
         See ``Setup.came_with``.
         """
@@ -76,8 +79,8 @@ class Request(Frozen):
 
 @dataclass(frozen=True)
 class Seconds:
-    """Wall-clock times. They differ when a Run is repeated; if a language model was used, the times in
-    ``Run.designing`` and ``Run.spent`` differ, too.
+    """The wall-clock times of a Run. They differ when the Run is repeated; if a language model was used, the
+    times in ``Run.designing`` and ``Run.spent`` differ, too.
     """
 
     design: float = 0.0
@@ -141,7 +144,7 @@ class Run:
 
     @property
     def plain_design(self) -> Design | None:
-        """The design; None if there is none, or if it has junctions or is a map."""
+        """The design if it is a ``Design``; None if there is none, or if it has junctions or is a map."""
         return self.design if isinstance(self.design, Design) else None
 
     @property
@@ -156,7 +159,7 @@ class Run:
 
     @property
     def validation_message(self) -> str:
-        """The message of the first broken rule; empty for a valid road."""
+        """The message of the first broken rule, or why there is no road; empty for a valid road."""
         if self.findings:
             return self.findings[0].sentence
         return "" if self.road else self.description

@@ -20,7 +20,7 @@ PER_POINT = 1.0  # m
 
 
 def test_of(run: Run) -> dict[str, Any]:
-    """Returns the test as data, in the competition's order of fields."""
+    """Returns the content of a Run's test file as a dictionary with the competition's order of fields."""
     points = np.empty((0, 3))
     control = np.empty((0, 2))
     if run.road is not None:

@@ -192,7 +192,7 @@ class Sparseness:
         self._furthest: dict[tuple[int, int], float] = {}
 
     def add(self, number: int, points: ArrayLike) -> None:
-        """Adds the segment of the failed test ``number``, points ``(n, 2)``."""
+        """Adds a failure: the number of its test, and the points ``(n, 2)`` of its road segment in metres."""
         row = steps_of(points)
         apart = dict(zip(self._rows, distances(row, [*self._rows.values()]).tolist(), strict=True))
         key = (number, len(self._rows))

@@ -41,7 +41,7 @@ class TallyEntry(NamedTuple):
 
     @classmethod
     def of(cls, run: Run) -> "TallyEntry":
-        """Returns the entry of a Run."""
+        """Returns the values of a Run that the tables count."""
         found = None
         if run.outcome == "FAIL" and run.road is not None and run.drive is not None:
             found = departure(run.road.control_points(), records_of(run.road, run.drive, run.world))
@@ -50,7 +50,7 @@ class TallyEntry(NamedTuple):
 
 
 class Tally:
-    """Counts the Runs of a folder."""
+    """Counts the Runs of a campaign for the tables generation_stats.csv and oob_stats.csv."""
 
     def __init__(self) -> None:
         self.outcomes: Counter[str] = Counter()

@@ -12,7 +12,7 @@ DRIVING = ("mujoco-core", "numba")
 
 
 def versions_of(setup: Setup) -> dict[str, str]:
-    """Returns the versions of RoadGPT, Python and the libraries that affect the results."""
+    """Returns the versions of RoadGPT, Python and the libraries that affect the results, and the platform."""
     return {
         "roadgpt": __version__,
         "python": platform.python_version(),

@@ -60,7 +60,11 @@ def nodes(points: Any) -> Points:
 
 def left_lane(points: Any, records: Any, before: float, after: float) -> Message | None:
     """Returns where a car left its lane, as the competition's analysis finds it; None if the car did not
-    leave its lane."""
+    leave its lane.
+
+    The result is a dictionary of the fields of ``sparseness.Departure``; the arguments are those of
+    ``sparseness.departure``.
+    """
     from roadgpt.run.execution import ExecutionRecord
     from roadgpt.run.sparseness import departure
 
@@ -158,7 +162,7 @@ OPS: dict[Any, Callable[..., Any]] = {
 
 
 def main() -> None:
-    """Answers requests on standard input until it is closed. Output of plug-ins goes to standard error."""
+    """Answers requests until standard input is closed. Output of plug-ins goes to standard error."""
     hears, tells = private_streams()
     for line in hears:
         asked = received(line)

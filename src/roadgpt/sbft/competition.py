@@ -33,8 +33,8 @@ OVER: Message = {"is_over": True}
 
 @dataclass
 class Competition:
-    """A generator and its tests. Iterate over it to run the generator: each test is yielded as a Run,
-    after its files have been written.
+    """A generator and its tests. Iterate over a Competition to run its generator: each test is yielded as a
+    Run, after the files of the test have been written.
     """
 
     experiment: Experiment

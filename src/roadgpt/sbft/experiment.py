@@ -49,6 +49,6 @@ class Ending(Frozen):
 
     @property
     def is_of_a_generator(self) -> bool:
-        """False if the generator could not be loaded, or if the Python interpreter that should run it cannot
-        run generators; True if it ended in any other way."""
+        """Whether the generator was loaded before it ended; False also if the Python interpreter that should
+        run the generator cannot run generators."""
         return self.how not in UNBEGUN

@@ -1,5 +1,5 @@
-"""RoadGPT as a generator in the competition's own pipeline; it searches among the roads that meet a
-description for those on which the car fails.
+"""Defines RoadGPT's test generator for the competition's own pipeline. Among the roads that meet a
+description, the generator searches for roads on which the car fails.
 
     python competition.py --module-name roadgpt.sbft --class-name RoadGPTTestGenerator ...
 

@@ -22,7 +22,10 @@ OURS = "ROADGPT_PYTHON"  # names RoadGPT's interpreter, if the generator runs in
 
 
 class GeneratorExitedError(Exception):
-    """A generator's process has ended; ``status`` is its exit status, negative if a signal ended it."""
+    """Raised if a generator's process has ended.
+
+    ``status`` is its exit status: negative if a signal ended the process, None if it is unknown.
+    """
 
     def __init__(self, status: int | None) -> None:
         super().__init__(status)

@@ -7,13 +7,13 @@ Message = dict[str, Any]
 
 
 def send(stream: IO[bytes], message: Message) -> None:
-    """Writes a message; numbers that are not finite are written as NaN or Infinity."""
+    """Writes a message as one line of JSON; numbers that are not finite are written as NaN or Infinity."""
     stream.write(json.dumps(message, default=_plain).encode() + b"\n")
     stream.flush()
 
 
 def received(line: bytes) -> Message | None:
-    """Returns the message in a line; None if the line is not a valid message."""
+    """Returns the message in a line; None if the line is not a JSON object."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError):

@@ -31,10 +31,13 @@ HEIGHT = -28.0  # m, of the ground of the competition's level
 
 
 def new_folder(experiment: Experiment, out: Path | None = None) -> tuple[Path, tuple[Path, ...]]:
-    """Creates the folder for results; by default, it has the name that the competition would give it.
+    """Creates the folder for results.
+
+    If ``out`` is None, the folder is in ``results`` and has the name that the competition would give it.
 
     Returns:
-        Two values: the folder, and the folders on its path that did not exist before, the innermost first.
+        Two values: the folder, and all folders that this function created on the folder's path, the innermost
+        first.
 
     Raises:
         UsageError: the folder is not empty, or cannot be created.

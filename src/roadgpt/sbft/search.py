@@ -1,4 +1,4 @@
-"""Runs the search of a campaign one road at a time; the outcomes may come from another simulator."""
+"""Searches for failing roads one road at a time; the caller drives the roads, in any simulator."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ U = TypeVar("U")
 
 
 class HerePool:
-    """Runs everything in this process."""
+    """Replaces a pool of worker processes: calls all functions in this process."""
 
     def map(self, function: Callable[[T], U], items: Sequence[T]) -> list[U]:
         """Returns the results of ``function`` for all items."""
@@ -33,7 +33,7 @@ class HerePool:
 class RoadSearch:
     """Searches for roads on which a car fails: ``ask`` returns a road, and ``tell`` receives its outcome.
 
-    The search ignores each road whose outcome is never reported.
+    Outcomes are accepted only for the latest 100 tests. The search ignores roads without an outcome.
     """
 
     def __init__(self, brief: Brief, words: str, seed: int, world: World, setup: Setup) -> None:
@@ -58,7 +58,7 @@ class RoadSearch:
         self._batch = self._number = 0
 
     def ask(self) -> tuple[int, Design, Road]:
-        """Returns the number of a test, from 1, its design and its road.
+        """Returns the next test: its number, counted from 1, the design of its road, and the road.
 
         Raises:
             DesignError: no road can be designed.
@@ -91,7 +91,8 @@ class RoadSearch:
         """Receives the outcome of a test.
 
         Args:
-            number: the number that ``ask`` returned; unknown numbers are ignored.
+            number: the number that ``ask`` returned. Other numbers are ignored, and so are tests whose
+                outcome was already received or that are not among the latest 100.
             outcome: "PASS" or "FAIL"; tests with another outcome, or with fewer than three records, are
                 ignored.
             steering: angle of the steering wheel in degrees at each record of the drive.

@@ -54,8 +54,9 @@ class CarPart:
 
 
 def surface(net: Array, kind: int) -> CarPart:
-    """Returns a smooth surface through a grid of points ``(rows, columns, 3)``. Its normals point along a
-    x b, where a is the direction of increasing row index and b that of increasing column index."""
+    """Returns a smooth surface through a grid of points ``(rows, columns, 3)``. Its normals point in the
+    direction of the cross product a x b, where a is the direction of increasing row index and b the direction
+    of increasing column index."""
     along, across = np.gradient(net, axis=0), np.gradient(net, axis=1)
     normals = np.cross(along, across)
     size = np.linalg.norm(normals, axis=-1, keepdims=True)

@@ -1,8 +1,8 @@
 """The 3D model of the car in images: a saloon of the simulated car's size, with wheels that roll and steer,
 and with brake lights.
 
-The origin of its coordinates is on the ground below the middle of its length; x points forward, y left, z up;
-metres.
+The model's coordinates are in metres. Their origin is on the ground below the middle of the car's length; x
+points forward, y to the left and z up.
 """
 
 from dataclasses import dataclass
@@ -41,8 +41,9 @@ class Saloon:
     """For each wheel: the slice of its points, the position of its hub, and whether it steers."""
 
     def placed(self, pose: Pose, eye: CameraPose) -> tuple[Array, Array]:
-        """Returns the points ``(n, 3)`` in world coordinates, and their attributes ``(n, 3)``: reflection, an
-        unused column, light."""
+        """Returns the points ``(n, 3)`` of a car at ``pose`` in world coordinates, and their attributes
+        ``(n, 3)``: the light that they reflect to the camera ``eye``, an unused column, and their brightness.
+        """
         points, normals = self.mesh.points.copy(), self.normals.copy()
         for part, hub, steers in self.wheels:
             turn = _turn(pose.wheel, pose.steer if steers else 0.0)
@@ -104,8 +105,8 @@ def saloon() -> Saloon:
 
 
 def palette_of(pose: Pose | None) -> NDArray[np.float64]:
-    """Returns the colours of all surfaces without a pattern; the brake lights are on if the brake pedal is
-    pressed in ``pose``."""
+    """Returns the colours of all surfaces without a pattern, ``(n, 6)`` as in PALETTE. The brake lights are
+    on if the brake pedal is pressed in ``pose``; they are off if ``pose`` is None."""
     colours = PALETTE.copy()
     if pose is not None and pose.brake > BRAKE:
         for row, light in SHINING.items():

@@ -34,7 +34,7 @@ class SignFace(NamedTuple):
 
 
 def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
-    """Yields the faces of a sign and of its post. Faces of the front are yielded from back to front."""
+    """Yields the faces of a sign and of its post. Of two overlapping faces, the rear one is yielded first."""
     top = MIDDLE[sign.control]
     yield from _tube(sign, POLE, -FOOT, top)
     if sign.control == "lights":

@@ -61,9 +61,9 @@ class Mesh:
 
 
 def grid(points: Array, attributes: Array, kind: int) -> Patch:
-    """Returns the surface through a grid of points ``(rows, columns, 3)``. It is visible from the side to
-    which a x b points, where a is the direction of increasing row index and b that of increasing column
-    index."""
+    """Returns the surface through a grid of points ``(rows, columns, 3)``. The surface is visible only from
+    the side to which the cross product a x b points, where a is the direction of increasing row index and b
+    the direction of increasing column index."""
     rows, columns = points.shape[:2]
     at = np.arange(rows * columns).reshape(rows, columns)
     a, b, c, d = at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]
@@ -74,5 +74,7 @@ def grid(points: Array, attributes: Array, kind: int) -> Patch:
 
 
 def attributes(u: ArrayLike, v: ArrayLike, light: ArrayLike) -> Array:
-    """Stacks three columns into one array ``(..., 3)``."""
+    """Returns the attributes of points, as in ``Patch``, as one array ``(..., 3)``: the surface coordinates
+    ``u`` and ``v``, and the brightness ``light``. The three are broadcast to one shape.
+    """
     return np.stack(np.broadcast_arrays(*(np.asarray(a, float) for a in (u, v, light))), axis=-1)

@@ -41,7 +41,7 @@ COLOURS: dict[SignColour, int] = {
 
 
 def land_of(route: Route, world: World) -> Land:
-    """Returns the terrain around a network; the terrain is flat if the roads have no shoulders."""
+    """Returns the terrain around a route's network; the terrain is flat if the roads have no shoulders."""
     parts = NetworkSurface.of(route.network)
     lines = np.concatenate([each.road.centreline(LONGEST_STEP) for each in route.network.roads])
     return Land.beneath(lines, parts.reach if parts.shoulder > 0 else None, world.site.z_floor)
@@ -61,14 +61,14 @@ class StationAxis:
 
     @classmethod
     def of(cls, network: Network, roads: tuple[NetworkRoad, ...], widest: float) -> "StationAxis":
-        """Returns the axis on which the given roads lie one after another, followed by the two stretches for
-        junctions.
+        """Returns the axis on which the given roads lie one after another, followed by two stretches for
+        junctions: one without paint, and one on which the carriageway ends at offset 0.
 
         Args:
             network: the network.
             roads: all roads of the network.
-            widest: the greatest x extent of a junction in metres; the stretch on which nothing is painted is
-                longer than that.
+            widest: the greatest x extent of a junction in metres; the stretch without paint is longer than
+                ``widest``.
         """
         starts, rows, at = {}, [], 0.0
         for each in roads:

@@ -16,8 +16,8 @@ COARSEST = 6.0  # halvings after which a tile is uniform
 
 @inlined
 def plain_noise(tiles: Tiles, tile: int, start: int, side: int, u: float, v: float) -> float:
-    """Returns the bilinearly interpolated value of one resolution level of a noise tile; (u, v) is the
-    position in texels of that level."""
+    """Returns the bilinearly interpolated value of one resolution level of a noise tile at (u, v) in texels
+    of this level. The level is ``side`` texels wide and begins at index ``start`` of the tile."""
     fu, fv = math.floor(u), math.floor(v)
     du, dv = u - fu, v - fv
     mask = side - 1
@@ -56,14 +56,15 @@ def share(x: float, low: float, high: float, wide: float) -> float:
 
 @inlined
 def dashed(x: float, dash: float, period: float) -> float:
-    """Returns the total length of all dashes from 0 to x; the first dash begins at 0."""
+    """Returns the total length of all dashes from 0 to x. A dash of length ``dash`` begins at 0 and after
+    every ``period``."""
     whole = math.floor(x / period)
     return whole * dash + min(x - whole * period, dash)
 
 
 @inlined
 def bump(x: float, wide: float) -> float:
-    """Returns 1 at x = 0, falling smoothly to 0 at |x| = ``wide``."""
+    """Returns a value that falls smoothly from 1 at x = 0 to 0 at |x| = ``wide``, and is 0 beyond."""
     part = max(1.0 - x * x * (1.0 / (wide * wide)), 0.0)
     return part * part
 

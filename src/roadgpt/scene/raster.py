@@ -1,8 +1,8 @@
 """Rasterises triangles with four samples per pixel; the nearest triangle wins.
 
-Let a triangle have the corners P0, P1, P2 in camera coordinates (right, down, forward). Every quantity a that
-varies linearly over the triangle then satisfies a / w = g . ray, where w is the depth, and ray = (x, y, 1) is
-the direction of a pixel. The vector g follows from the values a_i at the corners: P_i . g = a_i. This also
+Let a triangle have the corners P0, P1, P2 in camera coordinates (right, down, forward). Every quantity q that
+varies linearly over the triangle then satisfies q / w = g . ray, where w is the depth, and ray = (x, y, 1) is
+the direction of a pixel. The vector g follows from the values q_i at the corners: P_i . g = q_i. This also
 holds for corners behind the camera, so that only the outline of the triangle in the image needs clipping.
 Source: M. Olano and T. Greer, Triangle scan conversion using 2D homogeneous coordinates, 1997.
 """

@@ -26,7 +26,9 @@ POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
 def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
-    """Returns all patches that belong to the road."""
+    """Returns the triangle patches of the road: its surface, with embankments and posts or, if the road has
+    no shoulders, with the slab of a floating road.
+    """
     profile = world.profile_of(road)
     s = stations_between(road, profile.reach)
     if not profile.has_shoulders:
@@ -37,9 +39,10 @@ def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
 
 
 def stations_between(road: Road, rim: float) -> Array:
-    """Returns stations ``(n,)`` in metres for lines up to ``rim`` metres beside the centre line.
+    """Returns the stations ``(n,)`` in metres at which lines along the road need points.
 
-    The stations are at most ``LONGEST`` apart.
+    The stations are at most ``LONGEST`` apart. Up to ``rim`` metres beside the centre line, a
+    polyline through them deviates from its curve by at most about ``CHORD``.
     """
     s = stations(road, rim, CHORD)
     parts = np.maximum(1, np.ceil(np.diff(s) / LONGEST)).astype(int)
@@ -55,8 +58,8 @@ def _blocks(rows: Array, values: Array, kind: int) -> list[Patch]:
 
 
 def surface(road: Road, profile: Profile, s: Array, start: float = 0.0) -> list[Patch]:
-    """Returns the surface from the right rim to the left rim. The surface coordinates are ``start`` + s and t
-    in metres."""
+    """Returns the surface of carriageway and shoulders, with points at the stations ``s``. The surface
+    coordinates of a point are ``start`` + station and the offset t, in metres."""
     bounds = [t for _, t in reversed(profile.boundaries(s))]
     offsets = [bounds[0]]
     for one, other in pairwise(bounds):
@@ -114,8 +117,8 @@ def slab(road: Road, profile: Profile, s: Array) -> list[Patch]:
 
 
 def posts(road: Road, profile: Profile, is_free: Callable[[Array], bool] = lambda place: True) -> list[Patch]:
-    """Returns the posts as upright boxes; the second surface coordinate is the height in metres. A post is
-    left out if ``is_free`` returns False for its position ``(3,)``."""
+    """Returns the posts beside a road as upright boxes, whose second surface coordinate is the height in
+    metres. There is no post at a position ``(3,)`` for which ``is_free`` returns False."""
     count = max(1, int(road.length / POST_EVERY))
     s = np.asarray((np.arange(count) + 0.5) * (road.length / count), np.float64)
     model, facing = _post()

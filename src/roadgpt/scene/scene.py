@@ -96,7 +96,8 @@ class Scene:
             car: pose of the car that is drawn, with its shadow; None to draw no car.
 
         Raises:
-            UsageError: a number of a pose is not finite or exceeds 1e7, or ``out`` has another shape or type.
+            UsageError: a number of a pose is not finite or exceeds 1e7, or ``out`` does not have the image's
+                shape or is not of bytes.
         """
         if not all(np.abs(each).max() <= FARTHEST for each in (pose, car) if each is not None):
             raise UsageError("a number of a pose is not finite, or beyond 10,000 km")

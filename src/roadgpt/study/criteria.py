@@ -1,4 +1,4 @@
-"""Checks which criteria of its description a road meets: the criteria of the thesis' survey, and ``extent``.
+"""Checks which criteria of a description a road meets: the criteria of the thesis' survey, and ``extent``.
 
     turns     the number of all turns, of left turns and of right turns
     incline   the grade of the whole road, and of each turn and straight
@@ -51,8 +51,8 @@ FEATURE_FIELDS: Mapping[Criterion, tuple[str, ...]] = {
 def criteria_of(found: Measures, asked: Outline) -> dict[Criterion, bool]:
     """Returns, for each criterion of an Outline, whether a measured road meets it.
 
-    The Outline has the requirements that people wrote down in a Truth, or those that a reader found in a
-    description. A road shorter than 20 m meets no criterion.
+    The Outline contains either the requirements that people wrote down in a Truth, or the requirements that a
+    reader found in a description. A road shorter than 20 m meets no criterion.
     """
     out: dict[Criterion, bool] = {}
     for criterion, fields in FIELDS.items():

@@ -129,8 +129,8 @@ class StudyPartRecord:
         return tuple(road for road in self.roads if road.likeness is not None)[:MOST_COMPARED]
 
     def likenesses(self, most: int = MOST_COMPARED) -> list[Likeness]:
-        """Returns, for the first ``most`` roads in ``compared``, the properties by which roads are
-        compared."""
+        """Returns the Likeness of each of the first ``most`` roads in ``compared``: the properties by which
+        roads are compared."""
         return [road.likeness for road in self.compared if road.likeness is not None][:most]
 
     @cached_property

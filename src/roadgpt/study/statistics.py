@@ -71,7 +71,7 @@ class ChiSquared:
         """Whether Cochran's rule holds: no expected count is below 1, and at most 20 % of the expected counts
         are below 5.
 
-        Empty rows and columns are left out, as in the test.
+        Empty rows and columns are left out, as in the test. False if there are no degrees of freedom.
         """
         present = self.expected[self.expected > 0]
         return bool(self.freedom and present.min() >= 1 and (present < FEW).mean() <= MOST_SMALL)

@@ -57,7 +57,7 @@ Slope = Literal["up", "down", "flat"]
 
 
 class ExpectedElement(Frozen):
-    """One turn or one straight that a description asks for; a field that is None sets no requirement."""
+    """One turn or one straight that a description requires; a field that is None sets no requirement."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
 
@@ -100,9 +100,9 @@ class Truth(Frozen):
         """Returns an Outline with the requirements of the given keys, by default of all keys that are not
         None.
 
-        The key ``sequence`` lists all turns of the road, so it also sets their number. An Outline that
-        requires exactly 0 turns accepts only a straight road. The Outline of a Truth with 0 turns also
-        accepts slight bends, because SLACK widens every range; use the key ``turning`` to limit the bends.
+        The key ``sequence`` lists all turns of the road, so it also sets their number. If the key ``turns``
+        is 0, the road may still have slight bends: only an Outline with a range of exactly 0 turns excludes
+        them, and SLACK widens every range. Use the key ``turning`` to limit the bends.
         """
         asked = {CALLED.get(key, key): _asked(getattr(self, key)) for key in keys or self.given()}
         if "groups" in asked:

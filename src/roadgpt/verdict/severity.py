@@ -1,7 +1,7 @@
-"""Grades how far outside its lane a car was: inside, partly outside or mostly outside.
+"""Says in three levels how far outside its lane a car was: inside, partly outside or mostly outside.
 
-All pictures, pages, tables and terminal output colour results by this scale. With the SBFT competition's
-tolerance of 0.95, a car may pass a test with nearly its whole body outside its lane. The scale distinguishes
+All pictures, pages, tables and terminal output colour results by these levels. With the SBFT competition's
+tolerance of 0.95, a car may pass a test with nearly its whole body outside its lane. The levels distinguish
 such a PASS from that of a car that never left its lane.
 """
 
@@ -10,14 +10,14 @@ from typing import Literal, get_args
 
 Severity = Literal["inside", "partly outside", "mostly outside"]
 SEVERITIES: tuple[Severity, ...] = get_args(Severity)
-"""All grades, from the best to the worst."""
+"""All levels, from the best to the worst."""
 
 MOSTLY = 0.5
-"""Share of the car's bounding box outside its lane above which the grade is "mostly outside"."""
+"""Share of the car's bounding box outside its lane above which the level is "mostly outside"."""
 
 
 def severity(share: float) -> Severity:
-    """Returns the grade for a share (0 to 1) of the car's bounding box outside its lane."""
+    """Returns the level for a share (0 to 1) of the car's bounding box outside its lane."""
     if share > MOSTLY:
         return "mostly outside"
     return "partly outside" if share > 0 else "inside"
@@ -26,7 +26,7 @@ def severity(share: float) -> Severity:
 def graded(outcome: str, share: float | None) -> str:
     """Returns the outcome as displayed, for example "PASS (partly outside)".
 
-    The grade is appended only to PASS, and only if the share is known and not 0.
+    The level is appended only to PASS, and only if the share is known and not 0.
 
     Args:
         outcome: PASS, FAIL or any other outcome.

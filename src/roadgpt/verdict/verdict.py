@@ -77,7 +77,7 @@ class Verdict:
 
     @property
     def severity(self) -> Severity:
-        """How far outside its lane the car was, as a grade that follows from ``max_oob`` alone."""
+        """How far outside its lane the car was, in three levels; it follows from ``max_oob`` alone."""
         return severity(self.max_oob)
 
     @property

@@ -76,7 +76,7 @@ SAID = {
 
 
 class PlanAnswer(BaseModel):
-    """The answer that the model is asked for."""
+    """The form of the language model's answer: the two parts of a plan, and the words left over."""
 
     model_config = fixed_description("What the model is asked for.")
 

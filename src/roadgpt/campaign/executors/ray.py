@@ -93,8 +93,8 @@ class Ray(JobQueue):
             ]
 
     def stop(self) -> None:
-        """Ends every worker, and the connection to Ray if this executor made it; a cluster that was started
-        for the workers ends, too."""
+        """Ends every worker. If this executor opened the connection to Ray, closes it; a cluster that was
+        started for the workers then ends, too."""
         if self._stops.is_set():
             return
         self._stops.set()

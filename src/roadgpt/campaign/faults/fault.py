@@ -1,9 +1,10 @@
-"""Finds the distinct faults in a folder; no road is driven.
+"""Finds the distinct faults in a folder from stored results; this module drives no road.
 
-Failures are first grouped by the road around them. Once some failures of each group were driven with small
-changes (``remedy_log``), the groups are joined into faults. Then further failures of each fault are driven
-with the changes, until ``CHECKED`` of them have disappeared; each time, the groups are joined again, with the
-new results.
+A fault is a set of failures that disappear with the same small change of the test. Failures are first grouped
+by the similarity of the road around them. Once ``remedy_log`` has driven some failures of each group with
+small changes, the groups are joined into faults. Then it drives further failures of each fault with the
+changes, ``AT_A_TIME`` failures at a time, until ``CHECKED`` failures of the fault have disappeared. After
+each time, the groups are joined again, with the new results.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -55,15 +56,15 @@ class Fault:
     ``distinct.typical``.
     """
     remedy: str | None = None
-    """Name of the small change that removes the failures; None if this is a group, not a fault."""
+    """Name of the small change with which the failures disappear; None if this is a group, not a fault."""
     tested_first: tuple[LocatedFailure, ...] = ()
     """The failures of a group that are driven with small changes first, evenly spread from the most to the
     least typical one; empty for a fault."""
 
     @property
     def removed_by(self) -> str:
-        """The small change as text for users, such as 'a 15 % larger radius of the bend'; empty for a
-        group.
+        """The small change with which the failures disappear, as text for users, such as 'a 15 % larger
+        radius of the bend'; empty for a group.
         """
         return SENTENCES[self.remedy] if self.remedy else ""
 
@@ -162,7 +163,7 @@ def faults_in(folder: Path, most: int | None = None, cell: str = "") -> Faults:
         folder: the folder of the run, the runs or the campaign.
         most: maximum number of failures to compare, evenly spread over all; None: all failures. If small
             changes were tried on failures of the folder, ``most`` is ignored, because the stored results
-            belong to the groups of all failures.
+            belong to groups that were formed from all failures.
         cell: name of a cell of a campaign; empty: all cells.
 
     Raises:
@@ -205,7 +206,7 @@ def _order(fault: Fault) -> tuple[bool, int, NumberedTest]:
 
 
 Tested = Mapping[NumberedTest, Removed]
-"""By name of a failure: which small changes remove it."""
+"""By name of a failure: with which small changes it disappears."""
 
 
 def _tested(folder: Path, known: Sequence[LocatedFailure]) -> Tested:

@@ -80,8 +80,8 @@ class FailureAnalysis:
 
 
 def analyse(task: AnalysisTask) -> tuple[int, FailureAnalysis]:
-    """Analyses a fault: why its typical failure happens, how often it happens again, and the simplest road
-    that reproduces it.
+    """Analyses a fault: why its typical failure happens, how often this failure happens again and, if
+    ``task.minimise`` is set, the simplest road that reproduces the failure.
 
     The failure analysed is the most typical one of ``task.names`` that fails again in at least half of the
     disturbed drives; if there is none, the one that fails most often. If a stored analysis exists for the
@@ -148,7 +148,7 @@ def kept_analysis(folder: Path, fault: Fault) -> FailureAnalysis | None:
 
 
 def simplest_of(folder: Path, name: NumberedTest) -> Path:
-    """Returns the run folder of the simplest road that reproduces the given failure."""
+    """Returns the path of the run folder of a failure's simplified road, whether or not it exists."""
     return run_folder(folder / FOLDER / SIMPLEST / name.cell, name.number)
 
 

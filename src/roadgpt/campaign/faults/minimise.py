@@ -64,8 +64,11 @@ class Trial:
         self._known: dict[Design, Run | None] = {}
 
     def fails(self, design: Design | None) -> Run | None:
-        """Drives a road and returns its Run if the road is valid and the car fails on it as in the
-        original failure (same cause and side). Returns None otherwise, or if all drives are used up.
+        """Drives the road of a Design; returns the Run if the car fails for the same cause and to the same
+        side as in the original failure.
+
+        Returns None if the car does not fail in this way, if the road is invalid even in the middle of the
+        map, or if all drives are used up.
         """
         if design is None:
             return None

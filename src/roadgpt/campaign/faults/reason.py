@@ -100,8 +100,11 @@ def lane_curvature(road: Road, world: World, stations: Array) -> Array:
 
 
 def bend_at(road: Road, world: World, station: float) -> tuple[Array, float, float]:
-    """Returns the stations around a departure, metres; the curvature of the lane where it is largest in
-    magnitude, 1/m, positive to the left; and the station of this curvature, metres.
+    """Returns where the lane bends most, from 25 m before to 5 m after a departure at ``station``.
+
+    Returns:
+        The stations searched, in metres, 0.5 m apart; the curvature of the lane that is largest in magnitude,
+        in 1/m, positive to the left; and the station of this curvature, in metres.
     """
     near = np.arange(max(0.0, station - BEFORE), min(road.length, station + AFTER) + 0.5, 0.5)
     bends = lane_curvature(road, world, near)

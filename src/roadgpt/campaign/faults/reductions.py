@@ -44,8 +44,8 @@ def simplified(design: Design, steps: Sequence[Simplification]) -> Design | None
 
 
 def simplifications() -> list[Simplifier]:
-    """Returns one function for each type of simplification; the function lists all such simplifications of a
-    Design.
+    """Returns one Simplifier for each type of simplification: a function that lists all simplifications of
+    this type for a Design.
 
     The types that simplify the road most come first.
     """

@@ -1,7 +1,8 @@
 """Tries small changes of the road around a failure, and finds which of them make the failure disappear.
 
-Failures that the same small change removes have the same cause, whatever their roads look like elsewhere. A
-failure has disappeared if the car passes the test, or fails more than 30 m after the place of the departure.
+Failures that disappear with the same small change have the same cause, whatever their roads look like
+elsewhere. A failure has disappeared if the car passes the test, or fails more than 30 m after the place of
+the departure.
 """
 
 from collections.abc import Callable, Collection, Iterator, Mapping
@@ -122,13 +123,16 @@ def remedies_of(run: Run, kinds: Collection[str] = KINDS) -> Removed:
     """Drives a failing Run's road with each change, and returns which changes make the failure disappear.
 
     If a small change removes the failure, the larger change of the same kind is not driven and counts as
-    removing the failure, too. The value is None if a change does not apply, for example because there is no
-    bend before. No change applies to a road without a Design that has its own cross-section, because that
-    cross-section is given by station.
+    removing the failure, too. No change applies to a road that has its own cross-section but no Design,
+    because the cross-section is given by station.
 
     Args:
         run: the Run of the failing test.
         kinds: kinds of changes to try.
+
+    Returns:
+        For each change, by its name, whether it removes the failure; None if the change does not apply, for
+        example because there is no bend before the failure.
 
     Raises:
         UsageError: the driver or the simulator cannot be loaded.

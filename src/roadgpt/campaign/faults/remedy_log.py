@@ -22,7 +22,7 @@ REMEDY_FOLDER = "remedies"
 
 
 class RemedyTask(NamedTuple):
-    """One failure to test; the task can be sent to another process."""
+    """One failure on which the small changes are tried; the task can be sent to another process."""
 
     folder: Path
     name: NumberedTest
@@ -72,7 +72,7 @@ def has_remedies(folder: Path) -> bool:
 
 
 def task_of(folder: Path, failure: LocatedFailure) -> RemedyTask:
-    """Returns the task to test a failure."""
+    """Returns the RemedyTask that tries the small changes on a failure."""
     return RemedyTask(folder, failure.name, failure.station)
 
 
@@ -81,10 +81,10 @@ def _page(task: RemedyTask) -> Path:
 
 
 def made_folder(place: Path) -> Path:
-    """Makes a folder inside ``DIR/faults``, and returns it.
+    """Makes the folder ``place`` inside ``DIR/faults``, unless it exists, and returns ``place``.
 
     Raises:
-        RoadGPTError: the folder cannot be made, or a link lies on the way to it.
+        RoadGPTError: the folder cannot be made, or a part of its path from ``faults`` on is a symbolic link.
     """
     refuse_links(place, *(each for each in place.parents if FOLDER in (each.name, each.parent.name)))
     with explained(RoadGPTError, f"cannot make {place}", "make room there"):

@@ -94,9 +94,10 @@ def repeated(run: Run, times: int, spread: Callable[..., Iterable[Repeated]] = m
 
 
 def once(task: tuple[Run, int]) -> Repeated:
-    """Drives a Run's road once with a disturbance; a drive that ends with an error counts as failed.
+    """Drives a Run's road once with a disturbance; ``task`` is the Run and the number of the disturbance.
 
-    If the simulator itself failed, the drive is repeated instead.
+    A drive that ends with a DriverError or a SimulationError counts as failed. After a SimulatorError, the
+    drive is repeated.
 
     Raises:
         UsageError: the driver or the simulator cannot be loaded.

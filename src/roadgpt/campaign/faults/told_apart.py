@@ -1,8 +1,8 @@
 """Joins groups of similar failures into distinct faults by the small changes that make them disappear.
 
-A fault is a set of failures that one small change removes, while this change leaves the failures of other
-faults as they are. So two failures of one fault disappear with the same change, and two failures of different
-faults do not. Groups for which there is no such change belong to no fault.
+A fault is a set of failures that disappear with one small change, while this change leaves the failures of
+other faults as they are. So two failures of one fault disappear with the same change, and two failures of
+different faults do not. Groups for which there is no such change belong to no fault.
 """
 
 from collections import Counter
@@ -40,9 +40,10 @@ def faults_by_remedy(groups: Sequence[TriedGroup]) -> list[str | None]:
     """Returns for each group the name of the change that defines its fault; None if the group belongs to no
     fault.
 
-    A set of one to four changes is admissible if its faults keep to ``WITHIN``, ``ACROSS`` and ``FEWEST``. Of
-    the admissible sets, the function takes the one whose faults have the most failures; a failure that needs
-    a larger change counts 0.8. Of equal sets, it takes the one with the fewest and smallest changes.
+    Each change in a set defines one fault. A set of one to four changes is admissible if its faults satisfy
+    the limits ``WITHIN``, ``ACROSS`` and ``FEWEST``. The function takes the admissible set whose faults have
+    the most failures; a failure that needs a larger change counts as 0.8 failures. If several sets are
+    equally good, it takes the set with the fewest and smallest changes.
     """
     shares = np.array([[_share(group, remedy.name) for remedy in REMEDIES] for group in groups])
     best: list[int | None] = [None] * len(groups)

@@ -49,7 +49,7 @@ CLOSE = 0.05  # distance up to which a pair is near enough (see boundary_pairs.d
 
 
 class QualityDiversity:
-    """A search towards a goal, with one or two maps of elites and a surrogate model."""
+    """Searches for roads that serve a goal; uses one or two feature maps of elites and a surrogate model."""
 
     goals = GOALS
 

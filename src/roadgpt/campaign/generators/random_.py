@@ -12,7 +12,7 @@ from roadgpt.campaign.variation import VariationTask
 
 
 class Random:
-    """Independent drafts."""
+    """Proposes roads that the planner drafts independently of each other."""
 
     def __init__(self, cell: Cell) -> None:
         """Reads the settings.
@@ -24,7 +24,7 @@ class Random:
         self.batch_size = settings_of(cell).batch
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes the next drafts."""
+        """Proposes up to n drafts of the planner."""
         rng = batch_rng(self._cell, batch)
         setting = context_of(self._cell)
         tasks = [

@@ -6,7 +6,7 @@ from roadgpt.campaign.model import Cell, Pool, Proposal, Result
 
 
 class Words:
-    """Roads for one description; the workers design them in the same way as ``roadgpt run``."""
+    """Proposes roads for one description; the workers design them in the same way as ``roadgpt run``."""
 
     batch_size = 16
 
@@ -14,7 +14,7 @@ class Words:
         self._seed = cell.request.seed
 
     def ask(self, batch: int, first: int, n: int, pool: Pool) -> list[Proposal]:
-        """Proposes the next roads."""
+        """Returns n equal proposals without a design: the workers design the roads."""
         return [Proposal(None, self._seed, "draft")] * n
 
     def tell(self, results: Sequence[Result]) -> None:

@@ -13,7 +13,7 @@ from roadgpt.errors import UsageError
 
 
 class RayActor:
-    """The worker, in its own process."""
+    """A worker of the executor ``ray``, which Ray runs in a process of its own."""
 
     def __init__(self, patience: float) -> None:
         """Takes the seconds after which a job is treated as hanging and the worker ends; they apply only to
@@ -22,7 +22,12 @@ class RayActor:
         self._shared: dict[str, Any] = {}
 
     def begin(self, version: str, prepare: bytes) -> tuple[int, bytes]:
-        """Prepares the worker; returns its Ray node, host name and process id, or the error that occurred."""
+        """Prepares the worker.
+
+        Returns:
+            READY, and pickled: the id of the Ray node, and a text with host name and process id; or ERROR and
+            the pickled error.
+        """
         import ray
 
         from roadgpt import __version__
@@ -41,10 +46,10 @@ class RayActor:
         return READY, pickled((ray.get_runtime_context().get_node_id(), f"{here}, {os.getpid()}"))
 
     def work(self, orders: Sequence[JobMessage]) -> list[tuple[int, bytes]]:
-        """Runs jobs one after another, and returns how each ended.
+        """Runs jobs one after another; returns how each job ended, and its pickled value or error.
 
-        If the message holds several jobs, the worker limits the time of each, and ends if a job hangs. If it
-        holds one job, the sender limits the time.
+        If ``orders`` holds several jobs, the worker limits the time of each job, and ends if a job hangs. If
+        ``orders`` holds one job, the sender limits the time.
         """
         if len(orders) == 1:
             return [answer(orders[0], self._shared)]

@@ -13,8 +13,7 @@ NOTE = b"[what was printed before is left out]\n"
 def shorten(log: Path) -> None:
     """Keeps only the end of a log that has become too long; workers can continue to append to it.
 
-    If the file cannot be shortened, it stays unchanged and no error is raised, since a full log must not stop
-    a campaign.
+    If the file cannot be read or written, no error is raised, since a full log must not stop a campaign.
     """
     with suppress(OSError):
         if log.stat().st_size <= MOST:

@@ -50,7 +50,7 @@ class Replay:
         Raises:
             BudgetError: the question could exceed the limit of tokens or money.
             ChatError: no answer to this question was recorded.
-            ReplyError: the recorded exchange ended with this error.
+            ReplyError: the recorded question got no usable answer; the recorded error is raised again.
             UsageError: the recording cannot be read.
         """
         self._account.reply_tokens(messages, self._settings.model or "")

@@ -1,4 +1,4 @@
-"""Requires all roads of a network to stay on or above the ground of the level.
+"""Requires all roads of a network to stay on or above the ground of BeamNG's level.
 
 The limit is that of the rule ``below_floor`` for single roads.
 """

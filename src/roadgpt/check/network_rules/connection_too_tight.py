@@ -1,7 +1,7 @@
 """Requires the middle of the lane of every connecting road to have a radius of at least 5 m.
 
-A car of 4.7 m can just follow this radius. Such a car usually has a turning circle of 11 m between kerbs: its
-outer front wheel runs on a radius of 5.5 m, and the middle of the car on about 4.7 m.
+A car 4.7 m long can just follow this radius: its turning circle between kerbs usually has a diameter of 11 m.
+Then its outer front wheel runs on a radius of 5.5 m, and the middle of the car on a radius of about 4.7 m.
 """
 
 from roadgpt.check.finding import Finding

@@ -1,8 +1,8 @@
 """Requires the roads at a junction to lie in one plane.
 
 Where a connecting road begins or ends, its height must equal that of the arm within 1 mm. All ends of arms
-at the junction and all points of the connecting roads must lie within 1 mm of one plane, and their grades
-must agree with the slope of this plane within 0.1 %.
+at the junction and all points of the connecting roads must lie within 1 mm of one plane. The grade of each
+road there must agree within 0.1 % with the slope of this plane in the direction of the road.
 Otherwise there would be steps where roads overlap inside a junction.
 """
 

@@ -1,7 +1,8 @@
 """Requires the lanes of connecting roads to continue the lanes of the arms without gaps or steps.
 
-Where two lanes are joined, both of their edges must be at the same points within 1 mm. This also requires the
-same width, and the same heading within about a milliradian. The lanes that a connection names must exist.
+Where two lanes are joined, each edge of one lane must meet the same edge of the other within 1 mm. So both
+lanes have the same width, and the same heading within about a milliradian. The lanes that a connection
+names must exist.
 Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps.
 """
 

@@ -1,6 +1,6 @@
-"""Requires a lane for acceleration or deceleration of at least 28 m beside every ramp, without its taper.
+"""Requires a lane for acceleration or deceleration beside every ramp, at least 28 m long without its taper.
 
-This is the distance that a car covers at 50 km/h in a lane change of 2 s, about the shortest in traffic.
+A car at 50 km/h covers this distance in 2 s, about the shortest duration of a lane change in traffic.
 Source: Toledo and Zohar, Modeling duration of lane changes (2007): 1 to 13 s, 4.6 s on average.
 """
 

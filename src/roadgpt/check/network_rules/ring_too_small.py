@@ -1,4 +1,4 @@
-"""Requires roundabouts with an outer diameter of at least 13 m, and room between the mouths of their arms.
+"""Requires each roundabout to have an outer diameter of at least 13 m, and mouths that do not overlap.
 
 A mouth is the junction at which an arm meets the ring. The diameter is measured on the pieces of the ring: it
 is twice the sum of the radius of the reference line and the width of the lanes outside this line.

@@ -13,7 +13,9 @@ from roadgpt.road import World
 
 
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
-    """Reports each lane at a junction without a connection, and each road that joins no junction or road."""
+    """Reports each lane that lacks a connection at its junction, and each road that meets neither a junction
+    nor another road.
+    """
     found = []
     for junction in network.junctions:
         left = {(each.incoming, lane) for each in junction.connections for lane, *_ in each.lanes}

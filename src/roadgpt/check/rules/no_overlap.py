@@ -1,4 +1,4 @@
-"""Requires that no part of the road's surface lies above another in plan view, whatever their heights.
+"""Requires that no two parts of the road's surface overlap in plan view, whatever their heights.
 
 Source: the SBFT competition's rule against roads that cross themselves. The surface is divided into quads
 about 1 m long. A quad that is not convex shows that the surface folds: the radius of the bend is smaller than
@@ -30,10 +30,11 @@ def overlap_with_itself(road: Road, world: World) -> tuple[tuple[int, str] | Non
     """Returns where the road first overlaps itself, and how near two of its parts come to each other.
 
     Returns:
-        - the index of the sample at which the road overlaps an earlier part, and what is wrong there; None if
-          it does not overlap itself,
+        - the index of the sample at which the road folds or overlaps an earlier part, and what is wrong
+          there; None if it does neither,
         - the index of the sample at which two parts of the road are nearest to each other,
-        - the distance in metres between these parts; infinite if it is more than ``SPLINE_REACH``.
+        - the distance in metres between these parts: 0 if the road folds or overlaps itself; it may be
+          infinite if it is more than ``SPLINE_REACH``.
     """
     samples = road.sample()
     offsets = world.profile_of(road).edges(samples.s)

@@ -38,7 +38,7 @@ def shorter_than_allowed(length: float, world: World) -> Finding:
 
 
 def without_room(length: float) -> Finding:
-    """Returns the Finding for a road, of this length in metres, that is too short for any drive."""
+    """Returns the Finding for a road of ``length`` metres, which is too short to be driven at all."""
     sentence = (
         f"the road is {length:.1f} m long, too short to be driven: a car starts {START:g} m along a road and "
         f"has arrived {GOAL:g} m before its end"

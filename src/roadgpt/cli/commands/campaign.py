@@ -40,7 +40,7 @@ PARAMETERS = (
     Option("--goal", "What to search for: failures, coverage (roads as diverse as possible), hardest (least "
            "margin), boundary (just between PASS and FAIL). [default: no search]",
            click.Choice(["failures", "coverage", "hardest", "boundary"])),
-    Option("--generator", "Test generator. [default: quality_diversity, or 'words' if no --goal is given]"),
+    Option("--generator", "Test generator. [default: quality_diversity with --goal, else words (no search)]"),
     Option("--seconds", "Start no more tests after this many seconds.", SECONDS),
     options.seed("The same seed gives the same table.", 0),
     options.out("Folder for the campaign. [default: a new one]"),

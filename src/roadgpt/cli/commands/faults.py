@@ -29,8 +29,8 @@ FAULT_OPTIONS = (
            "--faults.", bool, heading=Heading.FAILURES),
     Option("--repeat", "Number of further drives for each fault, with small disturbances; implies "
            f"--faults. [default: {REPEAT}]", DRIVES, heading=Heading.FAILURES),
-    Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
-           "up to 16 drives of each tested failure. Implies --faults.", bool, heading=Heading.FAILURES),
+    Option("--groups", "Analyse each group of similar failures; do not test which groups are one fault. A "
+           "test takes up to 16 drives. Implies --faults.", bool, heading=Heading.FAILURES),
 )  # fmt: skip
 
 
@@ -154,7 +154,7 @@ def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int,
 
 def _summary(place: Path, found: "Faults", looked: "Mapping[int, FailureAnalysis]") -> Iterator[str]:
     """Yields two rows for each fault: its failures, how often it fails again, why a typical test failed, and
-    the small change that removes the failures.
+    the small change with which the failures disappear.
     """
     from roadgpt.plural import plural
 
@@ -189,8 +189,8 @@ OPTIONS = (
     Option("--repeat", "Number of further drives for each fault, with small disturbances.",
            DRIVES, REPEAT),
     Option("--minimise", "For each fault, also find the simplest road on which it still occurs.", bool),
-    Option("--groups", "Do not test which groups of failures are one fault; analyse each group. This saves "
-           "up to 16 drives of each tested failure.", bool),
+    Option("--groups", "Analyse each group of similar failures; do not test which groups are one fault. A "
+           "test takes up to 16 drives.", bool),
     Option("-j workers", "Number of failures analysed in parallel.", whole(1, 256, "processes"), 1),
     *(options.DRIVER_AGAIN, options.FORMAT, options.NO_PLOT, options.QUIET),
 )
@@ -210,14 +210,14 @@ def command(
 ) -> None:
     """Group the failures of a folder of runs or a campaign into distinct faults, and find why each occurs.
 
-    Failures are grouped where the 60 m of road around the lane departure are alike. Some failures of each
-    group are driven with small changes, such as a 15 % larger radius of the bend. Groups that the same
-    change removes are one fault. The change is then tested on further failures of the fault, and those that
-    it does not remove are taken out of the fault. The most typical failure of each fault is driven again
-    several times with slightly varied friction, start position and perception delay; the share of drives
-    that fail again is reported. DIR/faults gets a picture and a sentence for each fault, faults.csv with a
-    line per fault, and failures.csv with a line per failure. Finished work is not repeated, so Ctrl-C loses
-    nothing.
+    Failures form a group if the 60 m of road around the lane departures are alike. Some failures of each
+    group are driven with small changes, such as a 15 % larger radius of the bend. If the failures of several
+    groups disappear with the same change, these groups are one fault. Further failures of the fault are then
+    driven with this change; a failure that does not disappear no longer counts as part of the fault. The most
+    typical failure of each fault is driven again several times with slightly varied friction, start position
+    and perception delay; the share of drives that fail again is reported. DIR/faults gets a picture and a
+    sentence for each fault, faults.csv with a line per fault, and failures.csv with a line per failure.
+    Finished work is not repeated, so Ctrl-C loses nothing.
 
     \b
     roadgpt faults roadgpt-runs/hairpins-7

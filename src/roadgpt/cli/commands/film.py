@@ -73,7 +73,7 @@ PARAMETERS = (
     Option("--fps", "Frames per second.", click.IntRange(1, 120), 25, metavar="NUMBER"),
     Option("--size", "Width and height of a frame, pixels.", _size, "640x360", metavar="WxH"),
     Option("--seconds",
-           "Film the first N seconds, or a part. [default: the whole drive, then the outcome]",
+           "Film only the first N seconds, or seconds FROM to TO. [default: the whole drive]",
            _seconds, metavar="N|FROM:TO"),
     Option("--all is_all", "Film every road in a folder; the film of a run is saved in the run's own folder.",
            bool),

@@ -55,11 +55,11 @@ OF_TRAIN = (
     Option("--installed", "Start from the installed reader instead of --weights.", bool),
     Option("--steps", "Number of batches that each process trains on.", COUNT, 14_000),
     Option("--size", "Number of pairs in a batch.", COUNT, 48),
-    Option("--second", "Start from the second of the installed reader's two neural networks for single "
-           "roads.", bool),
-    Option("--routes", "Train the neural network that reads routes and maps instead.", bool),
-    Option("--decoder-layers", "Number of decoder layers, a multiple of the number in the weights.",
-           whole(1, 24, "layers")),
+    Option("--second", "The installed reader has two neural networks for single roads; start from the second "
+           "one.", bool),
+    Option("--routes", "Train the neural network for routes and maps, not one for single roads.", bool),
+    Option("--decoder-layers", "Number of decoder layers; with --installed, a multiple of the number that "
+           "the installed reader has.", whole(1, 24, "layers")),
     Option("--encoder-rate", "Highest learning rate of the encoder.", measure(0, 1, above=True), 1.5e-4),
     Option("--decoder-rate", "Highest learning rate of the decoder.", measure(0, 1, above=True), 7e-4),
     Option("--workers", "Number of training processes; use one per core.", whole(1, 64, "processes"), 2),
@@ -68,8 +68,8 @@ OF_TRAIN = (
 )
 OF_EXPORT = (
     *(CHECKPOINT, OUT, HAND, CHANGES, NETWORKS),
-    Option("--second", "Folder of another training run; its neural network becomes the second of the "
-           "reader's two for single roads.", folder),
+    Option("--second", "Folder of another training run, whose neural network becomes the reader's second one "
+           "for single roads.", folder),
     Option("--routes", "Folder of a training run with --routes; its neural network reads routes and maps.",
            folder),
     Option("--chats", "Also write this many pairs as chats, to fine-tune larger models.", COUNT),
@@ -83,7 +83,7 @@ OF_CHATS = (
 OF_EVALUATE = (
     HAND,
     Option("--split", "Pairs to evaluate on; exam: descriptions that must be refused, and valid ones, some of"
-           " which could be mistaken for these.", click.Choice(SPLITS), "validation"),
+           " which look as if they must be refused.", click.Choice(SPLITS), "validation"),
     Option("--reader names", "Reader to evaluate; repeat the option for more readers.",
            default=("model",), multiple=True),
     Option("--misses", "Show this many descriptions that were misread.", whole(0, 10_000, "a number"), 0),

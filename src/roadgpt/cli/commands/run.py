@@ -52,7 +52,7 @@ class RunJob:
     junit: Path | None = None
     """The JUnit file to write; None: none is written."""
     route: str = ""
-    """Where the route through a map goes, such as "left,straight"; empty: the route is chosen at random."""
+    """Where the car turns at the junctions of a map of roads, such as "left,straight"; empty: at random."""
 
 
 OPTIONS = (
@@ -62,7 +62,7 @@ OPTIONS = (
     options.PLAN,
     Option(
         "--route",
-        "Turns of the route through a map, such as left,right. [default: random]",
+        "For a map of roads: where the car turns at junctions, such as left,right. [default: random]",
         str,
         "",
         metavar="TURN,...",
@@ -198,10 +198,11 @@ def understood(brief: "Brief", world: "World | None" = None, given: "World | Non
 
 
 def all_remarks(brief: "Brief", world: "World | None", given: "World | None") -> tuple[str, ...]:
-    """Returns sentences that name what is not built, and how the World differs from what the user gave.
+    """Returns sentences that say, for example, which parts of a description are not built, and how ``world``
+    differs from ``given``, the World that the user gave.
 
-    The sentences also say if the World's friction does not match the surface in the description, or if a
-    motorway does not fit on the World's map. Without a World, neither is checked.
+    The sentences also say if the friction of ``world`` does not match the surface in the description, or if a
+    motorway does not fit on its map. If ``world`` is None, neither these nor the differences are checked.
     """
     from roadgpt.brief import remarks
     from roadgpt.design.room import lane_remarks, map_remark

@@ -1,4 +1,4 @@
-"""``roadgpt study``: evaluates roads as the thesis did, by measurements and by asking people."""
+"""``roadgpt study``: evaluates roads as RoadGPT's thesis did, by measurements and by asking people."""
 
 import shlex
 import time
@@ -37,7 +37,7 @@ STUDY_OPTIONS = (
     DESIGNERS,
     options.seed("The same seed gives the same files.", 1),
     options.out("Folder for the study. [default: in roadgpt-runs]"),
-    Option("--workers", "Number of descriptions processed in parallel; it does not change the files.",
+    Option("--workers", "Number of descriptions processed in parallel; the files do not depend on it.",
            whole(1, 64, "processes"), 2),
     *named(options.SETUP, *SHOWN),
     *options.WORLD,

@@ -39,7 +39,7 @@ OF_SERVE = (
 OF_ANALYSE = (
     DIRECTORY,
     options.out("Folder for the report. [default: a subfolder of the survey's folder]", metavar="DIR"),
-    Option("--synthetic", "Analyse answers of this many simulated raters instead.",
+    Option("--synthetic", "Instead of real answers, analyse those of this many simulated raters.",
            whole(1, 10_000, "a number")),
     Option("--agreement", "With --synthetic: how often raters agree, 0 to 1.", measure(0, 1), 0.8),
     options.seed("With --synthetic: seed of the raters.", 0),
@@ -66,8 +66,8 @@ def new(
     """Make a survey from runs: plots, films and 3-D views of every road, and the questions.
 
     SURVEY.toml names the runs. With --from STUDY_DIR, no SURVEY.toml is needed: one valid road is chosen at
-    random from each folder of runs in STUDY_DIR, and some pairs of roads with the same description. The
-    choice is saved as a SURVEY.toml in the survey's folder, so that you can edit it.
+    random from each folder of runs in STUDY_DIR. From some of these folders, a pair of roads to compare is
+    chosen, too. The choice is saved as a SURVEY.toml in the survey's folder, so that you can edit it.
 
     \b
     roadgpt study survey new SURVEY.toml --out my-survey

@@ -3,6 +3,7 @@
 
     words --read_request--> EditRequest --placed--> elements --made--> Look --sentences--> Edited
 
+A Look is a Design with the road that was built from it, the findings of the rules, and measurements.
 Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
 road before the edit. Elements that the request does not name keep all their values, but the road as a whole
 may be shifted or rotated, so that it stays inside the map.
@@ -17,7 +18,7 @@ from roadgpt.design.differences import sentences
 from roadgpt.design.edit.chatting import edited_by_chat
 from roadgpt.design.edit.combinations import REORDERS, is_hill
 from roadgpt.design.edit.hills import hill_of
-from roadgpt.design.edit.pointing import PlacedChange, placed
+from roadgpt.design.edit.placing import PlacedChange, placed
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import OF_SLOPE, Change, EditRequest
 from roadgpt.design.edit.search import made

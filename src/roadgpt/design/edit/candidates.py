@@ -58,7 +58,7 @@ ROAD_SLACK = 0.02  # of the length of a road
 def change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns all candidates, the preferred one first; none if the road already is as requested.
+    """Returns all candidates for a change, the preferred one first; none if the road already is as requested.
 
     Args:
         change: Any change except an addition, a removal, a mirror image or alternating turns.
@@ -73,7 +73,7 @@ def change_candidates(
     if change.bound and change.what == "length" and is_road:
         elements = elements if is_outside(change, found.length) else []
     elif change.bound:
-        elements = [element for element in elements if _is_beyond(change, element)]
+        elements = [element for element in elements if is_beyond(change, element)]
         if change.what == "slope" and elements:
             step = bounded_slopes(change, elements)
             return ((only_parts(change, step) if _is_of_parts(change, elements) else step,),)
@@ -111,7 +111,7 @@ def _is_of_parts(change: Change, elements: Sequence[RoadElement]) -> bool:
     return named is not None and named in ways and len(ways) > 1
 
 
-def _is_beyond(change: Change, element: RoadElement) -> bool:
+def is_beyond(change: Change, element: RoadElement) -> bool:
     """Returns whether an element violates the limit that a change sets."""
     if change.what == "slope":
         return is_too_steep_or_flat(change, element)
@@ -122,7 +122,11 @@ def _is_beyond(change: Change, element: RoadElement) -> bool:
 
 
 def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that make turns alternate between left and right; none if they already do."""
+    """Returns the candidates that make turns alternate between left and right; none if they already do.
+
+    Raises:
+        EditError: There are no turns.
+    """
     if not elements:
         raise EditError("there is no turn at that place; name another one")
     side, wrong = elements[0].side, list[RoadElement]()

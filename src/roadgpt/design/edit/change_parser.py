@@ -19,6 +19,8 @@ from roadgpt.design.edit.request import (
 from roadgpt.errors import EditError
 
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
+SPACES = re.compile(r" (?=[(),=])|(?<=[(=]) ")
+"""Spaces between tokens that a place is written without."""
 KINDS = frozenset(get_args(Kind)) - {"straight", "turn"}
 NOUNS = ("turn", "straight", "start", "end", "road")
 PROPERTIES = {
@@ -87,6 +89,8 @@ class ChangeParser:
         if what in ALONE:
             if what == "reverse" and target != Target("road", words="road"):
                 raise EditError("only the whole road can be reversed; write: road: reverse")
+            if what == "mirror" and target.noun == "road" and target != Target("road", words="road"):
+                raise EditError("only the whole road, or turns, can be mirrored; write: road: mirror")
             whole = what in OF_ROAD and target.noun == "road"
             return Change(cast(Any, what), None if whole else target)
         if what == "side":
@@ -109,7 +113,7 @@ class ChangeParser:
             change = replace(
                 change, way=cast(Way, way), steepness=cast(Steepness, steepness) if steepness else None
             )
-            if not self._next() or steepness:
+            if not self._next() or steepness or way == "flat":
                 return change
         return self._valued(change)
 
@@ -134,9 +138,9 @@ class ChangeParser:
 
     def _valued(self, change: Change) -> Change:
         if self._take("="):
-            return replace(change, to=self._figure())
+            return self._to(change)
         if self._take(".."):
-            return replace(change, to=self._figure(), bound=-1)
+            return self._to(replace(change, bound=-1))
         if self._take("+"):
             return replace(change, more=1, by=self._figure())
         if self._take("-"):
@@ -144,6 +148,10 @@ class ChangeParser:
         if self._take("x"):
             figure = self._figure()
             return replace(change, times=figure / 100 if self._take("%") else figure)
+        if self._next() in (*NOUNS, *KINDS):
+            change = self._to(replace(change, bound=1))
+            self._need("..")
+            return change
         if _is_number(self._next()):
             number = self._figure()
             if number < 0 and not self._next():  # the sign belongs to the difference: -20
@@ -157,6 +165,12 @@ class ChangeParser:
         if word not in ("more", "less"):
             raise self._error(word)
         return replace(change, more=1 if word == "more" else -1, dose=dose)
+
+    def _to(self, change: Change) -> Change:
+        """Returns the change with its figure, or with the place that has this figure."""
+        if self._next() in (*NOUNS, *KINDS) and change.what != "climb":
+            return replace(change, like=self._target())
+        return replace(change, to=self._figure())
 
     def _new(self) -> Change:
         kind = self._word()
@@ -203,7 +217,7 @@ class ChangeParser:
         if noun not in (*NOUNS, *KINDS):
             raise self._error(noun)
         fields: dict[str, Any] = {"kind": noun} if noun in KINDS else {}
-        while (word := self._next()) not in ("", ":", ")", ","):
+        while (word := self._next()) not in ("", ":", ")", ",", ".."):
             if _is_number(word):
                 self._set(fields, "numbers", self._list())
                 continue
@@ -230,7 +244,7 @@ class ChangeParser:
                 self._need(")")
             else:
                 raise self._error(word)
-        words = " ".join(self.tokens[begun : self.at])
+        words = SPACES.sub("", " ".join(self.tokens[begun : self.at]))
         return Target(cast(Any, "turn" if noun in KINDS else noun), words=words, **fields)
 
     def _list(self) -> tuple[int, ...]:

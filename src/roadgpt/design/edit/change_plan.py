@@ -2,8 +2,8 @@
 
     turn 2: radius x0.75; end: slope down; turn all but(turn 1): side left; add hairpin right after(turn 2)
 
-Changes are separated by ``;``. Each names a place, then a colon, then what is wanted there; or it begins with
-``add``. The page docs/reference/plans.md describes the language.
+Changes are separated by ``;``. A change either consists of a place, a colon and what is to be changed there,
+or it begins with ``add``. The page docs/reference/plans.md describes the language.
 """
 
 from collections.abc import Iterator
@@ -49,7 +49,10 @@ def _wish(change: Change) -> Iterator[str]:
 
 
 def _value(change: Change) -> Iterator[str]:
-    if change.to is not None:
+    if change.like is not None:
+        place = _place(change.like)
+        yield {-1: f"..{place}", 0: f"={place}", 1: f"{place}.."}[change.bound]
+    elif change.to is not None:
         number = _number(change.to)
         yield {-1: f"..{number}", 0: f"={number}", 1: f"{number}.."}[change.bound]
     elif change.by is not None:

@@ -65,7 +65,7 @@ def edited_by_chat(
 
     Args:
         chat: the language model.
-        settings: its settings.
+        settings: the settings of the language model.
         design: the road before the edit.
         words: the change request.
         elements: the elements of that road.
@@ -76,8 +76,8 @@ def edited_by_chat(
         geometry: the kind of geometry that roads are built with.
 
     Returns:
-        A Look at the changed road. Its elements are those measured on this road, if they have the names of
-        the elements of the original road; otherwise it has none.
+        A Look: the changed Design with its road and measurements. Its elements are those measured on the
+        changed road, if they have the same names as ``elements``; otherwise the Look has no elements.
 
     Raises:
         EditError: no answer was a valid road that differs from the old one.

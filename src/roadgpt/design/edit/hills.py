@@ -1,8 +1,8 @@
-"""Adds crests and dips: a straight gets other slopes, and the road keeps its length and its line."""
+"""Adds crests and dips: changes the grades of a straight, and keeps the road's length and its plan view."""
 
 from typing import NamedTuple
 
-from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.request import HILLS
 from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.steps import EditCandidate
@@ -16,14 +16,14 @@ GRADES = (5.0, 3.5)  # percent of both slopes; the second value is tried if the 
 
 
 class Hill(NamedTuple):
-    """Where a crest or a dip comes."""
+    """The place on a straight where a crest or a dip is added."""
 
     name: str
     """The name of the straight."""
     middle: float
-    """Station in metres of its highest or lowest point."""
+    """Station in metres of the highest point of the crest, or of the lowest point of the dip."""
     half: float
-    """Metres from its beginning to the middle."""
+    """Metres from the beginning of the crest or dip to its middle."""
 
 
 def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
@@ -37,11 +37,11 @@ def hill_candidates(placed: PlacedChange, elements: RoadElements) -> tuple[EditC
 
 
 def hill_of(placed: PlacedChange, elements: RoadElements) -> Hill:
-    """Returns where a crest or a dip comes: in the middle of the straight, or as near to the middle of the
-    road as the straight allows if the change asks for that.
+    """Returns where a change adds a crest or a dip: in the middle of the straight or, if the change asks for
+    the middle of the road, as near to that as the straight allows.
 
     Raises:
-        EditError: the straight is too short, or the place is none or several.
+        EditError: the straight is too short or bends, or the change does not refer to exactly one straight.
     """
     change = placed.change
     kind = change.kind or ""

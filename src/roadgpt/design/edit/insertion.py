@@ -7,7 +7,7 @@ from math import radians
 from roadgpt.brief.model import OTHER_SIDE, Side, Slope
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
-from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.request import Change
 from roadgpt.design.edit.steps import (
     FREE_STRAIGHT,
@@ -74,7 +74,8 @@ def insertion_candidates(
         number: number of this change within its request; it is used to name new elements.
 
     Raises:
-        EditError: the place does not exist, this cannot be added, or no turn can have the requested values.
+        EditError: the place does not exist, turns of this kind or number cannot be added, or no turn or
+            straight can have the requested values.
     """
     change = placed.change
     if change.count > MOST_NEW:
@@ -308,7 +309,12 @@ def _straight_ways(
 
 
 def removal_candidates(gone: Sequence[RoadElement], elements: RoadElements) -> tuple[EditCandidate, ...]:
-    """Returns all candidates that remove turns or straights, or replace them by a straight."""
+    """Returns all candidates that remove the elements ``gone``; one of them leaves short straights in the
+    places of removed turns.
+
+    Raises:
+        EditError: No element would be left.
+    """
     if len(gone) == len([b for b in elements if b.segments]):
         raise EditError("then no road would be left; remove fewer")
     return tuple(tuple(_without(element, elements, filler) for element in gone) for filler in FILLERS)

@@ -2,13 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.combinations import refuse_clashes
-from roadgpt.design.edit.request import OF_SLOPE, Change, Place, Target, Way, What
-from roadgpt.design.edit.stretches import RoadStretch, stretch_of, within
+from roadgpt.design.edit.request import OF_SLOPE, Place, Target, Way, What
+from roadgpt.design.edit.stretches import is_of_distances, stretch_of, within
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
@@ -17,94 +15,6 @@ LEAST_PART = 10.0  # m of a straight that climb, fall or are level, to be called
 SINGLE = ("hairpin", "u_turn", "switchback")
 OF_TURNS: frozenset[What] = frozenset({"angle", "radius", "side", "shape", "straighten"})
 KIND_NAMES = {"hairpin": "hairpin", "u_turn": "U-turn", "s_bend": "S-bend", "chicane": "chicane"}
-
-
-class PlacedChange(NamedTuple):
-    """A requested change, and the elements of the road that it refers to."""
-
-    change: Change
-    elements: RoadElements
-    """The elements to change, in driving order; none for an addition."""
-    marks: RoadElements = ()
-    """The elements after, before or on which something is added."""
-    stop: RoadElement | None = None
-    """The second element if something is added between two; else None."""
-    stretch: RoadStretch | None = None
-    """The stretch of the road if it is named by a distance or as a half, and its slope changes; else None."""
-
-
-def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedChange, ...]:
-    """Returns the changes with the elements that they refer to.
-
-    Args:
-        changes: the changes, as they were read from the request.
-        elements: the elements of the road before the edit.
-
-    Raises:
-        EditError: no element matches, several match although the request means one, or two changes cannot be
-            made at once.
-    """
-    refuse_clashes(changes)
-    out = []
-    for change in changes:
-        place = change.place
-        if change.what in ("mirror", "reverse"):
-            out.append(PlacedChange(change, elements))
-        elif change.what == "count":
-            out.append(_counted(change, elements))
-        elif change.what == "move":
-            assert change.target is not None
-            moved = tuple(pointed(change.target, elements, "side"))
-            out.append(PlacedChange(change, moved, *_marks(place, elements)))
-        elif change.what != "add":
-            assert change.target is not None
-            own = tuple(pointed(change.target, elements, change.what))
-            is_sloped = change.what in OF_SLOPE
-            if is_sloped and not own:
-                raise EditError(f"there is no road at '{change.target.words}', so it has no slope")
-            stretch = stretch_of(change.target, elements) if is_sloped else None
-            out.append(PlacedChange(change, own, stretch=stretch))
-        else:
-            out.append(PlacedChange(change, (), *_marks(place, elements)))
-    return tuple(out)
-
-
-def _marks(place: Place | None, elements: RoadElements) -> tuple[RoadElements, RoadElement | None]:
-    """Returns the elements next to which something comes, and the second one if it comes between two."""
-    if place is None or place.target is None or place.how in ("start", "end", "middle"):
-        return (), None
-    marks = tuple(pointed(_named(place.target), elements, "length"))
-    other = place.other if place.how == "between" else None
-    stop = pointed(_named(other), elements, "length")[0] if other else None
-    return marks, stop
-
-
-def _counted(change: Change, elements: RoadElements) -> PlacedChange:
-    """Returns the removal or the addition with which the road has as many turns as asked for.
-
-    The last ones are removed; new ones come at the end.
-    """
-    target = change.target
-    assert target is not None
-    assert change.to is not None
-    there, wanted = _among(target, turns(elements), elements), int(change.to)
-    if change.bound <= 0 and len(there) > wanted:
-        return PlacedChange(replace(change, what="remove"), tuple(there[wanted:]))
-    if change.bound >= 0 and len(there) < wanted:
-        new = Target("turn", indefinite=True, words=target.words)
-        more = Change(
-            "add",
-            new,
-            kind=target.kind,
-            side=target.side,
-            sharpness=target.sharpness,
-            way=target.way,
-            count=wanted - len(there),
-            place=Place("end"),
-            words=change.words,
-        )
-        return PlacedChange(more, ())
-    return PlacedChange(change, ())
 
 
 def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
@@ -121,7 +31,7 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
     """
     match target.noun:
         case "end" | "start" if target.length is not None:
-            return _at_end(target, elements, what)
+            return _of_stretch(target, elements, what)
         case "end" | "start":
             return [_end(elements, what, last=target.noun == "end")]
         case "road":
@@ -132,7 +42,7 @@ def pointed(target: Target, elements: RoadElements, what: What) -> list[RoadElem
             found, noun = turns(elements), "turn"
             if target.noun is None and what == "length" and not target.side:
                 found = found or straights(elements)
-    chosen = _chosen(target, _among(target, found, elements), noun)
+    chosen = _chosen(target, among(target, found, elements), noun)
     return _spared(target, chosen, elements) if target.numbers else chosen  # 'turns 1 to 4 except turn 2'
 
 
@@ -147,13 +57,13 @@ def straights(elements: RoadElements) -> list[RoadElement]:
 
 
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
-    found = list(elements)
-    if target.half and what in OF_SLOPE and stretch_of(target, elements):
-        found = _at_end(target, elements, what)
+    found, place = list(elements), target.place
+    is_by_distance = is_of_distances(place) or (target.half is not None and what in OF_SLOPE)
+    if is_by_distance and stretch_of(target, elements):
+        found = _of_stretch(target, elements, what)
     elif target.half:
         found = _half(elements, target.half)
-    place = target.place
-    if place and place.target and place.how != "on":
+    if place and place.target and place.how != "on" and not is_of_distances(place):
         marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
         if place.how == "after":
             found = found[marks[-1] + 1 :]
@@ -167,7 +77,7 @@ def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElemen
             stop = elements.index(pointed(_single(place.other), elements, what)[0])
             found = found[marks[-1] + 1 : stop]
     if target.but:
-        gone = {element.name for element in pointed(_named(target.but), elements, what)}
+        gone = {element.name for element in pointed(named(target.but), elements, what)}
         found = [element for element in found if element.name not in gone]
     if what in OF_TURNS:
         found = [element for element in found if element.kind == "turn"]
@@ -184,7 +94,7 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
     return out
 
 
-def _at_end(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
+def _of_stretch(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     """Returns the elements of "the last 80 m"; only their slope and their climb can be changed together."""
     if what not in OF_SLOPE:
         raise EditError(
@@ -213,7 +123,7 @@ def _single(target: Target) -> Target:
     return replace(target, place=None) if target.noun == "road" else target
 
 
-def _among(target: Target, found: Sequence[RoadElement], elements: RoadElements) -> list[RoadElement]:
+def among(target: Target, found: Sequence[RoadElement], elements: RoadElements) -> list[RoadElement]:
     """Returns the elements with the properties and the place that the target names."""
     out = [element for element in found if _fits(target, element)]
     if target.half:
@@ -274,7 +184,7 @@ def _placed(
 ) -> list[RoadElement]:
     assert place.target is not None
     at = {element.name: index for index, element in enumerate(elements)}
-    marks = [at[element.name] for element in pointed(_named(place.target), elements, "length")]
+    marks = [at[element.name] for element in pointed(named(place.target), elements, "length")]
     if place.how == "after":
         out = [element for element in found if at[element.name] > marks[-1]]
         return out if many else out[:1]
@@ -286,13 +196,14 @@ def _placed(
     if place.how == "up_to":
         return [element for element in found if at[element.name] <= marks[-1]]
     if place.how == "between" and place.other:
-        stop = at[pointed(_named(place.other), elements, "length")[0].name]
+        stop = at[pointed(named(place.other), elements, "length")[0].name]
         low, high = min(marks[-1], stop), max(marks[-1], stop)
         return [element for element in found if low < at[element.name] < high]
     return [element for element in found if at[element.name] in marks]
 
 
-def _named(target: Target) -> Target:
+def named(target: Target) -> Target:
+    """Returns the target; one without a noun, as in "after the second", is a turn."""
     return replace(target, noun="turn") if target.noun is None else target
 
 

@@ -1,4 +1,4 @@
-"""Reads change requests with RoadGPT's own network, and returns each as an EditRequest. Main function:
+"""Reads change requests with RoadGPT's neural network, and returns each as an EditRequest. Main function:
 ``read_request``.
 """
 

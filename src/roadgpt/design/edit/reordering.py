@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import degrees, pi
 
-from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.steps import EditCandidate, flipped
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
@@ -15,7 +15,7 @@ DECIMALS = 6  # of the start and its direction
 
 @dataclass(frozen=True, slots=True)
 class Reverse:
-    """Reverses the whole road: what climbed falls, and what turned to the left turns to the right."""
+    """Reverses the whole road: climbs become falls, and left turns become right turns."""
 
     def apply(self, elements: RoadElements, world: World) -> RoadElements:
         """Returns the elements from the last to the first, each reversed."""
@@ -70,10 +70,11 @@ def swap_of(chosen: Sequence[RoadElement]) -> Swap:
 
 
 def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate, ...]:
-    """Returns the candidate that moves turns to another place among the turns; none if they are there.
+    """Returns the candidate that moves turns to another place among the turns; none if already there.
 
     Raises:
-        EditError: something other than a turn is to be moved, or a turn is to be moved next to itself.
+        EditError: something other than a turn is to be moved, a turn is to be moved next to itself, or the
+            request names two places against the driving order.
     """
     moved = [element.name for element in placed.elements]
     place = placed.change.place
@@ -116,7 +117,9 @@ def _falling(segment: Segment) -> Segment:
 
 
 def started_at_end(design: Design, segments: tuple[Segment, ...]) -> Design:
-    """Returns a Design with these segments, which starts where the road of ``design`` ends and heads back."""
+    """Returns a Design with these segments that starts at the end of ``design``'s road and heads the
+    opposite way.
+    """
     road = build(design)
     x, y, z = (round(float(value), DECIMALS) for value in road.at(road.length))
     theta = degrees(float(road.heading(road.length)) + pi) % 360

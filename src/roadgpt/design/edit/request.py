@@ -119,6 +119,8 @@ class Change:
     by: float | None = None
     to: float | None = None
     times: float | None = None
+    like: Target | None = None
+    """The place from which the value ``to`` is taken, as in 'as long as the first straight'."""
     bound: Literal[-1, 0, 1] = 0
     """-1: ``to`` is an upper limit; 1: ``to`` is a lower limit; 0: ``to`` is the value itself."""
     dose: float = 1.0

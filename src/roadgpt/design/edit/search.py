@@ -1,10 +1,11 @@
 """Makes all changes of a request at once. Main function: ``made``.
 
-Each change has one or more candidates. They are combined, and the preferred ones are tried first. The steps
-of the candidates are applied to the elements of the road. Then ``design.fit`` changes the elements that the
-request names until the road is valid and its measurements are as requested; all other elements are frozen. If
-that fails and the geometry is ``arcs``, the other elements may change as well. The start stays the same,
-unless the road would leave the map: then the road is shifted or rotated.
+Each change has one or more candidates. Combinations of one candidate of each change are tried, those of
+preferred candidates first. The steps of the candidates are applied to the elements of the road. Then
+``design.fit`` changes the elements that the request names until the road is valid and its measurements are as
+requested; all other elements are frozen. If that fails and the geometry is ``arcs``, the other elements may
+change as well. The start stays the same, unless the road would leave the map: then the road is shifted or
+rotated.
 """
 
 from collections.abc import Iterator, Sequence
@@ -16,18 +17,18 @@ from typing import NamedTuple
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.check.measures import Measures
-from roadgpt.design.edit.candidates import alternating_candidates, change_candidates
-from roadgpt.design.edit.combinations import is_hill
+from roadgpt.design.edit.candidates import alternating_candidates, change_candidates, is_beyond
+from roadgpt.design.edit.combinations import NUMBERING, clash, is_hill
 from roadgpt.design.edit.hills import hill_candidates
 from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
-from roadgpt.design.edit.pointing import PlacedChange
+from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.reordering import Reverse, move_of, started_at_end, swap_of
 from roadgpt.design.edit.request import Change, What
 from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.slopes import stretch_candidates
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Mirror, RoadLength, with_room
 from roadgpt.design.fit import Look, Requirements, fit
-from roadgpt.design.road_elements import RoadElement, RoadElements, joined, numbered
+from roadgpt.design.road_elements import RoadElement, RoadElements, elements_on_road, joined, numbered
 from roadgpt.errors import EditError, UsageError
 from roadgpt.road import Design, Geometry, Segment, World, build
 from roadgpt.road.design import MAX_SEGMENTS
@@ -36,6 +37,7 @@ MOST_TRIALS = 40
 FITTED_WHOLE = 2  # trials that are fitted again with all elements free, if none is valid otherwise
 LARGEST = 12  # candidates of one change that are combined with others
 HUNDREDTH = 100.0
+SLACK = 0.03  # share by which a measured value may miss a limit
 SEEN_STRAIGHT = Feature("straight", "straight", length=Range(LEAST_STRAIGHT + 0.3))
 
 
@@ -71,18 +73,79 @@ def made(
         EditError: The road already is as requested, or no valid road has the requested changes.
     """
     ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
+    own = _without_what_is_so(changes, ways)
+    ways = [
+        its if placed is before else _ways(placed, elements, found, world, number)
+        for number, (placed, before, its) in enumerate(zip(own, changes, ways, strict=True), 1)
+    ]
     rows = [(placed.change, row) for placed, row in zip(changes, ways, strict=True) if row]
-    idle = tuple(placed.change for placed, row in zip(changes, ways, strict=True) if not row)
+    limits = [placed for placed, row in zip(changes, ways, strict=True) if not row]
+    idle = tuple(placed.change for placed in limits)
     if not rows:
         raise EditError(f"nothing is to be changed: '{idle[0].words}' is so already")
     road, objection, draft = _fitted(design, elements, _agreed(rows), world, geometry)
     if road is None:
         said = " and ".join(dict.fromkeys(f"'{change.words}'" for change, _ in rows))
         raise EditError(f"{said} cannot be done on this road: {objection}; ask for less, or elsewhere")
+    if not any(change.what in NUMBERING for change, _ in rows):
+        _refuse_broken_limits(limits, [each for each in changes if each not in limits], road, geometry)
     is_of_road = any(change.what in ("mirror", "reverse") for change, _ in rows)
     if road.design.segments == design.segments and not is_of_road:
         raise EditError(f"nothing is to be changed: '{rows[0][0].words}' is so already")
     return Made(road, draft, idle)
+
+
+def _without_what_is_so(
+    changes: Sequence[PlacedChange], ways: Sequence[Sequence[EditCandidate]]
+) -> list[PlacedChange]:
+    """Returns the changes; what already has the value that one of them asks for is left out of the others.
+
+    "Everything uphill, the first straight level" leaves a level first straight alone.
+
+    Raises:
+        EditError: such a change names a stretch of the road by distances, or as a half.
+    """
+    idle = [change for change, its in zip(changes, ways, strict=True) if not its and _is_state(change.change)]
+    out = []
+    for change in changes:
+        for other in idle if not _is_length_of_road(change.change) else ():
+            if other.change.what != change.change.what or not {*other.elements} < {*change.elements}:
+                continue
+            if change.stretch is not None:
+                raise clash(change.change, other.change)
+            own = tuple(each for each in change.elements if each not in other.elements)
+            change = change._replace(elements=own)
+        out.append(change)
+    return out
+
+
+def _is_state(change: Change) -> bool:
+    """Returns whether a change asks for one value or direction, and for no limit and no difference."""
+    return not change.bound and not change.more and (change.to is not None or change.way is not None)
+
+
+def _is_length_of_road(change: Change) -> bool:
+    return change.what == "length" and change.target is not None and change.target.noun == "road"
+
+
+def _refuse_broken_limits(
+    idle: Sequence[PlacedChange], others: Sequence[PlacedChange], road: Look, geometry: Geometry
+) -> None:
+    """Checks that limits which the road kept before the edit are kept after it.
+
+    Raises:
+        EditError: another change of the request breaks such a limit.
+    """
+    for limit in idle:
+        own = {element.name for element in limit.elements}
+        for other in others:
+            is_same = limit.change.bound and other.change.what == limit.change.what
+            if not is_same or own.isdisjoint(element.name for element in other.elements):
+                continue
+            after, _ = elements_on_road(road.design, geometry)
+            slack = replace(limit.change, to=(limit.change.to or 0) * (1 - SLACK * limit.change.bound))
+            if any(is_beyond(slack, element) for element in after if element.name in own):
+                raise clash(other.change, limit.change)
 
 
 def _ways(
@@ -214,8 +277,7 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
         UsageError: The road would have no segment, or too many.
     """
     after = elements
-    # stations are those of the road before the change, so steps that have any come first
-    for step in sorted(steps, key=lambda each: not (isinstance(each, SlopeOfAll) and each.stretch)):
+    for step in sorted(steps, key=_rank):
         after = step.apply(after, world)
     after = with_room(after, Reverse().apply(elements, world) if Reverse() in steps else elements)
     after = numbered(after)
@@ -223,6 +285,18 @@ def _applied(elements: RoadElements, steps: Sequence[EditStep], world: World) ->
     if not 1 <= count <= MAX_SEGMENTS:
         raise UsageError(f"the road would have {count} segments")
     return after
+
+
+def _rank(step: EditStep) -> tuple[int, float]:
+    """Returns the order of a step: what changes more of the road comes first, so that a part keeps its own.
+
+    Stations are those of the road before the edit, so steps that have any come before changes of length.
+    """
+    if not isinstance(step, SlopeOfAll):
+        return 2, 0.0
+    if step.stretch is None:
+        return 0, -len(step.names)
+    return 1, step.stretch.start - step.stretch.end
 
 
 def _started(

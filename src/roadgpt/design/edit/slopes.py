@@ -61,7 +61,9 @@ def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAl
 
 
 def slope_steps(change: Change, element: RoadElement, found: Measures, world: World) -> list[EditStep]:
-    """Returns the steps that give one turn or straight another grade; none if it already has this grade.
+    """Returns alternative steps, each of which gives one turn or straight another grade.
+
+    There are none if the element already has this grade.
 
     Raises:
         EditError: the grade is steeper than the rules allow, or cannot become steeper.
@@ -109,7 +111,9 @@ def _is_in(grade: float, room: tuple[float, float]) -> bool:
 
 def _refuse_too_steep(grade: float, limit: float) -> None:
     if grade > limit:
-        raise EditError(f"{grade:g} % is steeper than the {limit:g} % that the rules allow; ask for less")
+        raise EditError(
+            f"{round(grade, 1):g} % is steeper than the {limit:g} % that the rules allow; ask for less"
+        )
 
 
 def _graded(element: RoadElement, sign: int, aim: float, *rooms: tuple[float, float]) -> list[EditStep]:
@@ -184,9 +188,9 @@ def stretch_candidates(
 def part_slope_candidates(
     change: Change, elements: Sequence[RoadElement], world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidates that change only the grades of those segments that go as the change says.
+    """Returns the candidates that change only segments that climb, fall or are level, as the target says.
 
-    "The uphill part at 8 %" concerns the segments that climb.
+    For "the uphill part at 8 %", these are the segments that climb.
 
     Raises:
         EditError: the grade is steeper than the rules allow.
@@ -196,8 +200,10 @@ def part_slope_candidates(
 
 
 def only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
-    """Returns the step for those segments only that go as the change says; they keep their direction, unless
-    the change gives them another one."""
+    """Returns the step, restricted to the segments that climb, fall or are level, as the target says.
+
+    Segments that climb or fall continue to do so, unless the change names another direction.
+    """
     assert change.target is not None
     sign = step.sign
     if change.way is None and change.target.way != "flat":
@@ -208,12 +214,14 @@ def only_parts(change: Change, step: SlopeOfAll) -> SlopeOfAll:
 def climb_candidates(
     change: Change, elements: Sequence[RoadElement], world: World
 ) -> tuple[EditCandidate, ...]:
-    """Returns the candidate with which some elements together gain other metres of height.
+    """Returns the candidate that changes how many metres some elements climb in total.
 
-    Their grades are scaled if all climb, or all fall, as the new climb does; otherwise they become equal.
+    If all segments already climb (or fall) as required, their grades are scaled, unless one would become too
+    steep. Otherwise the grades become equal.
 
     Raises:
-        EditError: the wish has no figure, or the grade is steeper than the rules allow.
+        EditError: the change gives no climb in metres or only a limit, or the required grade is steeper than
+            the rules allow.
     """
     length = sum(element.length for element in elements)
     rises = [segment.incline * segment.distance / 100 for each in elements for segment in each.segments]

@@ -14,11 +14,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from roadgpt.brief.model import OTHER_SIDE, Side
-from roadgpt.brief.outline import Feature
+from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.words import Range
 from roadgpt.design.elements import cut, turn_element
 from roadgpt.design.road_elements import RoadElement, RoadElements
-from roadgpt.design.sequence import both
 from roadgpt.design.vertical import with_inclines
 from roadgpt.errors import UsageError
 from roadgpt.road import Segment, World
@@ -79,8 +78,9 @@ class Adjust:
     """The mean grade in percent."""
 
     def milder(self) -> "Adjust":
-        """Returns the same step with aims nearer to the present measurements of the element; the ranges
-        stay the same.
+        """Returns the same step with aims nearer to the present measurements of the element.
+
+        The aim of the grade and all ranges stay the same.
         """
         seen = self.element.seen
         if seen is None:
@@ -142,7 +142,10 @@ class Adjust:
 
 
 def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
-    """Returns the steps; if the only step is an Adjust, its milder version is appended."""
+    """Returns the alternative steps for one element.
+
+    If the only step is an Adjust, its milder version is appended as a second alternative.
+    """
     return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
@@ -192,7 +195,7 @@ def straight(length: float, incline: float) -> Segment:
 
 
 def gap(name: str, length: float, incline: float) -> RoadElement:
-    """Returns a new straight whose length may be changed."""
+    """Returns a new gap that consists of one straight, whose length may be changed."""
     return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
 
 
@@ -209,7 +212,7 @@ def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElemen
 def turn_segments(
     degrees: float, hand: int, radius: float, transition: float, incline: float
 ) -> tuple[Segment, ...]:
-    """Returns the segments of a turn, as the planner writes them."""
+    """Returns the segments into which the planner divides a turn with these values."""
     turn = turn_element(degrees, hand, radius, transition)
     return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
@@ -280,7 +283,9 @@ def _mirrored(segment: Segment) -> Segment:
 
 @dataclass(frozen=True, slots=True)
 class Become:
-    """Replaces an element by a gap with these segments, or removes it if there are none."""
+    """Replaces an element by a gap (an element that is no turn) with these segments; without segments,
+    removes the element.
+    """
 
     element: RoadElement
     segments: Sequence[Segment] = ()
@@ -336,9 +341,9 @@ class Insert:
 
 
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
-    """Inserts straights to keep apart turns that bend the same way and did not follow each other before.
+    """Returns the elements, with straights inserted between turns to the same side that are too close.
 
-    Two turns need no straight if they already followed each other, to the same sides, before the edit.
+    No straight is inserted if the two turns already followed each other, to the same sides, before the edit.
     """
     known = {_pair(one, other) for one, other in pairwise(b for b in before if b.kind == "turn")}
     out: list[RoadElement] = []

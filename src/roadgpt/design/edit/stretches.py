@@ -1,10 +1,10 @@
-"""Stretches of a road by distance: "the last 80 m", "the first half"."""
+"""Stretches of a road by distance: "the last 80 m", "from station 50 to 100", "the first half"."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from roadgpt.design.edit.request import Target
+from roadgpt.design.edit.request import Place, Target
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
@@ -22,38 +22,78 @@ class RoadStretch(NamedTuple):
     end: float
 
 
-def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
-    """Returns the stretch that a target names by a distance or as a half; None if it names none.
+def is_distance(target: Target | None) -> bool:
+    """Returns whether a target is a distance from an end of the road, as in "the last 80 m"."""
+    return target is not None and target.noun in ("start", "end") and target.length is not None
 
-    A stretch that would end within a turn ends at the nearer end of the turn.
+
+def is_of_distances(place: Place | None) -> bool:
+    """Returns whether a place is named by distances, as in "from station 150 on"."""
+    return place is not None and (is_distance(place.target) or is_distance(place.other))
+
+
+def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
+    """Returns the stretch that a target names by distances or as a half; None for any other target.
+
+    A stretch that would begin or end within a bend begins or ends at the nearer end of that bend.
 
     Raises:
-        EditError: the road is shorter, the stretch is shorter than 5 m, or its end would be moved too far.
+        EditError: the road is shorter than the target says, the stretch is shorter than 5 m, or one of its
+            ends would be moved too far.
     """
     whole = sum(element.length for element in elements)
-    is_part = any((target.place, target.but, target.way))
-    if target.noun == "road" and target.half and not is_part:
-        length, is_last = whole / 2, target.half == 2
-    elif target.noun in ("start", "end") and target.length is not None:
-        length, is_last = target.length, target.noun == "end"
-    else:
+    ends = _named_ends(target, whole)
+    if ends is None:
         return None
+    length = ends.end - ends.start
+    furthest = max(ends.end, whole - ends.start)
+    if furthest > whole + LEAST_PIECE:
+        raise EditError(f"the road is only {whole:.0f} m long, not {furthest:g} m; name a shorter part of it")
     if length < LEAST_LENGTH:
         raise EditError(f"'{target.words}' is too short for a slope; name {LEAST_LENGTH:g} m or more")
-    if length > whole + LEAST_PIECE:
-        raise EditError(f"the road is only {whole:.0f} m long, not {length:g} m; name a shorter part of it")
-    station = whole - length if is_last else length
+    return RoadStretch(*(_outside_bends(max(station, 0.0), length, elements) for station in ends))
+
+
+def _named_ends(target: Target, whole: float) -> RoadStretch | None:
+    """Returns the stations that a target names, on a road of this length; None if it names none."""
+    if is_distance(target):
+        station = _station(target, whole)
+        return RoadStretch(station, whole) if target.noun == "end" else RoadStretch(0.0, station)
+    if target.noun != "road" or target.but or target.way:
+        return None
+    place = target.place
+    if place is None and target.half:
+        return RoadStretch(whole / 2, whole) if target.half == 2 else RoadStretch(0.0, whole / 2)
+    if place is None or place.target is None or not is_of_distances(place):
+        return None
+    station = _station(place.target, whole)
+    if place.other is not None:
+        return RoadStretch(*sorted((station, _station(place.other, whole))))
+    is_first = place.how in ("before", "up_to")
+    return RoadStretch(0.0, station) if is_first else RoadStretch(station, max(station, whole))
+
+
+def _station(target: Target, whole: float) -> float:
+    assert target.length is not None
+    return whole - target.length if target.noun == "end" else target.length
+
+
+def _outside_bends(station: float, length: float, elements: Sequence[RoadElement]) -> float:
+    """Returns the station, or the nearer end of the turn in which it lies.
+
+    Raises:
+        EditError: the station would be moved by more than a share of the stretch, which has this length.
+    """
     for at, end in _bends(elements):
         if at < station < end:
-            ends = min(at, end, key=lambda each: abs(each - station))
-            if abs(ends - station) > MOST_MOVED * length:
+            nearer = min(at, end, key=lambda each: abs(each - station))
+            if abs(nearer - station) > MOST_MOVED * length:
                 raise EditError(
                     f"station {station:.0f} m of this road lies in a turn, which keeps one slope; name turns "
                     "and straights, for example: from turn 2 on"
                 )
-            station = ends
-            break
-    return RoadStretch(station, whole) if is_last else RoadStretch(0.0, station)
+            return nearer
+    return station
 
 
 def _bends(elements: Sequence[RoadElement]) -> Iterator[tuple[float, float]]:
@@ -70,8 +110,9 @@ def _bends(elements: Sequence[RoadElement]) -> Iterator[tuple[float, float]]:
 
 
 def within(elements: RoadElements, stretch: RoadStretch) -> RoadElements:
-    """Returns the elements with only those segments that lie in the stretch; elements without any are left
-    out.
+    """Returns the elements, each with only those of its segments that lie in the stretch.
+
+    Elements without such a segment are left out.
     """
     at, out = 0.0, list[RoadElement]()
     for element in elements:

@@ -87,7 +87,7 @@ class Look:
 
     @property
     def keeps_all_but_slopes(self) -> bool:
-        """Whether the road breaks no rule, and its measured turns go left and right as its elements do."""
+        """Whether the road breaks no rule and has the left and right turns of the elements in their order."""
         return not self.findings and self.has_turns
 
     def _unmet(self) -> str:
@@ -110,9 +110,10 @@ class Look:
 
 
 def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Returns a Look at a design, after its segments have replaced those of ``elements``.
+    """Builds and checks the road of a design, and returns a Look at it.
 
-    If the road is not inside the map and above the ground, it is moved there if possible.
+    The elements of the Look are ``elements`` with the segments of the design. If the road is not inside the
+    map and above the ground, it is moved there if possible.
     """
     world, geometry = requirements.world, requirements.geometry
     elements = with_segments(elements, design.segments)

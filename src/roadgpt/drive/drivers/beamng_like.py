@@ -41,9 +41,9 @@ class BeamngLike:
     of the driver are therefore assumptions: it cuts more at a higher speed limit (``eagerness``), it always
     plans for a dry road (``assumed_friction``), and its planned speed takes superelevation into account.
 
-    No recording has a junction. Inside junctions and roundabouts it drives as people do
-    (``roadgpt.drive.turning``): its middle keeps 1.5 m from both edges of its lane, it is as fast as drivers
-    are on the radius of its line, and it stops at stop signs.
+    No recording has a junction. Inside junctions and roundabouts the driver drives as people do
+    (``roadgpt.drive.turning``): the middle of the car keeps 1.5 m from both edges of the lane, the car is as
+    fast as people drive on a line of the same radius, and it stops at stop signs.
 
     Args:
         cut: largest shift towards the inside of a bend, in metres, at a speed limit of 70 km/h.
@@ -60,10 +60,10 @@ class BeamngLike:
         compensation: steering angle added per lateral acceleration, in rad per m/s^2.
         throttle: throttle per m/s of speed error.
         brake: brake per m/s of speed error.
-        edge_room: distance in metres that the outer wheels (right; left with traffic on the left) keep from
-            the outer edge of the carriageway where there is no shoulder (a floating mesh road). On a one-way
-            road, the other wheels keep the same distance from the other edge. With None the driver ignores
-            the edges and may fall off.
+        edge_room: distance in metres that the outer wheels (the right ones; with traffic on the left, the
+            left ones) keep from the outer edge of the carriageway where there is no shoulder (a floating mesh
+            road). On a one-way road, the other wheels keep the same distance from the other edge. With None
+            the driver ignores the edges and may fall off.
         assumed_friction: friction that the driver plans for; None for the friction of the world.
         wheelbase: wheelbase in metres.
     """

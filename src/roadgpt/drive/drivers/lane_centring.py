@@ -27,8 +27,8 @@ TURN = 2 * math.pi
 class LaneCentring:
     """Keeps to the middle of its lane with limited lateral acceleration; knows only what its camera sees.
 
-    It stands for the lane centring and the adaptive cruise control of production cars (SAE level 2). It
-    imitates no particular car, and was not compared with any car. docs/explanation/drivers.md says where each
+    It represents the lane centring and adaptive cruise control of production cars (SAE level 2). It imitates
+    no particular car, and was not compared with any car. docs/explanation/drivers.md says where each
     value comes from.
 
     The camera sees the middle of the lane up to ``sight`` metres ahead, as far as it lies within ``aside``

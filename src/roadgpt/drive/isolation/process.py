@@ -65,7 +65,8 @@ class DriverProcess:
             ``is_users`` (whether to raise a UsageError) and ``trace`` (the traceback).
 
         Raises:
-            GoneError: the process ended, or was ended because it did not answer within ``seconds``.
+            GoneError: the process ended, or was ended because it did not answer within ``seconds``, took too
+                much memory or sent an invalid answer.
         """
         self._due = time.monotonic() + seconds
         try:

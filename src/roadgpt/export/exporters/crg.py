@@ -43,7 +43,8 @@ class Crg:
 def document(road: Road, world: World) -> str:
     """Returns the text of the file: a header, then one line per cross-section with heading and two heights.
 
-    The heights are those at the right and at the left edge of the surface.
+    The heights are those at the right and at the left edge of the surface. If a bend is too tight for the
+    shoulders, the shoulders are narrower along the whole road.
 
     Raises:
         ExportError: The radius of a bend is less than the distance from the centre line to an edge of the

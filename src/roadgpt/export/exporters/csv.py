@@ -21,7 +21,8 @@ class Csv:
 
     If the road does not have the default cross-section (one lane of constant width in each direction, level),
     the table also contains the superelevation, and the offset of the outer edge of each lane and shoulder.
-    Lanes are numbered as in OpenDRIVE. Of a network, the table holds the route.
+    Lanes are numbered as in OpenDRIVE. For a route through a network, the table
+    contains only the route.
     """
 
     name = "csv"

@@ -40,7 +40,7 @@ class OpenScenario:
     holds_junctions = True
 
     def save(self, road: Road, path: Path, world: World, poses: Poses | None = None) -> None:
-        """Writes the scenario, and beside it NAME.xodr with the road and NAME.route.json.
+        """Writes the scenario, and beside it NAME.xodr (the road) and NAME.route.json (the lanes to drive).
 
         If ``poses`` is not None, a second scenario, NAME.drive.xosc, replays this drive.
         """

@@ -28,8 +28,8 @@ def numbered_sides(voice: Voice) -> Composition:
 
 
 def numbered_kinds(voice: Voice) -> Composition:
-    """Returns a description of three to seven turns that says by number which of them differ, such as
-    hairpins.
+    """Returns a description of three to seven turns in which some turns, given by number, have a property
+    of their own: for example, they are hairpins.
 
     Sometimes all turns go in the same direction.
     """

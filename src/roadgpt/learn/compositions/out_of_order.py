@@ -1,5 +1,5 @@
-"""Descriptions that do not name features in driving order, but say what comes before another feature, what is
-between two, or how the road ends.
+"""Descriptions that do not name features in driving order. Instead they say, for example, that a feature
+comes before another one, lies between two others, or ends the road.
 """
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, Voice

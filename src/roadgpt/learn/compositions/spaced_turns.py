@@ -1,4 +1,4 @@
-"""Descriptions of turns separated by straights: between any two turns, or after or before each turn."""
+"""Descriptions of turns and straights: a straight between any two turns, before each, or after each."""
 
 from roadgpt.learn.compositions.voice import SHARPNESS, SIDES, Composition, DescribedTurn, Voice
 

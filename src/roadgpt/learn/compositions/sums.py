@@ -8,7 +8,7 @@ from roadgpt.learn.compositions.voice import NOUNS, OTHER, SIDES, Composition, D
 def sided_sum(voice: Voice) -> Composition:
     """Returns a description that gives the number of turns and how many go left and right.
 
-    Sometimes it also says which of these come first or last.
+    Sometimes it also says that the turns to one side come first or last.
     """
     total = voice.whole(2, 9)
     side = voice.pick(SIDES)

@@ -127,7 +127,8 @@ class Voice:
     def framed(self, text: str, plan: str, may_slope: bool = True) -> Composition:
         """Returns text and plan as a composition, often with an opening such as 'give me' before the text.
 
-        Sometimes a purpose or a requirement for the whole road is added.
+        Sometimes a purpose or a requirement for the whole road is added; a requirement about slope is added
+        only if ``may_slope`` is True.
         """
         if text.split()[0].strip(":;,").lower() not in BEGIN:
             text = self.say("openings") + text

@@ -70,7 +70,7 @@ def _blend(frame: Frame, x: int, y: int, cover: NDArray[np.uint8], colour: tuple
 
 
 def shade(frame: Frame, x0: float, y0: float, x1: float, y1: float, left: int = 110) -> None:
-    """Darkens a rectangle to ``left`` / 256 of its brightness, so that text on it can be read."""
+    """Multiplies the brightness of a rectangle by ``left`` / 256, so that text on it can be read."""
     part = frame[max(round(y0), 0) : max(round(y1), 0), max(round(x0), 0) : max(round(x1), 0)]
     part[:] = (part.astype(np.uint16) * left) >> 8
 

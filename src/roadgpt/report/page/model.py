@@ -73,7 +73,7 @@ Line = str | Sequence[str | TableCell]
 
 
 class FigureCard(NamedTuple):
-    """One of several pictures, with a title and lines of text."""
+    """One picture of Cards, with a title and lines of text."""
 
     title: Line
     svg: str
@@ -100,7 +100,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """A report."""
+    """The content of a report, which ``write`` writes as HTML, Markdown, CSV and LaTeX."""
 
     title: str
     summary: Sequence[Line]

@@ -14,8 +14,8 @@ MILLIMETRES, FINE = 3, 5  # digits
 
 
 def road_columns(road: Road, profile: Profile, reach: float | None = None) -> dict[str, Any]:
-    """Returns the geometry of a road at stations, and its cross-section. Values are in metres and radians;
-    the grade is a ratio.
+    """Returns a road's cross-section, and its geometry at stations close enough to draw the road. Values are
+    in metres and radians, the curvature is in 1/m, and the grade is a ratio.
 
     Args:
         road: The road.

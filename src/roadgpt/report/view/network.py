@@ -1,4 +1,7 @@
-"""Collects what a page shows of a network: roads, junctions, islands, lines and signs, as plain values."""
+"""Collects what the HTML page of a Run shows of a network: roads, junctions, islands, lines and signs.
+
+The values can be written as JSON.
+"""
 
 from typing import Any
 
@@ -29,10 +32,10 @@ NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and 
 
 
 def network_values(route: Route) -> dict[str, Any]:
-    """Returns everything that the page shows of a route's network, in metres.
+    """Returns everything that the HTML page shows of the network of a route, in metres.
 
     Raises:
-        UsageError: A number of a road is not finite.
+        UsageError: A road of the network has a number that is not finite.
     """
     network, parts = route.network, NetworkSurface.of(route.network)
     inside = [each for _, junctions in network.nodes for each in network.inside(junctions)]

@@ -1,4 +1,4 @@
-"""Collects the data of the page: a Run's road, world, drive and marked places, as plain values."""
+"""Collects the data of the HTML page of a Run: its road, world, drive and marked places, as JSON values."""
 
 from typing import Any
 
@@ -45,10 +45,10 @@ page says "mostly".
 
 
 def scene(run: Run) -> dict[str, Any]:
-    """Returns everything that the page shows of a Run, in metres, seconds and radians.
+    """Returns everything that the HTML page shows of a Run, in metres, seconds and radians.
 
     Raises:
-        UsageError: the Run has no road, or one of its numbers is not finite.
+        UsageError: the Run has no road, or a number in the Run is not finite.
     """
     if run.road is None:
         raise UsageError(f"there is no road to show: {run.description}")

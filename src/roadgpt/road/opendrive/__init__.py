@@ -91,8 +91,9 @@ def read_opendrive(path: Path | str, road: str | None = None) -> ImportedRoad:
     Args:
         path: The file.
         road: Id of the road. None selects the longest road that has a driving lane and is not part of a
-            junction. If there is none, this is the longest road with a driving lane; if no road has one, the
-            longest road outside junctions or, failing that, the longest road.
+            junction. If there is no such road, None selects the longest road with a driving lane. If no road
+            has a driving lane, None selects the longest road outside junctions or, if there is none, the
+            longest road.
 
     Raises:
         UsageError: The file cannot be read or is too large, there is no such road, or an element is unknown

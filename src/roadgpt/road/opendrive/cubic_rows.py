@@ -19,7 +19,7 @@ SHORTEST = 1e-6  # m between two stations
 
 
 def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: float) -> list[Row]:
-    """Returns the weighted sum of piecewise cubics between two stations in metres.
+    """Returns the weighted sum of piecewise cubics between two stations in metres, as rows.
 
     Each entry of ``parts`` is a factor and the cubics that it multiplies.
     """
@@ -32,7 +32,7 @@ def combined(parts: Sequence[tuple[float, CubicProfile]], start: float, end: flo
 
 
 def value_at(row: Row, s: float) -> float:
-    """Returns the value of a row at station ``s``."""
+    """Returns the value that the cubic of a row has at station ``s``."""
     (a, b, c, d), u = row[1], s - row[0]
     return float(a + u * (b + u * (c + u * d)))
 
@@ -82,7 +82,7 @@ def _cuts(row: Row, end: float, low: float, high: float) -> list[tuple[float, fl
 
 
 def closed(rows: Sequence[Row], length: float) -> CubicProfile:
-    """Returns the rows as a profile of a road that is ``length`` metres long.
+    """Converts the rows to a CubicProfile of a road that is ``length`` metres long.
 
     Beyond the end of the road, the profile keeps its last value.
     A constant row that repeats the value of the previous constant row is left out.
@@ -101,7 +101,7 @@ def closed(rows: Sequence[Row], length: float) -> CubicProfile:
 
 
 def rows_of(cubics: CubicProfile) -> list[Row]:
-    """Converts a profile to rows, each with a station and the cubic that begins there."""
+    """Converts a CubicProfile to rows, each with a station and the cubic that begins there."""
     return [*zip(cubics.stations, cubics.coefficients, strict=True)]
 
 

@@ -17,7 +17,7 @@ APART = 1.0  # m between the stations of the heights of a centre line beside the
 
 
 def elevation(road: Node) -> CubicProfile:
-    """Returns the height of a road as a function of its station; without elevation, it is 0 everywhere."""
+    """Returns the height of a road as a function of its station; 0 if the file states no elevation."""
     found = cubics(road.all("elevationProfile", "elevation"), "s")
     return found or CubicProfile((0.0,), ((0.0, 0.0, 0.0, 0.0),))
 

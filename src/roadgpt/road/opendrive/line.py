@@ -58,8 +58,8 @@ def lies_on_the_line(lanes: Lanes, length: float) -> bool:
 def walk(line: list[GeometryElement], lanes: Lanes | None) -> SampledLine:
     """Returns poses along the inner edge of the driving lanes.
 
-    The poses are at most about one metre apart, and there is a pose wherever an element or a lane width
-    begins.
+    The poses are at most about one metre apart. There is also a pose wherever an element begins, and wherever
+    the inner edge may have a kink (``Lanes.joints``).
 
     Args:
         line: The reference line.

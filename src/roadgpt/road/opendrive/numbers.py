@@ -46,9 +46,8 @@ def cubic(node: Node) -> Cubic:
 def cubics(nodes: Iterable[Node], station: str, start: float = 0.0) -> CubicProfile | None:
     """Returns the cubic polynomials that the elements define; None if there are no elements.
 
-    Each cubic applies from its own station to the station of the next cubic.
-
-    Before the first station, the value is constant.
+    Each cubic applies from its own station to the station of the next cubic. Before the first station, the
+    value is that of the first cubic at this station.
 
     Args:
         nodes: Elements with the attributes a, b, c and d.

@@ -63,7 +63,7 @@ class FileProfile:
     """Sentences about properties of the file that were changed."""
 
     def used(self) -> set[int]:
-        """Returns the Python object ids of the XML elements of all lanes in the cross-section."""
+        """Returns ``id(node)`` for the XML elements ``node`` of all lanes in the cross-section."""
         return {id(part.node) for slot in (*self.right, *self.left) for part in slot.parts}
 
     def driven_nodes(self) -> list[Node]:
@@ -258,10 +258,10 @@ def _joined_lane(
 
 
 def checked(cubics: CubicProfile) -> CubicProfile:
-    """Returns the cubics unchanged if a road file can hold them.
+    """Returns the cubics unchanged if a RoadGPT road file can hold as many.
 
     Raises:
-        UsageError: There are too many cubics.
+        UsageError: There are more than ``MOST_ROWS`` cubics.
     """
     if len(cubics.stations) > MOST_ROWS:
         raise UsageError(

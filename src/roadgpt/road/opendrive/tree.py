@@ -79,11 +79,11 @@ def is_driven(lane: Node) -> bool:
 
 
 def read_tree(path: Path, wanted: str | None) -> Choice:
-    """Returns the road with the id ``wanted``.
+    """Returns the road with the id ``wanted``, and information about the other contents of the file.
 
-    If ``wanted`` is None, returns the longest road that has a driving lane and is not part of a junction. If
-    there is none, a road with a driving lane is preferred to others, then a road outside junctions, then the
-    longer one.
+    If ``wanted`` is None, the longest road that has a driving lane and is not part of a junction is selected.
+    If there is no such road, roads with a driving lane are preferred, then roads outside junctions, then
+    longer roads.
 
     Raises:
         UsageError: The file cannot be read, is not OpenDRIVE, is too large, or has no such road.

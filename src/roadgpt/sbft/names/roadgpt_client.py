@@ -1,4 +1,5 @@
-"""RoadGPT as a test generator that runs in the SBFT tool competition's Python environment, or in any other.
+"""Defines a test generator that runs RoadGPT from the Python environment of the SBFT tool competition, or
+from any other environment.
 
 The competition requires Python below 3.11 and libraries that do not work with RoadGPT, so RoadGPT is
 installed in an environment of its own. The competition's environment needs only this file: it uses the
@@ -53,7 +54,7 @@ def send(stream: IO[bytes], message: Message) -> None:
 
 
 def received(line: bytes) -> Optional[Message]:
-    """Returns the message in a line; None if the line is not a valid message."""
+    """Returns the message in a line; None if the line is not a JSON object."""
     try:
         message = json.loads(line)
     except (ValueError, RecursionError):

@@ -110,14 +110,14 @@ class RiskModel:
     """Fraction of failures among the tests with known outcomes, 0 to 1; None if no outcomes are known."""
 
     def scores(self, features: Sequence[RiskFeatures]) -> Array:
-        """Returns scores ``(n,)``, larger if a failure is more likely; roads with UNKNOWN features get the
-        median score."""
+        """Returns the scores ``(n,)`` of n roads. A larger score means that a failure is more likely; roads
+        with UNKNOWN features get the median score."""
         scores = (_table(features) - self.mean) / self.scale @ self.weights[:-1] + self.weights[-1]
         known = np.isfinite(scores)
         return np.asarray(np.where(known, scores, np.median(scores[known]) if known.any() else 0.0))
 
     def select(self, features: Sequence[RiskFeatures]) -> list[int]:
-        """Returns the indices of the tests to select: the tests most likely to fail.
+        """Returns the indices of the tests that are most likely to fail, in ascending order.
 
         First selects the riskiest 5 % of all tests. Then adds tests in order of risk, until the selection is
         expected to contain three failures, or until the next test is no more likely to fail than the average
@@ -145,13 +145,15 @@ def _table(features: Sequence[RiskFeatures]) -> Array:
 
 
 def order(scores: Array) -> NDArray[np.intp]:
-    """Returns the indices of the scores from the largest to the smallest; equal scores keep their order."""
+    """Returns the indices that sort the scores from largest to smallest; equal scores keep their order."""
     return np.argsort(-scores, kind="stable")
 
 
 def fit_model(features: Sequence[RiskFeatures], failed: Sequence[bool]) -> RiskModel:
-    """Fits the weights of the features to the outcomes of tests; returns LINE_ONLY if there is too little
-    data."""
+    """Fits the weights of the features to the outcomes of tests, and returns the model.
+
+    Returns LINE_ONLY if fewer than 20 tests have known features, or if all tests have the same outcome.
+    """
     table, outcome = _table(features), np.asarray(failed, float)
     known = np.isfinite(table).all(axis=1)
     table, outcome = table[known], outcome[known]

@@ -30,7 +30,10 @@ class Service:
         return message("NameReply")(name=NAME)
 
     def initialize(self, requests: Iterable[Any], context: Any) -> Any:
-        """Fits the risk model to the received tests with known outcomes."""
+        """Fits the risk model to the received tests and their outcomes.
+
+        If there are more than 5000 tests, only every n-th test is used.
+        """
         oracles = list(requests)
         chosen = oracles[:: max(1, -(-len(oracles) // MOST_OUTCOMES))]
         features = [_features_of(oracle.testCase) for oracle in chosen]
@@ -39,14 +42,14 @@ class Service:
         return message("InitializationReply")(ok=True)
 
     def select(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """Yields the tests most likely to fail, in the order in which they were received."""
+        """Yields the ids of the tests most likely to fail, in the order in which they were received."""
         tests = list(requests)
         if tests:
             for i in self.model.select([*map(_features_of, tests)]):
                 yield message("SelectionReply")(testId=tests[i].testId)
 
     def prioritize(self, requests: Iterable[Any], context: Any) -> Iterator[Any]:
-        """Yields all tests, from the most to the least likely to fail."""
+        """Yields the ids of all tests, from the most to the least likely to fail."""
         tests = list(requests)
         if tests:
             for i in order(self.model.scores([*map(_features_of, tests)])):

@@ -13,8 +13,8 @@ Parts = Sequence[StudyPartRecord]
 
 
 def alignment(parts: Parts, designers: Sequence[str]) -> Section:
-    """Returns the section: the percentage of roads that meet each criterion, in total and by prompt, and a
-    list of roads that miss a requirement."""
+    """Returns the section on alignment: the percentage of roads that meet each criterion, in total and by
+    prompt, and a list of roads that miss a requirement."""
     some = [designer for designer in designers if any(part.roads for part in _of(parts, designer))]
     prompts = [part.part.prompt for part in _of(parts, designers[0])]
     known = sum(prompt.truth is not None for prompt in prompts)

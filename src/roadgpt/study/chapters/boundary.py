@@ -29,8 +29,8 @@ EXPLAINED = (
 
 
 class Side(NamedTuple):
-    """Two similar roads from one campaign cell, with their test results: ``kept`` is the test that passed,
-    ``lost`` the test that failed."""
+    """Two similar roads from one campaign cell (one combination of prompt, designer, driver and so on), with
+    their test results: ``kept`` is the test that passed, ``lost`` the test that failed."""
 
     cell: str
     pair: BoundaryPair
@@ -39,8 +39,9 @@ class Side(NamedTuple):
 
 
 def nearest(record: Record, cells: Sequence[CellStatus]) -> list[Side]:
-    """Returns, for every campaign cell, the pairs of roads that differ least. A pair is a road that passed
-    and a road that failed; ``campaign.boundary_pairs`` measures the difference."""
+    """Returns the pairs of roads that differ least: up to 30 if there is one campaign cell, else up to 10 per
+    cell. The test on one road of a pair passed, that on the other failed; ``campaign.boundary_pairs``
+    measures the difference."""
     out = []
     for each in cells:
         some = (each.name, MOST // len(cells))

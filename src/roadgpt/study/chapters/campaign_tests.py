@@ -155,8 +155,8 @@ def margins(record: Record, drives_on: bool = False) -> Figure:
 
 
 def coverage(record: Record, done: int) -> list[Block]:
-    """Returns feature maps of all tests, or of every n-th test if there are more than 100,000; empty if the
-    tests have no features."""
+    """Returns feature maps of all tests, or of every n-th test if more than 100,000 are done; empty if the
+    tests have no features. ``done`` is the number of tests that are done."""
     known = {*record.feature_names()}
     every = max(1, -(-done // SAMPLE))
     part = f" of every {every:,}th test" if every > 1 else ""

@@ -19,8 +19,8 @@ MOST_DRAWN = 30  # parts whose distances are drawn
 
 
 def diversity(parts: Sequence[StudyPartRecord]) -> Section:
-    """Returns the section: how much the roads of one description differ, which roads are near duplicates,
-    and how much the roads of different descriptions differ."""
+    """Returns the section on diversity: how much the roads of one description differ, which of them are
+    near duplicates, and how much the roads of different descriptions differ."""
     blocks: list[Block] = [
         "Two plans are superimposed by the best shift, turn and mirroring and compared at equal "
         "shares of their lengths. Their distance is the root mean square in metres. Near duplicates are "

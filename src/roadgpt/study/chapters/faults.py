@@ -88,8 +88,8 @@ def _run_of(folder: Path, name: NumberedTest) -> Run:
 
 
 def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
-    """Returns the first sentences of a report: the number of faults, and how many of these faults occur
-    again when their tests are repeated."""
+    """Returns the first sentences of a report: the number of faults and, for faults whose tests were driven
+    again, how many occurred in at least half of these drives."""
     if not found.failures:
         return ["No road failed."]
     measured = [each.looked.stability.is_stable for each in summaries if each.looked]
@@ -100,8 +100,8 @@ def headline(found: Faults, summaries: Sequence[FaultSummary]) -> list[str]:
 
 
 def faults(folder: Path, found: Faults, summaries: Sequence[FaultSummary]) -> Section | None:
-    """Returns the section: pictures of the most frequent faults, and a table of all; None if there is no
-    fault."""
+    """Returns the section on distinct faults: pictures of the most frequent faults, and a table of all
+    faults in ``summaries``; None if there are no faults."""
     if not summaries:
         return None
     blocks: list[Block] = [f"{DEFINED if found.distinct else GROUPED} {DRAWN}"]
@@ -143,7 +143,7 @@ def _card(folder: Path, summary: FaultSummary, found: Faults) -> FigureCard:
 
 
 def _removed(fault: Fault, found: Faults) -> list[Line]:
-    """Returns which small change removes the failures of a fault; nothing if the groups were not tested."""
+    """Returns the small change with which a fault's failures disappear; nothing if no group was tested."""
     if not found.is_tested:
         return []
     return [f"Disappears with {fault.removed_by}." if fault.remedy else "A group that belongs to no fault."]

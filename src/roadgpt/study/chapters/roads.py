@@ -1,4 +1,4 @@
-"""Makes the sections that show roads: the overview at the start of a report, thumbnails of all roads, and
+"""Makes the sections that show roads: the overview at the start of a report, thumbnails of roads, and
 feature maps."""
 
 from collections.abc import Sequence
@@ -31,11 +31,11 @@ BOUNDS = {"MAX_CURV": (0.0, 0.07), "DIR_COV": (0.0, 1.0), "STD_SA": (0.0, 200.0)
 
 
 def overview(parts: Sequence[StudyPartRecord], size: float) -> Section | None:
-    """Returns a table of all study parts that have roads, and pictures of the first three; None if there are
-    no roads.
+    """Returns the section at the start of a report; None if there are no roads. It contains a table of all
+    study parts that have roads, and one picture with some roads for each of the first three parts.
 
     Args:
-        parts: the parts of the study.
+        parts: the parts of the study; a part is the roads by one designer from one description.
         size: side length of the square map, metres.
     """
     made = [part for part in parts if part.roads]
@@ -85,8 +85,8 @@ def _thumbnail(part: StudyPartRecord, road: RoadRecord) -> Thumbnail:
 
 
 def every_road(parts: Sequence[StudyPartRecord], size: float) -> Section:
-    """Returns a section with a thumbnail of every road, which links to its run; ``size`` is the side
-    length of the square map, metres."""
+    """Returns a section with thumbnails of the first 100 roads of each of the first 30 study parts. A
+    thumbnail links to the road's bird's-eye view; ``size`` is the side length of the square map, metres."""
     blocks: list[Block] = [
         "A dot is where a road starts, a cross where the car left it; “62 %” is a PASS with so much of "
         "the car outside its lane. Each leads to its bird's-eye view; "

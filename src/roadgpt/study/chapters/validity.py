@@ -85,7 +85,10 @@ THESIS_LEFT = Source(
 
 
 def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on validity by each rule set; ``has_baseline`` adds the numbers of the thesis."""
+    """Returns the section on validity by each rule set.
+
+    If ``has_baseline`` is True, only prompts of the thesis are counted, and the thesis' numbers are added.
+    """
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [valid_source(designer, told, kind) for designer in designers for kind in KINDS]
     every = [source for source in every if source.counts] + ([THESIS_VALID] if has_baseline else [])
@@ -111,8 +114,7 @@ def validity(parts: Parts, designers: Sequence[str], has_baseline: bool = False)
 
 
 def departures(parts: Parts, designers: Sequence[str], has_baseline: bool = False) -> Section:
-    """Returns the section on lane departures on valid roads; ``has_baseline`` adds the numbers of the
-    thesis."""
+    """Returns the section on lane departures on valid roads; ``has_baseline`` is as in ``validity``."""
     told = of_thesis(parts) if has_baseline else list(parts)
     every = [left_source(designer, told) for designer in designers]
     every = [source for source in every if source.total]

@@ -46,8 +46,8 @@ def _has_a_number(clause: Clause) -> bool:
 def match_scores(run: Run, prompt: str) -> dict[str, float]:
     """Returns, for each criterion, 1 if a road meets it and 0 if not.
 
-    Only the criteria of the thesis are measured. The result is empty if the road was not made from this
-    description.
+    Only the criteria of the thesis are measured. The result is empty if the road was not made from the
+    description ``prompt``.
     """
     if run.road is None or run.brief is None or prompt != run.words.strip():
         return {}

@@ -1,8 +1,9 @@
 """Draws bar charts of ratings, and of the answers to questions about the raters, for the report and for
 papers.
 
-A bar of ratings shows all answers about one road for one criterion. The middle of the third answer is at 0,
-so the part of the bar to the right of 0 is in favour of the road.
+A bar of ratings shows all answers about one road, or one pair of roads, for one criterion. The middle of the
+third answer is at 0, so the part of the bar to the right of 0 is in favour of the road, or of the two roads
+being similar.
 """
 
 from collections.abc import Sequence

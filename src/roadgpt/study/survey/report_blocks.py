@@ -17,7 +17,8 @@ Counts = Sequence[tuple[str, Sequence[tuple[str, int]]]]
 
 
 def marked(block: Block) -> Block:
-    """Returns a copy of a report block, marked as synthetic; used if raters are simulated."""
+    """Returns a copy of a report block in which tables and figures are marked as synthetic; text is not
+    marked. Used if raters are simulated."""
     if isinstance(block, Details):
         return replace(block, blocks=[*map(marked, block.blocks)])
     if not isinstance(block, Table | Figure):
@@ -157,8 +158,8 @@ def agreements(tallies: Sequence[RatingTally]) -> Table:
 
 
 def measurements(tallies: Sequence[RatingTally]) -> list[Block]:
-    """Returns, for each part of the survey, the rank correlation between people's mean scores and the
-    measured scores, and a table of both scores."""
+    """Returns, for each part of the survey, a sentence with the rank correlation between people's mean scores
+    and the measured scores, and a table of both scores; one sentence if nothing was measured."""
     blocks: list[Block] = []
     heads = ("item", "description", "criterion", "people, mean of 1 to 5", "machine, 0 to 1")
     for found in tallies:

@@ -24,9 +24,8 @@ def plan_from_runs(study: Path | str, asks: str, contact: str, seed: int = 0, pa
         asks: who conducts the survey.
         contact: where raters can send questions.
         seed: seed of the random selection; the same seed selects the same roads.
-        pairs: number of descriptions for which raters also compare two roads with each other. The road
-            that is compared with the description is one of these two only if there are fewer than three valid
-            roads.
+        pairs: greatest number of descriptions for which raters also compare two roads with each other. If a
+            description has only two valid roads, one of these roads is also compared with the description.
 
     Raises:
         UsageError: there is no folder of runs with a valid road.

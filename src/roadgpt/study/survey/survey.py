@@ -82,8 +82,8 @@ class Survey(Frozen):
 
     @cached_property
     def pages(self) -> tuple[QuestionPage, ...]:
-        """All pages in the order of ``survey.json``; ``pages_for`` returns them in the order in which one
-        rater sees them."""
+        """All pages in a fixed order: questions about the rater, roads, pairs of roads, attention check, end.
+        ``pages_for`` returns them in the order in which one rater sees them."""
         pages = [QuestionPage(part="about", questions=self.about)] if self.about else []
         pages += [
             QuestionPage(part=item.part, questions=item.questions, item=item)
@@ -98,9 +98,9 @@ class Survey(Frozen):
         rater.
 
         The page about the rater comes first, then the roads in random order, then the pairs of roads in
-        random order, then the last page. The attention check is placed among the roads, or among the pairs if
-        there are no roads; if there are two or more of them, it is neither before the first nor after the
-        last.
+        random order, then the last page. The attention check is placed at random among the roads, or among
+        the pairs if there are no roads. If there are two or more roads (or pairs), the attention check is
+        neither before the first nor after the last.
 
         Args:
             digest: digest of the rater's token, hexadecimal.

@@ -4,7 +4,7 @@ milliseconds.
 Rules take the numbers out of the text before the network reads it, and insert them into the plan that the
 network writes. The decoding is constrained, so that the network can only write valid plans. A second network,
 trained separately, reads the same words; a plan that both networks write is likely to be right. A third one
-reads descriptions that tell of junctions, ramps, lanes or maps. The weights and their documentation are in
+reads descriptions that mention junctions, ramps, lanes or maps. The weights and their documentation are in
 ``weights/``.
 """
 
@@ -19,6 +19,7 @@ import numpy as np
 from roadgpt.brief.model import Brief, at_least
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.height_words import height_wish, is_doubtful_climb, with_sign
@@ -121,6 +122,8 @@ class ModelReader:
         if not found:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found, text)
+        if not draft.is_refusal and asks_for_a_closed_loop(words):
+            raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         if is_of_junctions(draft.line) and not can_be_kept(found[0].line):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})

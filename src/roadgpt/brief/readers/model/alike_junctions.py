@@ -26,8 +26,8 @@ def with_counted_junctions(brief: Brief, text: SlottedText) -> Brief:
     """Returns a route of junctions that are all alike, with as many of them as the words say.
 
     The Brief is returned unchanged if its junctions differ, if the roads between them differ, or if the words
-    do not give exactly one number of junctions. A number that the words also give stays: "five, no, make it
-    two".
+    do not give exactly one number of junctions, from 2 to 9. It is also unchanged if the words contain the
+    number of its junctions, as in "five, no, make it two". Ramps and lane changes also stay.
     """
     junctions, inner = brief.junctions, brief.stretches[1:-1]
     if len(junctions) < 2 or len({*junctions}) > 1 or any(road != inner[0] for road in inner):

@@ -1,4 +1,6 @@
-"""Defines the grammar of change requests for constrained decoding: places, wishes, and new things.
+"""Defines the grammar of plans of changes for constrained decoding.
+
+A change names a place on the road and what to change there, or adds something new.
 
 Modifiers have the fixed order in which ``design.edit.change_plan`` prints them.
 """
@@ -37,7 +39,7 @@ MOVES = ("after(", "before(", "between(")
 
 
 def change_request(numbers: Numbers) -> Symbol:
-    """Returns the grammar of a change request."""
+    """Returns the grammar of a plan of changes: at most ``MOST_CHANGES``, separated by ";"."""
     added = Sequel(OneOf(("add",)), (_new(numbers),))
     change = AnyOf((added, Sequel(_place(numbers, DEEPEST), (OneOf((":",)), _wish(numbers)))))
     return Sequel(change, (ListTail(";", change, MOST_CHANGES - 1),))
@@ -81,9 +83,12 @@ def _exactly(key: str, numbers: Numbers) -> Symbol:
 
 
 def _wish(numbers: Numbers) -> Symbol:
-    measured = [Sequel(OneOf((name,)), (_value(name, numbers),)) for name in MEASURED if name not in HEIGHTS]
-    value = _value("slope", numbers)
-    slope = AnyOf((Sequel(OneOf(WAYS), (_open(value),)), OneOf(STEEPNESS), value))
+    like = _place(numbers, DEEPEST - 1)
+    measured = [
+        Sequel(OneOf((name,)), (_value(name, numbers, like),)) for name in MEASURED if name not in HEIGHTS
+    ]
+    value = _value("slope", numbers, like)
+    slope = AnyOf((Sequel(OneOf(("up", "down")), (_open(value),)), OneOf(("flat", *STEEPNESS)), value))
     shape = InOrder((OneOf(tuple(kind for kind in KINDS if kind not in NOUNS)), OneOf(SHARPNESS)), least=1)
     return AnyOf(
         (
@@ -113,13 +118,15 @@ def _open(symbol: Symbol) -> Symbol:
     return InOrder((symbol,))
 
 
-def _value(name: str, numbers: Numbers) -> Symbol:
-    """Returns the forms of a value: an exact number, a bound, a difference, a factor, or "more" or "less"."""
+def _value(name: str, numbers: Numbers, like: Symbol) -> Symbol:
+    """Returns the forms of a value: an exact number or a bound, each also as the place that has it; a
+    difference, a factor, or "more" or "less"."""
     found = OneOf(numbers.of(name))
     some = bool(found.tokens)
-    exact = [Sequel(OneOf((sign,)), (found,)) for sign in ("=", "..", "+", "-")] if some else []
+    exact = [Sequel(OneOf(("=", "..")), (AnyOf((found, like)) if some else like,))]
+    exact += [Sequel(OneOf(("+", "-")), (found,))] if some else []
     doses = Sequel(OneOf(("slightly", "much")), (OneOf(("more", "less")),))
-    least = [Sequel(found, (OneOf(("..",)),))] if some else []
+    least = [Sequel(each, (OneOf(("..",)),)) for each in ((found, like) if some else (like,))]
     return AnyOf((*exact, *_factors(numbers), doses, OneOf(("more", "less")), *least))
 
 

@@ -40,7 +40,8 @@ def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
 def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:
     """Returns the estimated probability (0 to 1) that a reading is right.
 
-    The confidence model was fitted on held-out texts. A reading that ignores a negation gets DOUBT at most.
+    The confidence model was fitted on held-out texts. The result for a reading that ignores a
+    negation is at most ``DOUBT``.
 
     Args:
         weights: the weights of the confidence model by the names of the features, and its "bias".

@@ -43,7 +43,8 @@ MOST_COUNTS = 8
 def with_checked_counts(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief with its counts corrected to follow from the numbers in the text.
 
-    A route with junctions and a map are returned unchanged, because a number may count turns or junctions.
+    The Brief of a route with junctions or of a map is returned unchanged, because a number in its text may
+    count turns or junctions.
     """
     if brief.junctions or brief.map is not None:
         return brief
@@ -125,7 +126,7 @@ def _counts_summed(brief: Brief, said: list[int], words: set[str]) -> Brief:
     counts = {index: _exact(brief.clauses[index].count) for index in turning}
     if not turning or None in counts.values():
         return brief
-    measured = _measured(brief)
+    measured = measured_values(brief)
     left_over = [number for number in said if number not in measured]
     for count in counts.values():
         if count in left_over:
@@ -153,7 +154,7 @@ def _total_kept(brief: Brief, text: SlottedText, said: set[int]) -> Brief:
     if brief.turns or not 2 <= len(counts) <= MOST_COUNTS or not said.issuperset(n or 0 for n in counts):
         return brief
     sums = {sum(some) for some in _subsets([turns_of(clause)[0] for clause in turning])}
-    explained = sums | {*counts, len(counts)} | _measured(brief)
+    explained = sums | {*counts, len(counts)} | measured_values(brief)
     total = next((n for n in _before_turns(text) if n > 1 and n not in explained), None)
     return brief.model_copy(update={"turns": exactly(total)}) if total else brief
 
@@ -169,7 +170,7 @@ def _subsets(numbers: list[float]) -> Iterator[tuple[float, ...]]:
     return chain.from_iterable(combinations(numbers, size) for size in range(1, len(numbers) + 1))
 
 
-def _measured(brief: Brief) -> set[float | None]:
+def measured_values(brief: Brief) -> set[float | None]:
     """Returns every number of the plan that is not a count."""
     amounts = [brief.steepest, brief.climb]
     things: list[Brief | Clause] = [brief, *brief.clauses]

@@ -1,4 +1,4 @@
-"""Networks that were trained for the same texts and read them together."""
+"""Combines neural networks that read the same kind of description: single roads, or routes and maps."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -8,16 +8,17 @@ from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES, may_tell_a_route
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
+from roadgpt.brief.readers.model.told_junctions import names_a_junction
 from roadgpt.brief.readers.model.used_words import unused_words
 from roadgpt.brief.words import SURE
 
 GUESS = 0.05
-"""A route of which the network is less sure is a guess; then a single road counts that is surer."""
+"""If the confidence in a route is lower, a single road that has a higher confidence is preferred."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ensemble:
-    """One or two networks, with what was fitted to their readings of texts that they were not trained on."""
+    """One or two neural networks that read the same texts, and the settings for judging their plans."""
 
     networks: tuple[NeuralNetwork, ...]
     refuse_from: float
@@ -31,7 +32,7 @@ class Ensemble:
 
     @property
     def first(self) -> NeuralNetwork:
-        """The network that draws other readings."""
+        """The network from which alternative readings are sampled."""
         return self.networks[0]
 
     def scored(
@@ -60,12 +61,20 @@ class Ensemble:
 def scored_by(
     roads: Ensemble, routes: Ensemble | None, words: str, refuse_from: float | None = None
 ) -> tuple[Ensemble, tuple[ScoredPlan, ...]]:
-    """Returns the networks that read a description, and the plans that they wrote, the likeliest first.
+    """Returns the networks chosen for a description, and the plans that they wrote, the likeliest first.
 
-    The network for routes is asked if a word may tell of one. Its plan counts if it is no guess and the
-    networks for single roads could not write it: they know no junctions, and read "crossroads, sharp left" as
-    a bend, however sure they are. Its refusal counts unless they are sure of a plan. What it reads counts
-    also if they name a junction or the like beside the road or as the cause of a refusal.
+    ``routes`` reads the description if a word may mention a junction, ramp, lane or map. It is chosen in any
+    of these cases:
+
+    - Its plan has words that ``roads`` does not know, and a confidence of at least ``GUESS``. The confidence
+      of ``roads`` is then ignored, because ``roads`` may be sure that "crossroads, sharp left" is a bend.
+    - Its plan has words that ``roads`` does not know, and a noun of the text can only mean a junction.
+    - Its plan has words that ``roads`` does not know, and ``roads`` has no plan of higher confidence.
+    - It refuses the description, and the confidence of ``roads`` in a plan is less than ``SURE``.
+    - ``roads`` names a junction or the like beside the road, or as the cause of a refusal. ``routes`` then
+      reads the description whatever its words are.
+
+    Otherwise ``roads`` is chosen.
 
     Args:
         roads: the networks for single roads.
@@ -78,7 +87,7 @@ def scored_by(
     read = routes.scored(words, refuse_from) if routes and may_tell_a_route(words) else ()
     is_route = bool(read) and not roads.knows(_without_motorway(read[0].tokens))
     sure = _confidence(routes, read, text) if routes and is_route else 0.0
-    if routes and sure >= GUESS:
+    if routes and is_route and (sure >= GUESS or (not read[0].is_refusal and names_a_junction(text))):
         return routes, read
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):

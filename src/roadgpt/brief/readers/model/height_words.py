@@ -70,9 +70,10 @@ class HeightWish(NamedTuple):
 
 
 def height_wish(text: SlottedText) -> HeightWish | None:
-    """Returns the climb that a change request asks for; None if it asks for none or for more than that.
+    """Returns the climb that a change request asks for.
 
-    The metres have to be the only number with a unit, and no word may speak of a length or a distance.
+    Returns None if it asks for no climb or for something else as well, if the metres are not the only number
+    with a unit, or if a word may mean a length or a distance.
     """
     said = " ".join(word.text for word in text.words if word.written)
     metres = [slot.value for slot in text.slots if slot.unit == "metres"]
@@ -87,16 +88,22 @@ def height_wish(text: SlottedText) -> HeightWish | None:
 
 
 def with_sign(line: str, text: SlottedText) -> str:
-    """Returns a plan of changes; its climb is negative if the words only tell of height that is lost."""
+    """Returns a plan of changes, with a negative climb if the words mention only a descent."""
     return POSITIVE.sub("climb =-", line) if _falls(text) is True else line
 
 
 def is_doubtful_climb(line: str, text: SlottedText) -> bool:
-    """Returns whether a plan has a climb of which the words only give a bound, or tell of a fall as well."""
+    """Returns whether a plan has a climb that the words leave in doubt.
+
+    The words give only a bound of it, or the metres may be those along the road, or they mention a descent
+    together with an ascent, a negation or a word such as "instead".
+    """
     words = [word.text for word in text.words]
     numbers = [place for place, word in enumerate(words) if word.startswith("[unused")]
     is_bounded = any(bound_before(words, place) or bound_behind(words, place) for place in numbers)
-    return ": climb" in line and (is_bounded or _falls(text) is None)
+    # "let it climb for 20 m" may tell how far
+    is_along = len(text.slots) == 1 and ALONG.search(" ".join(words)) is not None
+    return ": climb" in line and (is_bounded or is_along or _falls(text) is None)
 
 
 def _falls(text: SlottedText) -> bool | None:

@@ -45,6 +45,20 @@ ALL_KINDS = re.compile(
     r"intersecciones|intersezioni)\b"
 )
 """A number before a word for junctions of any kind."""
+NUMBER = r"\b(\d+) "
+OTHERS = re.compile(
+    r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
+)
+"""Words with which the number before a noun may not be the number of all."""
+PLURALS = {
+    "roundabout": re.compile(
+        NUMBER + r"(?:small |large |big |mini - ?)?(?:roundabouts|kreisverkehre|kreisel|rotatorie|glorietas|"
+        r"ronds - points|giratoires)\b"
+    ),
+    "crossroads": re.compile(NUMBER + r"(?:cross ?- ?roads|kreuzungen)\b"),
+    "t_junction": re.compile(NUMBER + r"(?:t - junctions|einmundungen)\b"),
+}
+"""A number before the plural noun of a kind of junction."""
 TAKEN_BACK = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
 """Words with which a number may be taken back."""
 SIDE_STREETS = re.compile(
@@ -74,9 +88,10 @@ def asks_for_map(text: SlottedText) -> bool:
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief of a map with the numbers of blocks and dead ends that follow from the words.
 
-    For a map of junctions, the number of dead ends is computed from the number of blocks; a main street
-    whose side streets are dead ends encloses no block. If the words give several numbers, or if the Brief has
-    a bound or a range, the number in the Brief stays. A Brief without a map is returned unchanged.
+    For a map of junctions, the number of dead ends is computed from the number of blocks. A main street
+    whose side streets are dead ends becomes a map of T-junctions without blocks. If the words count more
+    junctions than the map has, junctions of any kind are added. If the words give several numbers, or if the
+    Brief has a bound or a range, the number in the Brief stays. A Brief without a map is returned unchanged.
     """
     asked = brief.map
     if asked is None:
@@ -87,6 +102,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said)}
+    asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
     update |= _other_junctions(asked, said)
     if asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = _number(found) if found else _around_blocks(asked, said)
@@ -108,6 +124,18 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
         return None
     kinds = (JunctionCount(kind="t_junction", count=exactly(number)),)
     return {"junctions": kinds, "columns": None, "rows": None, "dead_ends": exactly(number + 2)}
+
+
+def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
+    """Returns the junctions of a map, with the number before the only plural noun of each kind."""
+    if OTHERS.search(said) or TAKEN_BACK.search(said):
+        return asked.junctions
+    out = []
+    for each in asked.junctions:
+        number = _number(PLURALS[each.kind].findall(said)) if each.kind in PLURALS else None
+        is_clear = number is not None and each.count.exact
+        out.append(each.model_copy(update={"count": exactly(number)}) if is_clear and number else each)
+    return tuple(out)
 
 
 def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:

@@ -71,8 +71,8 @@ def mirrored(text: str, plan: str) -> tuple[str, str] | None:
     """Returns text and plan with left and right swapped; None if text or plan names neither side, if the plan
     asks for traffic on the left, or if a word of the text is ambiguous.
 
-    For a route with junctions, every word for a side must be certain to mean a side. If the text gives a
-    direction beside the number of an exit, the plan lacks this direction; the result is then None, too.
+    For a route with junctions, the result is also None if a word for a side may mean something else, or if
+    the plan has the number of an exit but lacks a direction that the text also gives.
     """
     named = len(SIDES_IN_PLAN.findall(plan))
     if not named or "left_hand" in plan:

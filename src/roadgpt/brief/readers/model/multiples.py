@@ -1,8 +1,8 @@
 """Computes figures that are said as a multiple of an earlier one: in "40 m, a bend, and a straight twice as
 long", the last straight is 80 m long.
 
-The network only copies numbers, so it cannot compute them. A multiple is left as it is if the words leave a
-choice, or say the figure as well ("twice as long, that is 80 m").
+The network only copies numbers, so it cannot compute them. A multiple is left as it is if its value is
+ambiguous, or if the words also give the figure ("twice as long, that is 80 m").
 """
 
 import re
@@ -14,7 +14,8 @@ from roadgpt.brief.readers.model.units import Unit
 
 FACTORS = {
     "half": 0.5, "twice": 2, "double": 2, "thrice": 3, "triple": 3,
-    "halb": 0.5, "halbe": 0.5, "halben": 0.5, "doppelt": 2, "doppelte": 2, "doppelten": 2, "zweimal": 2,
+    "halb": 0.5, "halbe": 0.5, "halben": 0.5, "halber": 0.5, "halbem": 0.5,
+    "doppelter": 2, "doppeltem": 2, "doppelt": 2, "doppelte": 2, "doppelten": 2, "zweimal": 2,
     "dreimal": 3, "dreifach": 3, "dreifache": 3, "dreifachen": 3, "viermal": 4,
     "moitie": 0.5, "mitad": 0.5, "meta": 0.5, "doble": 2, "doppio": 2, "triplo": 3,
 }  # fmt: skip
@@ -24,6 +25,7 @@ GRADES = (
     "steep|steeply|grade|gradient|slope|steil|steigung|gefalle|raide|pente|empinada|empinado|pendiente|ripida"
     "|ripido|pendenza"
 )
+RADII = "radius|radii|halbmesser|rayon|radio|raggio"
 SIZES = "far|weit|loin|lejos|much|viel"
 KINDS: tuple[tuple[str, Unit], ...] = ((LENGTHS, "metres"), (ANGLES, "degrees"), (GRADES, "percent"))
 NAMED = f"(?P<what>{LENGTHS}|{ANGLES}|{GRADES}|{SIZES})"
@@ -39,9 +41,19 @@ PHRASES = tuple(
         rf"(?<!\S)(?:der|die|den|dem|la|el|le|il) {WHOLE} (?:de )?(?P<what>{LENGTHS}|{ANGLES}|{GRADES})\b",
         rf"(?<!\S)(?P<what>{LENGTHS}) (?:le|la|el|il) {WHOLE}\b",
         rf"(?<!\S)(?:das|le|el|il) {WHOLE} (?=$|[.,;]|a |nach )",
+        r"(?<!\S)(?P<once>half|twice|double|triple) (?:of )?(?P<that>that|it|this)(?= (?:$|[.,;:!?)]))",
+        rf"(?<!\S)(?:der|den|dem|le|la|el|il|del) {WHOLE} (?:de |del |di |du )?(?P<what>{RADII})\b",
+        rf"(?<!\S)(?P<what>{RADII}) (?:(?:le|la|el|il) )?{WHOLE}\b",
+        rf"(?<!\S)(?P<what>{RADII}) {TIMES} (?:plus|mas|piu) grande?\b",
+        rf"(?<!\S)(?:{ONCE}|{TIMES}) (?:that|the|its) (?P<what>{RADII})\b",
+        rf"(?<!\S)(?P<once>halber|halbem|halben|halbe|doppelter|doppeltem|doppelte) (?P<what>{RADII})\b",
     )
 )
 """Multiples as they are said in five languages, in words without accents; numbers stand in braces."""
+THAT = "that"
+"""What a multiple measures that is said of "that" or "it": the number before it, of whatever kind."""
+RADIUS_BEHIND = [[word] for word in RADII.split("|")]
+FILLERS = ("m", "metre", "metres", "meter", "metern", "metros", "metri", "of", "de", "di")
 REFERENCES = frozenset(
     ["as", "than", "wie", "als", "que", "come", "of", "di", "de", "du", "del", "der", "des"]
 )
@@ -97,29 +109,31 @@ class Multiple(NamedTuple):
 
 
 def with_multiples(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
-    """Returns the numbers of a text, with a number for each multiple whose value the words leave no choice
-    about.
+    """Returns the numbers of a text, including one computed number for each multiple whose value is clear.
 
     Args:
-        numbers: the numbers of the text with their units, in its order.
+        numbers: the numbers of the text with their units, in the order of the text.
         tokens: the words of the text, in lower case and without accents.
     """
     out = [*numbers]
+    made = list[Number]()
     for multiple in _multiples(numbers, tokens):
         within = range(multiple.first, multiple.last + 1)
         others = [number for number in out if number.first not in within]
-        base = _base([number for number in others if number.last < multiple.first], tokens, multiple.what)
+        before = [number for number in others if number.last < multiple.first]
+        is_chained = multiple.what == THAT and made != [] and before[-1] == made[-1]
+        base = made[-1] if is_chained else _base(before, tokens, multiple.what)
         is_denied = not DENIALS.isdisjoint(tokens[max(multiple.first - DENIED, 0) : multiple.first])
         if (
             base is None
             or is_denied
-            or _is_of_another(tokens[multiple.last + 1 :][: 2 * NEAR])
+            or (multiple.what != THAT and _is_of_another(tokens[multiple.last + 1 :][: 2 * NEAR]))
             or _is_explained(others, multiple.last, base.unit)
         ):
             continue
         value = round(base.value * multiple.factor, 1)
-        made = Number(value, multiple.first, multiple.last, base.unit, False)
-        out = sorted([*others, made], key=lambda number: number.first)
+        made.append(Number(value, multiple.first, multiple.last, base.unit, False))
+        out = sorted([*others, made[-1]], key=lambda number: number.first)
     return out
 
 
@@ -148,7 +162,7 @@ def _factor(match: re.Match[str]) -> tuple[float, str]:
     said = match.groupdict()
     times = (said.get("times") or "").strip("{}")
     factor = float(times) if times else FACTORS[said.get("once") or said.get("whole") or ""]
-    return factor, said.get("what") or ""
+    return factor, said.get("what") or (THAT if "that" in said else "")
 
 
 def _base(numbers: Sequence[Number], tokens: Sequence[str], what: str) -> Number | None:
@@ -157,6 +171,8 @@ def _base(numbers: Sequence[Number], tokens: Sequence[str], what: str) -> Number
     It is the last measured number, which has to be of the kind that the multiple names, and if there are
     several of this kind, all are equal.
     """
+    if what in RADII.split("|") or what == THAT:
+        return _base_of_any(numbers, tokens, is_of_a_radius=what != THAT)
     unit = next((unit for names, unit in KINDS if what in names.split("|")), "")
     units = {unit for _, unit in KINDS}
     measured = [number for number in numbers if number.unit in units and not is_radius(tokens, number)]
@@ -170,6 +186,27 @@ def _base(numbers: Sequence[Number], tokens: Sequence[str], what: str) -> Number
     has_radius = any(is_radius(tokens, number) or number.unit == "" for number in numbers)
     is_unclear = what in SIZES.split("|") and unit == "metres" and has_radius
     return None if is_unclear or not ROAD.isdisjoint(around) else alike[-1]
+
+
+def _base_of_any(numbers: Sequence[Number], tokens: Sequence[str], is_of_a_radius: bool) -> Number | None:
+    """Returns the last radius, or the last measured number, if all numbers of its kind are equal."""
+    units = {unit for _, unit in KINDS}
+    measured = [(number, _has_radius(tokens, number)) for number in numbers if number.unit in units]
+    rows = [(number, kind) for number, kind in measured if kind or not is_of_a_radius]
+    if not rows:  # "left on 35 m, right on double that radius"
+        rows = [(number, kind) for number, kind in measured if number.unit == "metres"]
+    if not rows:
+        return None
+    base, is_radius_ = rows[-1]
+    alike = {number.value for number, kind in rows if kind == is_radius_ and number.unit == base.unit}
+    around = tokens[max(base.first - NEAR, 0) : base.last + 1 + NEAR]
+    return base if len(alike) == 1 and ROAD.isdisjoint(around) else None
+
+
+def _has_radius(tokens: Sequence[str], number: Number) -> bool:
+    """Returns whether a word for a radius stands before a number, or right behind it and its unit."""
+    behind = [token for token in tokens[number.last + 1 :][:NEAR] if token not in FILLERS]
+    return is_radius(tokens, number) or (number.unit == "metres" and behind[:1] in RADIUS_BEHIND)
 
 
 def _is_of_another(behind: Sequence[str]) -> bool:

@@ -73,12 +73,15 @@ class NeuralNetwork:
         return session
 
     def knows(self, tokens: Sequence[str]) -> bool:
-        """Returns whether the weights are as new as all these tokens of plans."""
+        """Returns whether the network can write all these tokens; older weights lack the newest ones."""
         known = self._decoder.get_outputs()[0].shape[1]
         return all(NUMBER_OF[token] < known for token in tokens)
 
     def encode(self, text: SlottedText) -> Array:
-        """Returns the keys and values of a description, of shape (layers, 2, 1, heads, pieces, head size)."""
+        """Returns the keys and values of a description, to which the decoder attends.
+
+        Their shape is (layers, 2, 1, heads, pieces, head size).
+        """
         numbers, _ = self.pieces.encode(word.text for word in text.words)
         out: Array = self._encoder.run(None, {"pieces": np.array([numbers], dtype=np.int64)})[0]
         return out

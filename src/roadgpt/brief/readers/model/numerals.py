@@ -290,7 +290,7 @@ def _spellings(number: int, language: str) -> Iterator[str]:
 
 @cache
 def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Returns a table of spellings (tuples of words): for each, the number that it means, by language.
+    """Returns a table from each spelling (a tuple of words) to the number that it means in each language.
 
     The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
     """

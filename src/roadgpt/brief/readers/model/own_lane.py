@@ -18,10 +18,10 @@ LEFT = ("left", "linken", "gauche", "izquierdo", "izquierda", "sinistra")
 
 
 def without_own_lane(brief: Brief, words: str) -> Brief:
-    """Returns a route without its first lane change if this is only the lane in which the car begins.
+    """Returns a route without its first lane change if that change only names the car's first lane.
 
-    "Start in the right lane, then change to the left one" has one lane change. Other Briefs are returned
-    unchanged.
+    For example, "Start in the right lane, then change to the left one" asks for only one lane change. Other
+    Briefs are returned unchanged.
     """
     begins = BEGINS.search(plain(words))
     if len(brief.junctions) < 2 or begins is None:
@@ -39,7 +39,7 @@ def without_own_lane(brief: Brief, words: str) -> Brief:
 def with_each_lane(brief: Brief) -> Brief:
     """Returns a route on which one lane ends or begins at a time.
 
-    If the road behind such a place has two lanes more or fewer than the road before, there are two places.
+    A place where two lanes end or begin is split into two places, with a road between them.
     """
     junctions, roads = list(brief.junctions), list(brief.stretches)
     for n in reversed(range(len(junctions))):

@@ -106,7 +106,7 @@ def _refusals() -> tuple[Symbol, ...]:
 def _description(numbers: Numbers) -> Symbol:
     clause = _clause(numbers)
     placed = [Sequel(OneOf((place,)), (clause, OneOf((")",)))) for place in PLACES]
-    flags = (["alternating"], ["hard"], ["motorway"], ["divided"], ["left_hand"])
+    flags = (["alternating"], ["alike"], ["hard"], ["motorway"], ["divided"], ["left_hand"])
     wishes = InOrder(
         (
             *(OneOf(words) for words in (SHARPNESS, SLOPES, *flags)),

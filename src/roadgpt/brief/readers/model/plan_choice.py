@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import TypeVar
 
 from roadgpt.brief.feasible import check
-from roadgpt.brief.model import Brief
+from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.brief.normal import normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
+from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.map_words import with_counted_map
@@ -16,25 +18,42 @@ from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
+from roadgpt.brief.readers.model.told_junctions import has_told_kinds, most_of_kinds, with_told_total
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.errors import BriefError
 
+Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
+LIKELY = 2.5
+"""Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
 
 
 def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan:
-    """Returns the likeliest plan whose turns have the sides that the words list.
+    """Returns the likeliest plan, but prefers plans that match the text and do not contradict themselves.
 
-    If there is no list or no such plan, it is the likeliest one; or if its junctions contradict each other,
-    one that is nearly as likely and does not contradict itself.
+    If the text lists the sides of the turns, returns the likeliest plan whose turns have these sides. If it
+    lists none or no plan has them, returns the likeliest plan; but if that is a route or a map that
+    contradicts itself, returns the likeliest plan that does not, if it is nearly as likely.
     """
     first = found[0]
     listed = _as_listed(found, text)
-    if listed is not None or first.is_refusal or not is_of_junctions(first.line) or can_be_kept(first.line):
+    if listed is not None or first.is_refusal or not is_of_junctions(first.line):
         return listed or first
+    if can_be_kept(first.line):
+        return _as_counted(found, text) or first
     near = [draft for draft in found if not draft.is_refusal and draft.score > first.score - NEARLY]
     return next((draft for draft in near if can_be_kept(draft.line)), first)
+
+
+def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
+    """Returns the likeliest plan without more junctions of a kind than the words can mean; None if there is
+    none that is likely.
+    """
+    most = most_of_kinds(text)
+    near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - LIKELY)
+    kept = (draft for draft in near if is_of_junctions(draft.line) and can_be_kept(draft.line))
+    return next((draft for draft in kept if has_told_kinds(read_plan(draft.line), most)), None)
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
@@ -54,10 +73,24 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
-    """Returns the Brief of a plan, with what the words leave no choice about."""
-    brief = with_counted_junctions(with_checked_counts(read_plan(line), text), text)
+    """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
+    brief = with_words_of_all_turns(_level_at_zero(read_plan(line)), text)
+    brief = with_told_total(with_checked_counts(brief, text), text)
+    brief = with_counted_junctions(brief, text)
     brief = _with_listed_hills(with_each_lane(with_counted_map(brief, text)))
     return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
+
+
+def _level_at_zero(brief: Brief) -> Brief:
+    """Returns the Brief with "level" instead of "uphill at 0 percent"."""
+    clauses = tuple(_at_zero(clause) for clause in brief.clauses)
+    brief = brief.model_copy(update={"clauses": clauses}) if clauses != brief.clauses else brief
+    return _at_zero(brief)
+
+
+def _at_zero(said: Sloped) -> Sloped:
+    is_level = said.slope is not None and said.incline == exactly(0)
+    return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
 
 
 def _with_listed_hills(brief: Brief) -> Brief:

@@ -74,14 +74,14 @@ class Keyed:
         return [self.key] if self.numbers.of(self.key) else []
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns the amount."""
+        """Returns the amount, which must follow the key."""
         return (AmountTokens(self.key, self.numbers),)
 
 
 @dataclass(frozen=True, slots=True)
 class AmountTokens:
-    """The number, bound or range that follows a key; if ``low`` is set, the upper end of a range from
-    ``low``."""
+    """The number, bound or range that follows a key; if ``low`` is set, only the upper end of the range that
+    begins at ``low``."""
 
     key: str
     numbers: Numbers

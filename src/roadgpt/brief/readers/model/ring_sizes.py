@@ -35,8 +35,9 @@ def with_ring_sizes(tokens: Sequence[str], text: SlottedText) -> tuple[str, ...]
     """Returns the tokens of a plan with the size words of its roundabouts, such as "mini", that follow from
     the outer diameters in the text.
 
-    Nothing is changed unless the text gives as many outer diameters as the plan has roundabouts without a
-    radius, or as many as the plan has such roundabouts with a size word.
+    Size words are changed only if the number of outer diameters in the text equals the number of roundabouts
+    without a radius in the plan, or the number of those among them that have a size word. The plan of a map
+    is returned unchanged.
     """
     out = list(tokens)
     for place, _, size in reversed(_sized_rings(tokens, text)):
@@ -100,7 +101,9 @@ def _sized_rings(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, in
 
 
 def used_diameters(tokens: Sequence[str], text: SlottedText) -> frozenset[int]:
-    """Returns the indices of the outer diameters of 28 m or more in a text whose size word the plan has."""
+    """Returns the indices of the text's slots that are outer diameters of 28 m or more, if their size word is
+    in the plan.
+    """
     found = (index for index, size in _sizes(tokens, text) if size in tokens)
     return frozenset(index for index in found if text.slots[index].value >= LEAST)
 

@@ -1,7 +1,8 @@
-"""Finds the words that tell of junctions, ramps, lanes and maps, in five languages.
+"""Finds the words that mention junctions, ramps, lanes and maps, in five languages.
 
-A text without such a word describes a single road, and the network for routes does not read it. A text with
-such a word may still describe a single road ("no junctions, please"): the networks decide.
+A text without such a word describes a single road; the network for routes does not read it unless the
+networks for single roads name a junction or the like. A text with such a word may still describe a single
+road ("no junctions, please"): the networks decide.
 """
 
 import re
@@ -96,5 +97,5 @@ COMPANIONS = word_set(
 
 
 def may_tell_a_route(words: str) -> bool:
-    """Returns whether a description has a word that may tell of junctions, ramps, lanes or maps."""
+    """Returns whether a description has a word that may mention junctions, ramps, lanes or maps."""
     return TELLING.search(words) is not None

@@ -24,6 +24,7 @@ from roadgpt.brief.readers.model.multiples import with_multiples
 from roadgpt.brief.readers.model.numerals import plain, words
 from roadgpt.brief.readers.model.slope_angles import as_grade
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
+from roadgpt.brief.readers.model.unit_fractions import FAR, unit_fraction
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
     AND_A_HALF,
@@ -42,16 +43,16 @@ SLOTS = 12
 """The largest number of slots in one description; the values of further numbers are lost."""
 SYMBOLS = str.maketrans({
     "–": "-", "—": "-", "−": "-", "’": "'", "‘": "'", "“": '"', "”": '"', "×": "x",
-    "→": " then ", "½": " 0.5 ",
-    "¼": " 0.25 ", "≥": ">", "≤": "<", "…": ".", "\u00a0": " ", "+": " + ", ">": " > ", "<": " < ",
+    "→": " then ", "½": " 0.5 ", "¼": " 0.25 ", "¾": " 0.75 ", "⅓": " 1/3 ", "⅔": " 2/3 ", "⁄": "/",
+    "≥": ">", "≤": "<", "…": ".", "\u00a0": " ", "+": " + ", ">": " > ", "<": " < ",
 })  # fmt: skip
 WORD = re.compile(r"\d+(?:[.,]\d+)*|[^\W\d_]+|[^\w\s]|_")
 CHANGE = "[unused13]"
 """The token in front of a change request, which tells the model that the text is not a description."""
+MIXED = re.compile(r"(\d)([½¼¾])")
+"""A whole number with a fraction behind it, as in "1½"."""
 BARE_POINT = re.compile(r"(?<![\w.])\.(?=\d)")
 MILLION = 1e6
-FAR = 100
-"""A unit of at least this many metres means one such unit if it has no number, as in "mile and a half"."""
 THOUSANDS = re.compile(r"[1-9]\d{0,2}[.,]\d{3}")
 
 
@@ -95,8 +96,8 @@ class SlottedText:
 
 def slotted(text: str, is_change: bool = False) -> SlottedText:
     """Returns the text with its numbers replaced by slots; a change request gets CHANGE as its first word."""
-    said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", text.translate(SYMBOLS))))
-    tokens = [plain(word) for word in said]
+    said = tolerances_first(WORD.findall(BARE_POINT.sub("0.", MIXED.sub(_sum, text).translate(SYMBOLS))))
+    tokens = _with_miles([plain(word) for word in said])
     numbers = _numbers(tokens)
     for number in numbers:
         take_unit(number, tokens)
@@ -110,13 +111,21 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     return SlottedText((Word(CHANGE, ""), *found.words), found.slots) if is_change else found
 
 
+def _sum(mixed: re.Match[str]) -> str:
+    """Returns "1.5" for "1½"."""
+    return mixed[1] + SYMBOLS[ord(mixed[2])].strip().removeprefix("0")
+
+
 def slot_name(index: int) -> str:
     """Returns the token for the slot with this index (from 0): one of BERT's unused vocabulary entries."""
     return f"[unused{index + 1}]"
 
 
 def language_of(tokens: Sequence[str]) -> str:
-    """Returns the code, such as "de", of the language with the most function words in the text; else "en"."""
+    """Returns the code, such as "de", of the language with the most function words in the text.
+
+    If several languages have the most, English ("en") is preferred, then the first in ``FUNCTION_WORDS``.
+    """
     found = set(tokens)
     return max(FUNCTION_WORDS, key=lambda code: (len(found & FUNCTION_WORDS[code]), code == "en"))
 
@@ -127,14 +136,25 @@ def _numbers(tokens: list[str]) -> list[Number]:
     at = 0
     while at < len(tokens):
         number = (
-            _ratio(tokens, at) or _millions(tokens, at) or _part(tokens, at) or _digits(tokens, at)
-            or _set(tokens, at) or _spelled(tokens, at, language)
+            unit_fraction(tokens, at) or _ratio(tokens, at) or _millions(tokens, at) or _part(tokens, at)
+            or _digits(tokens, at) or _set(tokens, at) or _spelled(tokens, at, language)
         )  # fmt: skip
         if number:
             numbers.append(number)
             at = number.last
         at += 1
     return numbers
+
+
+def _with_miles(tokens: list[str]) -> list[str]:
+    """Returns the tokens with "mile" for "mi" behind a number of an English text; in others it is a word."""
+    if "mi" not in tokens or language_of(tokens) != "en" or FUNCTION_WORDS["en"].isdisjoint(tokens):
+        return tokens
+    beside = zip(["", *tokens], [*tokens[1:], ""], strict=False)
+    return [
+        "mile" if word == "mi" and before[:1].isdigit() and after != "-" else word
+        for word, (before, after) in zip(tokens, beside, strict=False)
+    ]
 
 
 def _ratio(tokens: list[str], at: int) -> Number | None:

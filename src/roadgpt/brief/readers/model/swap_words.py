@@ -45,9 +45,9 @@ WORDS = 12  # words of a request at most
 
 
 def turns_to_swap(text: SlottedText) -> str | None:
-    """Returns the turns that a change request asks to change places, as a place of a plan; None for others.
+    """Returns the two turns that a change request asks to swap; None if it asks for anything else.
 
-    For example "turn 1,3" or "turn all" for "the two turns".
+    The turns are named as in plans of changes: "turn 1,3", or "turn all" for "the two turns".
     """
     said = " ".join(word.text for word in text.words if word.written)
     if not SWAP.search(said) or MORE.search(said) or len(said.split()) > WORDS:

@@ -59,7 +59,7 @@ class ScoredPlan:
     @property
     def features(self) -> dict[str, float]:
         """The inputs of the confidence model, by name: how unlikely the plan and its unlikeliest token are,
-        on a logarithmic scale, and the agreement.
+        on a logarithmic scale, and its ``agreement``.
         """
         unlikely, worst = -sum(self.log_chances), -min(self.log_chances)
         return {

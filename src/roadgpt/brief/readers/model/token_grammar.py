@@ -60,7 +60,7 @@ class Sequel:
         return self.head.first()
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the head, and the symbols after the head."""
+        """Returns the rest of the head, and the symbols after the head."""
         return (*self.head.after(token), *self.rest)
 
 
@@ -80,7 +80,7 @@ class AnyOf:
         return [token for way in self.ways for token in way.first()]
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the symbol that begins with the token."""
+        """Returns the rest of the symbol that begins with the token."""
         return next(way.after(token) for way in self.ways if token in way.first())
 
 
@@ -93,7 +93,7 @@ class InOrder:
 
     @property
     def may_be_empty(self) -> bool:
-        """Whether the rest of the sequence can be left out."""
+        """Whether none of the symbols is required."""
         return self.least <= 0
 
     def first(self) -> Iterable[str]:
@@ -101,7 +101,7 @@ class InOrder:
         return [token for part in self.parts for token in part.first()]
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the symbol that begins with the token, and the symbols after it."""
+        """Returns the rest of the symbol that begins with the token, and the symbols after this symbol."""
         index = next(index for index, part in enumerate(self.parts) if token in part.first())
         later = self.parts[index + 1 :]
         return (*self.parts[index].after(token), *([InOrder(later, self.least - 1)] if later else []))
@@ -141,7 +141,7 @@ class Later:
         return self.make().first()
 
     def after(self, token: str) -> tuple[Symbol, ...]:
-        """Returns what is left of the symbol."""
+        """Returns the rest of the symbol."""
         return self.make().after(token)
 
 

@@ -21,7 +21,9 @@ BOUND = (
     r"|about|around|roughly|exactly) "
 )
 OR = r"(?: or (?:(?P<or_more>more|above)|(?P<or_less>less|below)))?"
-ANGLE = rf"(?:{BOUND})?(?P<slot>\[unused(?:[1-9]|1[0-2])\]) degrees(?: \[unused2\d\])?{OR}"
+SLOT = rf"(?:{BOUND})?(?P<slot>\[unused(?:[1-9]|1[0-2])\])"
+ANGLE = rf"{SLOT} degrees(?: \[unused2\d\])?{OR}"
+OF_ALL = r" (?:for all(?: of (?:them|the turns|the bends|the curves))?(?: together)?|together)"
 IS = r"(?: (?:of|:|is|=|be|should|shall|must))*"
 LED = r"(?:(?:and|with|has|have|a|an|the|its|which|that|turning|bending|und|et|y|e|,) )*"
 TURNING = r"of (?:turning|heading change|turn|steering)"
@@ -29,6 +31,7 @@ WAYS = tuple(
     re.compile(r"(?<!\S)" + LED + way)
     for way in (
         rf"(?:{TOTAL} )+{CHANGE}{IS} {ANGLE}",
+        rf"(?:{TOTAL} )+angle{IS} {SLOT}(?: degrees)?{OF_ALL}{OR}",
         rf"(?:(?:all|angles|together) )*(?:add|sum)(?:s|ing|ming)?(?: up)? to (?:a total of )?{ANGLE}"
         rf"(?: {IN_ALL})?",
         rf"{ANGLE}(?: {TURNING})? {IN_ALL}",

@@ -99,15 +99,16 @@ AT_ALL = re.compile(
 
 
 def with_whole_drive(brief: Brief, words: str) -> Brief:
-    """Returns the Brief with what the words say of the whole route, if the Brief lacks it.
+    """Returns the Brief with requirements that the words state and the Brief lacks.
 
-    A single road is returned unchanged. These requirements are added:
+    The Brief of a single road is returned unchanged. These requirements are added:
 
     - Traffic drives on the left, if the words say so.
     - Every road with oncoming traffic on the same carriageway gets a centre line, if the words name one kind
       of line without a place, and no road of the Brief has a line yet.
     - The first road gets a median if it is a dual carriageway, and no road of the Brief has one.
-    - All roads get the lanes or the centre line of some roads, if the words say that all are alike.
+    - If the words say that all roads have the same lanes or centre line, roads without them get those of the
+      other roads.
     - Junctions with priority to the right get no give-way signs.
     - A junction at the end of a side street is a T-junction.
     - If the route takes a one-way road at a junction, the road behind the junction is one-way.

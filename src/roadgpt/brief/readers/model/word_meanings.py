@@ -1,7 +1,7 @@
 """Finds out whether a plan has what a word usually asks for.
 
-The network may be sure of a plan without a word because other words say the same. If the plan has what the
-word usually asks for, the word counts as understood.
+The network may be sure of a plan even without a word, because other words say the same. If the plan has what
+the word usually asks for, the word counts as understood.
 """
 
 from collections import Counter
@@ -29,7 +29,7 @@ REACH = 3  # words after a negation that it can deny
 
 
 def with_groups(tokens: Iterable[str]) -> Counter[str]:
-    """Returns how often a plan has each token and each group."""
+    """Returns how often each token, and each group of tokens in ``GROUPS``, occurs in a plan."""
     found = Counter(tokens)
     for name, members in GROUPS.items():
         if count := sum(found[member] for member in members):
@@ -53,10 +53,11 @@ def understood(
     meanings: Mapping[str, frozenset[str]],
     negators: Collection[str],
 ) -> frozenset[int]:
-    """Returns the places of the words that the plan takes into account.
+    """Returns the places (indices) of the words in ``places`` that the plan takes into account after all.
 
-    These are the given places whose word asks for a token that the plan has at least as often as the text has
-    the word. A negation and the words that it denies are added if the plan lacks what the words ask for.
+    A word counts if it usually asks for a token that occurs in the plan at least as often as the word occurs
+    in the text. A number counts if the plan has it, as many junctions, or a junction of as many roads.
+    A negation and the words that it denies are added if the plan lacks what these words ask for.
 
     Args:
         text: the description.

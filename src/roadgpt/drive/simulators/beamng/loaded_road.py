@@ -176,7 +176,8 @@ class LoadedRoad:
         ai.set_waypoint(self.goal)
 
     def take_the_wheel(self) -> None:
-        """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode and measures the steering.
+        """Prepares the car for a RoadGPT driver: selects an automatic gearbox mode, and measures the steering
+        if this session has not done so yet.
 
         In BeamNG's other gearbox modes the car does not move until a gear is selected.
         """

@@ -218,7 +218,7 @@ def session_of(settings: BeamngSettings) -> Session:
 
 @atexit.register
 def leave_all() -> None:
-    """Ends every BeamNG that this process has started."""
+    """Ends every BeamNG that this process has started, and disconnects from any other."""
     for session in _sessions.values():
         session.leave()
     _sessions.clear()

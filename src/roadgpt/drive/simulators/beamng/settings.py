@@ -1,7 +1,8 @@
-"""Reads the settings of BeamNG from environment variables. RoadGPT also stores the command-line
-options for BeamNG there, so that worker processes get the same settings.
+"""Reads the settings of BeamNG from environment variables. RoadGPT also writes the command-line
+options for BeamNG to these variables, so that worker processes get the same settings.
 
-The variable of a field is ``ROADGPT_BEAMNG_`` plus its name in capitals, such as ROADGPT_BEAMNG_PORT.
+Each field of ``BeamngSettings`` has a variable: ``ROADGPT_BEAMNG_`` plus the field's name in capitals, such
+as ROADGPT_BEAMNG_PORT.
 """
 
 import os
@@ -59,6 +60,8 @@ class BeamngSettings(BaseModel):
     @classmethod
     def of(cls, environment: Mapping[str, str] = os.environ) -> Self:
         """Returns the settings that the environment variables define.
+
+        If the variables of ``home`` and ``host`` are not set, BNG_HOME gives the folder of BeamNG.
 
         Raises:
             UsageError: the value of a variable is invalid.

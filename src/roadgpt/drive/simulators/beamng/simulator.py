@@ -20,13 +20,13 @@ IMITATES = "beamng_like"
 
 
 class BeamngSimulator:
-    """Simulates an ETK 800 in BeamNG.tech on a mesh road; BeamNG's AI drives, or the driver is asked at every
-    step.
+    """Simulates an ETK 800 in BeamNG.tech on a mesh road. Either BeamNG's AI drives, or the driver returns a
+    command at every step.
 
-    The driver ``beamng_like`` imitates BeamNG's own AI. If this driver is chosen, that AI itself drives, and
-    ``Drive.driver`` is ``beamng_ai``, unless the setting ``imitation`` is true. If BeamNG hangs,
-    ends or loses its connection, the road is tried once more with a new BeamNG process or connection; a
-    second failure raises SimulatorError.
+    If the driver is ``beamng_like``, an imitation of BeamNG's AI, and the setting ``imitation`` is False, the
+    AI itself drives, and ``Drive.driver`` is ``beamng_ai``. If BeamNG hangs, ends or loses its connection,
+    the drive is repeated once with a new BeamNG process or connection; a second failure raises
+    SimulatorError.
     """
 
     # The surfaces are those of the level's materials, and mesh roads that a client builds are level across.

@@ -25,8 +25,8 @@ SIZES = (1.0, 12.0), (0.5, 4.0)  # m, length and width that a car can have
 
 
 class CarGeometry(NamedTuple):
-    """The geometry of a car, measured once while the car is at rest; positions are in metres ahead, to the
-    left and up, from its centre of gravity."""
+    """The geometry of a car, measured once while the car is at rest. Positions are relative to the
+    centre of gravity: metres ahead, to the left and up."""
 
     node: tuple[float, float, float]
     """Position of the reference node; BeamNG reports the position of this node as the car's position."""
@@ -51,9 +51,9 @@ class CarGeometry(NamedTuple):
 
         Args:
             state: the car's state as BeamNG reports it.
-            gravity: position of its centre of gravity in metres.
-            corners: positions of the corners of its bounding box in metres.
-            ground: the point of the road that the car was placed on.
+            gravity: position of the car's centre of gravity in metres.
+            corners: positions of the corners of the car's bounding box in metres.
+            ground: the point of the road on which the car was placed.
 
         Raises:
             SimulationError: the numbers are impossible for a car.
@@ -74,7 +74,11 @@ class CarGeometry(NamedTuple):
         return cls(place, float(rear), float(front), half, float(under), height)
 
     def box(self, lock: float) -> Box:
-        """Returns the Box of a Drive; ``lock`` is the angle of the front wheels at full lock in radians."""
+        """Returns the geometry as a Box, the form in which a Drive stores it.
+
+        Args:
+            lock: angle of the front wheels at full lock in radians.
+        """
         length, width, ahead = self.front - self.rear, 2 * self.half, (self.front + self.rear) / 2
         wheels = (ahead + AXLE * length, TYRES * width)
         return Box(length, width, ahead, lock, *wheels, height=self.height, under=-self.under)
@@ -141,7 +145,7 @@ class RoadTracker:
         return s, t, height
 
     def outside(self, now: CarSample, s: float) -> float:
-        """Returns the share of the box outside its lane, 0..1."""
+        """Returns the share of the car's box that is outside the lane, 0 to 1; ``s`` is the car's station."""
         ch, sh = math.cos(now.heading), math.sin(now.heading)
         cp, sp = math.cos(now.pitch), math.sin(now.pitch)
         cr, sr = math.cos(now.roll), math.sin(now.roll)
@@ -156,7 +160,8 @@ class RoadTracker:
 def station_of(
     table: FloatArray, first: float, step: float, x: float, y: float, s: float
 ) -> tuple[float, float, float]:
-    """Returns the station and the offset of a point near station s, and the height of the road there."""
+    """Returns the station and the offset of the point (x, y), and the height of the road there; ``s`` is a
+    station near the point."""
     at, t, height, _, _, _ = locate_on(table, first, step, x, y, s)
     return at, t, height
 
@@ -169,7 +174,8 @@ def car_sample(
     since: CarSample | None,
     time: float,
 ) -> CarSample:
-    """Returns a CarSample, computed from the state that BeamNG reports; ``since`` is the previous sample."""
+    """Returns a CarSample, computed from the state that BeamNG reports; ``since`` is the previous sample,
+    or None for the first one."""
     frame = frame_of(state)
     ahead, left, up = frame
     position = np.asarray(state["pos"], float) - np.asarray(body.node) @ frame

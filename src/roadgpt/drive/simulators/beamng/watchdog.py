@@ -21,7 +21,7 @@ class OverdueError(Exception):
 
 
 class Watchdog:
-    """Watches the calls of one session."""
+    """Limits the time of each call to BeamNG in one session."""
 
     def __init__(self, sockets: Callable[[], Iterable[socket.socket]], kill: Callable[[], None]) -> None:
         """Watches nothing yet.

@@ -20,7 +20,8 @@ FRICTION_USED = 0.95  # share of the friction that the expected yaw rate may nee
 @inlined
 def slip_valve(opening: float, slip: float, limit: float, dt: float) -> float:
     """Returns the share of the torque, 0 to 1, that ABS or traction control lets pass after a time step of
-    ``dt`` seconds; the share decreases while ``slip`` exceeds ``limit``."""
+    ``dt`` seconds. ``opening`` is the share before the step; the share decreases while ``slip`` exceeds
+    ``limit``."""
     if limit <= 0.0:
         return 1.0
     rate = 20.0 * (limit - slip) / limit

@@ -88,8 +88,8 @@ def control_step(
     steps: int,
     row: FloatArray,
 ) -> bool:
-    """Runs `steps` steps of 2 ms and writes the car's state into ``row``; returns whether it fell. ``steer``
-    is in rad, ``throttle`` and ``brake`` are 0 to 1."""
+    """Runs ``steps`` steps of 2 ms and writes the car's state into ``row``. Returns whether the car fell
+    off the road or overturned. ``steer`` is in rad, ``throttle`` and ``brake`` are 0 to 1."""
     car = cars[0]
     for _ in range(steps):
         step_once(mj, car, axles, ground, car_state, steer, throttle, brake)

@@ -161,7 +161,7 @@ def plane(friction: float = 1.0, grade: float = 0.0, size: float = 5000.0, car: 
         friction: friction coefficient of the plane.
         grade: grade of the plane as a ratio.
         size: length of the plane along x in metres.
-        car: the car.
+        car: parameters of the car.
     """
     s = np.array([0.0, size / 2, size])
     table = np.zeros((3, 8))

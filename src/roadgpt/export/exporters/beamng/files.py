@@ -29,8 +29,10 @@ DECIMALS = 4
 
 
 def ground_model(friction: float) -> str:
-    """Returns the name of the first BeamNG ground model in GROUNDS whose least friction is not greater than
-    the given coefficient."""
+    """Returns the name of BeamNG's ground model for a friction coefficient.
+
+    GROUNDS gives the least coefficient for each ground model.
+    """
     return next(name for least, name in GROUNDS if friction >= least)
 
 

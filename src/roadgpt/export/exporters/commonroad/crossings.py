@@ -80,7 +80,7 @@ class Crossings:
         yield out
 
     def references(self, lanelet: int) -> Iterator[XmlElement]:
-        """Yields the element by which a lanelet refers to its sign or light; nothing if it has neither."""
+        """Yields the element by which a lanelet refers to its sign or light; nothing if there is neither."""
         if lanelet in self._signed:
             id_, _, arm = self._signed[lanelet]
             name = "trafficLightRef" if arm.control == "lights" else "trafficSignRef"

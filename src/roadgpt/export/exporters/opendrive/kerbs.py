@@ -1,8 +1,8 @@
 """Finds the outermost edge of the ways through a junction, between two neighbouring arms.
 
-Traffic on the right that turns right into the next arm keeps to the kerb between the two arms. But where the
-arms end at different distances, this way may begin or end with a straight line, while a way to another arm
-bends earlier and leads up to 12 cm beyond that line. There, the edge of the other way is the outermost one.
+With traffic on the right, the way that turns right into the next arm usually runs along the kerb between the
+two arms. If the arms end at different distances, this right turn may begin or end with a straight line. The
+way to another arm may then bend earlier, and its edge is up to 12 cm farther out than that of the right turn.
 """
 
 from collections.abc import Sequence
@@ -31,7 +31,9 @@ class Stretch(NamedTuple):
 
 
 def outermost(network: Network, junction: Junction, right: Connection) -> list[Stretch]:
-    """Returns the parts of ways whose right edge is the outermost one between two arms, in driving order.
+    """Returns the parts of ways whose right edges together form the outermost edge between two arms.
+
+    The parts are in driving order.
 
     Args:
         network: The network, with traffic on the right.

@@ -63,7 +63,7 @@ class Signals:
         return cls(network, them, first + len(arms), arrows(network))
 
     def on_road(self, road: int) -> Iterator[XmlElement]:
-        """Yields the elements ``objects`` and ``signals`` of a road, each only if the road has any."""
+        """Yields the elements ``objects`` and ``signals`` of a road; an empty element is left out."""
         if objects := self._objects.get(road):
             yield XmlElement("objects", children=objects)
         if own := self._of_road.get(road):

@@ -2,7 +2,7 @@
 for BeamNG.
 
 The executor sends road points to RoadGPT, which validates and drives the road, and returns the results to
-the generator. ``validate_test`` only validates a test, without this exchange of messages.
+the generator. ``validate_test`` validates a test without driving it and without this exchange of messages.
 """
 
 from __future__ import annotations

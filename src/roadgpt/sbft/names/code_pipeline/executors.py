@@ -27,7 +27,7 @@ PER_TEST = 35.0  # s: what one test takes in the competition's own pipeline
 
 
 class Remaining(Dict[str, float]):
-    """The remaining budget.
+    """The remaining budget in seconds, under the key ``time-budget``.
 
     It is a dictionary, as in the competition since 2022, but can also be compared with numbers, as in earlier
     competitions.
@@ -148,7 +148,7 @@ class AbstractTestExecutor(ABC):
         self.start()
 
     def start(self) -> None:
-        """Starts the budget."""
+        """Starts the clock of the budget."""
         self.time_budget.start()
         self.start_time = time.time()
         self.start_generation_time: float = self.time_budget.get_start_time()
@@ -194,12 +194,14 @@ class AbstractTestExecutor(ABC):
         sys.exit(OVER)
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns whether the test is valid, and the message of the first rule that it breaks. The
-        time for validation counts against the budget, but validation does not count as a test."""
+        """Returns whether the test is valid, and the message of the first rule that it breaks, or "" for a
+        valid test. The time for validation counts against the budget, but validation does not count as a
+        test.
+        """
         return self.test_validator.validate_test(the_test)
 
     def store_test(self, the_test: Any) -> None:
-        """Writes the test's file."""
+        """Writes the test to its file ``test.NNNN.json`` in the folder of results."""
         path = Path(self.result_folder, f"test.{the_test.id:04d}.json")
         path.write_text(the_test.to_json(), encoding="utf-8")
 
@@ -216,7 +218,7 @@ class AbstractTestExecutor(ABC):
         return self.time_budget.get_remaining_time()
 
     def get_elapsed_time(self) -> float:
-        """Returns the seconds of wall time since the start."""
+        """Returns the seconds of wall time since the clock of the budget was started."""
         return time.monotonic() - self.time_budget.get_start_time()
 
     def get_stats(self) -> TestGenerationStatistic:

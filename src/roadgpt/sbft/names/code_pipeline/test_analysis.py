@@ -16,8 +16,8 @@ Feature = Tuple[str, float]
 
 
 def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[str, float]:
-    """Returns MAX_CURV and DIR_COV of the road and, if the drive has three or more records, its STD_SA,
-    MEAN_LP and MAX_LP."""
+    """Returns the features MAX_CURV and DIR_COV of the road and, if the drive has three or more records, the
+    features STD_SA, MEAN_LP and MAX_LP of the drive."""
     found = [max_curvature(the_test), direction_coverage(the_test)]
     if len(execution_data or ()) >= FEWEST_RECORDS:
         found += [
@@ -27,8 +27,8 @@ def compute_all_features(the_test: Any, execution_data: Sequence[Any]) -> Dict[s
 
 
 def max_curvature(the_test: Any, w: int = 5) -> Feature:
-    """Returns the largest curvature of the road in 1/m. With the default window ``w`` = 5, curvature is
-    that of the circle through nodes i, i + 2 and i + 4, as in the competition.
+    """Returns "MAX_CURV" and the largest curvature of the road in 1/m. With the default window ``w`` = 5,
+    the curvature is that of the circle through nodes i, i + 2 and i + 4, as in the competition.
     """
     from code_pipeline.validation import smallest_circle
 
@@ -36,9 +36,9 @@ def max_curvature(the_test: Any, w: int = 5) -> Feature:
 
 
 def direction_coverage(the_test: Any, n_bins: int = 25) -> Feature:
-    """Returns the direction coverage: the fraction of direction bins that occur on the road. Directions
-    are angles to north, from 0 to 180 degrees. As in the competition, the number of bins that occur is
-    divided by the number of bin edges.
+    """Returns "DIR_COV" and the direction coverage: the number of direction bins that occur on the road,
+    divided by the number of bin edges, as in the competition. Directions are angles to north, from 0 to
+    180 degrees.
     """
     edges = [360.0 / n_bins * i for i in range(n_bins + 1)]
     nodes = _nodes(the_test)
@@ -62,8 +62,9 @@ def get_thetas(xs: Any, ys: Any, skip: int = 1) -> Any:
 
 
 def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
-    """Returns the direction coverage: the fraction of direction bins that occur on the road. Directions
-    are angles to the x-axis, from -180 to 180 degrees.
+    """Returns "DIR_COV" and the direction coverage: the number of direction bins that occur on the road,
+    divided by the number of bin edges, ``n_bins``. Directions are angles to the x-axis, from -180 to 180
+    degrees.
     """
     edges = [-math.pi + 2 * math.pi / (n_bins - 1) * i for i in range(n_bins - 1)] + [math.pi]
     nodes = _nodes(the_test)
@@ -73,17 +74,17 @@ def direction_coverage_klk(the_test: Any, n_bins: int = 36) -> Feature:
 
 
 def sd_steering(execution_data: Sequence[Any]) -> Feature:
-    """Returns the standard deviation of the steering wheel's angle, in degrees."""
+    """Returns "STD_SA" and the standard deviation of the steering wheel's angle, in degrees."""
     return "STD_SA", pstdev(float(record.steering) for record in execution_data)
 
 
 def mean_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Returns the mean of ``oob_distance`` over all records, in metres."""
+    """Returns "MEAN_LP" and the mean of ``oob_distance`` over all records, in metres."""
     return "MEAN_LP", fmean(float(record.oob_distance) for record in execution_data)
 
 
 def max_lateral_position(execution_data: Sequence[Any]) -> Feature:
-    """Returns the maximum of ``oob_distance`` over all records, in metres."""
+    """Returns "MAX_LP" and the maximum of ``oob_distance`` over all records, in metres."""
     return "MAX_LP", max(record.oob_distance for record in execution_data)
 
 

@@ -1,4 +1,4 @@
-"""The competition's analysis of failures; it needs shapely in the generator's interpreter."""
+"""Analyses failures as the competition does. The module needs shapely in the generator's interpreter."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class RoadTestEvaluator:
 
 
 class OOBAnalyzer:
-    """Analyses the failures in a folder of test results."""
+    """Analyses the failures among the test files in a folder and its subfolders."""
 
     def __init__(
         self, result_folder: str, road_length_before_oob: float = 30, road_length_after_oob: float = 30

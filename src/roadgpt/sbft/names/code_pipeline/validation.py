@@ -1,4 +1,4 @@
-"""The competition's validator of roads."""
+"""Validates roads as the competition's validator does."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ class TestValidator:
         return self.is_valid_polygon(the_test)
 
     def is_minimum_length(self, the_test: Any) -> bool:
-        """Returns whether the road is longer than the competition's minimum length."""
+        """Returns whether the road is longer than ``min_road_length`` metres."""
         return bool(the_test.get_road_length(interpolate_road_points=True) > self.min_road_length)
 
     def is_too_sharp(self, the_test: Any, TSHD_RADIUS: float = 47) -> bool:
@@ -119,8 +119,8 @@ class TestValidator:
         return TSHD_RADIUS > min_radius(the_test.interpolated_points) > 0.0
 
     def validate_test(self, the_test: Any) -> Tuple[bool, str]:
-        """Returns whether the test is valid, and the message of the first rule that it breaks; never
-        raises an exception because of a test.
+        """Returns whether the test is valid, and the message of the first rule that it breaks, or "" for a
+        valid test. An invalid test never causes an exception.
         """
         if not self.is_right_type(the_test):
             return False, WRONG_TYPE

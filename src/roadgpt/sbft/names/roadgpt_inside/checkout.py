@@ -38,10 +38,10 @@ class Finder:
 
     @staticmethod
     def find_spec(name: str, path: Optional[List[str]] = None, target: Any = None) -> Any:
-        """Returns the location of a module of the competition; None for all other modules.
+        """Returns the import spec of a module of the competition; None for all other modules.
 
         Raises:
-            ModuleNotFoundError: the module belongs to the competition, but was not found.
+            ModuleNotFoundError: neither RoadGPT nor a checkout has this module of the competition.
         """
         del target
         package, _, rest = name.partition(".")

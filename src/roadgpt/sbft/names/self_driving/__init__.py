@@ -1,5 +1,5 @@
-"""Provides the classes and functions that generators of the SBFT tool competition import. Any others are
-imported from a checkout of the competition's code, if one is on Python's search path.
+"""Provides classes and functions that generators of the SBFT tool competition import. Those that this package
+lacks are imported from a checkout of the competition's code, if one is on Python's search path.
 """
 
 from pkgutil import extend_path

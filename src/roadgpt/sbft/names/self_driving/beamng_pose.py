@@ -6,7 +6,7 @@ from typing import Any
 
 
 class BeamNGPose:
-    """Position in metres, and rotation as a quaternion."""
+    """The position of a car in metres, and its rotation as a quaternion (x, y, z, w)."""
 
     def __init__(self, pos: Any = None, rot: Any = None) -> None:
         self.pos = pos or (0, 0, 0)

@@ -1,4 +1,4 @@
-"""Draws pictures of roads; it needs matplotlib in the generator's interpreter."""
+"""Draws pictures of roads. The Python interpreter that runs the test generator must have matplotlib."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ class BeamNGRoadImagery:
         return cls(RoadPoints().add_middle_nodes(sample_nodes))
 
     def plot(self) -> None:
-        """Draws the road."""
+        """Draws the road in a new figure, which ``save`` writes to a file."""
         from matplotlib.figure import Figure
 
         self._figure = Figure()
         self.road_points.plot_on_ax(self._figure.subplots())
 
     def save(self, image_path: Any) -> None:
-        """Saves the picture in the format of the file name's suffix."""
+        """Saves the picture; the suffix of the file name, such as ".svg", sets the format."""
         if self._figure is None:
             self.plot()
         self._figure.savefig(image_path)

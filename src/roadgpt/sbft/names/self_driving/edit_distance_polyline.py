@@ -13,7 +13,7 @@ ListOfPoints = List[Point]
 
 
 def iterative_levenshtein(s: Sequence[Sequence[float]], t: Sequence[Sequence[float]]) -> float:
-    """Returns the weighted Levenshtein distance between two sequences of steps; a step is a pair (change
-    of direction, length).
+    """Returns the competition's weighted Levenshtein distance between two sequences of points (x, y) in
+    metres. It compares the change of direction and the length of each step from point to point.
     """
     return float(ask("distance", one=[p[:2] for p in s], other=[p[:2] for p in t]))

@@ -1,4 +1,7 @@
-"""Measures how far a car is outside its lane; it needs shapely in the generator's interpreter."""
+"""Measures how far a car is outside its lane.
+
+The Python interpreter that runs the test generator must have shapely.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ CORNERS = ("rear_bottom_left", "rear_bottom_right", "front_bottom_right", "front
 
 
 class OutOfBoundsMonitor:
-    """Reads the state of a car (``get_state().pos`` and ``get_vehicle_bbox()``) and counts how often it
-    leaves its lane."""
+    """Counts how often a car leaves its lane, and measures how far it is outside. The state of the car comes
+    from ``get_state().pos`` and ``get_vehicle_bbox()`` of ``vehicle_state_reader``."""
 
     def __init__(self, road_polygon: Any, vehicle_state_reader: Any, tolerance: float = 0.95) -> None:
         """Starts with a count of 0, as if the car were inside its lane."""
@@ -21,12 +24,17 @@ class OutOfBoundsMonitor:
         self.tolerance = tolerance
 
     def get_oob_info(self, wrt: str = "right", oob_bb: bool = True) -> Tuple[bool, int, float, float, float]:
-        """Returns the state of the car relative to its lane.
+        """Returns the state of the car relative to its lane, and updates the counter.
+
+        Args:
+            wrt: the lane or the road, as in ``oob_percentage``.
+            oob_bb: True if the car counts as outside as in ``is_oob_bb``, False if as in ``is_oob``.
 
         Returns:
             Five values: whether the car is outside, the number of times that it has left the lane, the
-            largest fraction of the car that has been outside since it last left the lane, the distance to the
-            lane edge in metres (negative outside), and the fraction of the car that is outside now.
+            largest fraction of the car that has been outside since it last left the lane (NaN if ``oob_bb``
+            is False), the distance to the lane edge in metres (negative outside), and the fraction of the car
+            that is outside now.
         """
         is_oob = self.is_oob_bb(wrt) if oob_bb else self.is_oob(wrt)
         if oob_bb:
@@ -36,13 +44,13 @@ class OutOfBoundsMonitor:
         return is_oob, self.oob_counter, largest, self.oob_distance(wrt), self.oob_percentage(wrt)
 
     def update_oob_counter(self, is_oob: bool) -> None:
-        """Adds 1 to the counter if the car was inside before and is outside now."""
+        """Adds 1 to the counter if the car is outside now but was inside at the previous call."""
         self.oob_counter += is_oob and not self.last_is_oob
         self.last_is_oob = is_oob
 
     def update_oob_percentage(self, is_oob: bool) -> None:
-        """Updates the largest fraction of the car that has been outside the lane since the car last left
-        it.
+        """Updates the largest fraction of the car that has been outside the right lane since the car last
+        left its lane; does nothing if ``is_oob`` is False.
         """
         if is_oob:
             share = self.oob_percentage()
@@ -51,14 +59,14 @@ class OutOfBoundsMonitor:
             )
 
     def oob_percentage(self, wrt: str = "right") -> float:
-        """Returns the fraction of the car's bounding box, 0 to 1, that is outside the lane, or outside the
-        road; ``wrt`` is "right" or "left" for a lane, and any other value for the road.
+        """Returns the fraction of the car's bounding box, 0 to 1, that is outside a lane or the road.
+        ``wrt`` names the lane ("right" or "left"); any other value stands for the whole road.
         """
         box = self._get_car_bbox_polygon()
         return 1 - float(box.intersection(self._of(wrt, "polygon")).area) / float(box.area)
 
     def is_oob_bb(self, wrt: str = "right") -> bool:
-        """Returns whether the fraction of the car's bounding box that is outside exceeds the tolerance."""
+        """Returns whether ``oob_percentage`` of the car exceeds the tolerance."""
         return self.oob_percentage(wrt) > self.tolerance
 
     def oob_distance(self, wrt: str = "right") -> float:

@@ -13,8 +13,9 @@ Place = Tuple[float, float]
 
 
 class RoadPoints:
-    """The nodes of a road's centre line, and the points on the road's edges: two for each node, to its left
-    and right, at right angles to the line to the next node (at the last node, to the previous one)."""
+    """The nodes of a road's centre line, and the points on the road's edges. Each node has one point on the
+    left edge and one on the right. The line between these two points is at right angles to the line from the
+    node to the next one (for the last node, from the previous one)."""
 
     def __init__(self) -> None:
         """Makes a road without nodes."""
@@ -48,7 +49,9 @@ class RoadPoints:
 
     @classmethod
     def calc_point_edges(cls, p1: Sequence[float], p2: Sequence[float]) -> Tuple[Place, Place]:
-        """Returns the left and right edge points at the node ``p1``, given the next node ``p2``."""
+        """Returns the left and right edge points at the node ``p1``, given the next node ``p2``; NaN if both
+        nodes are at the same place.
+        """
         x, y = p2[0] - p1[0], p2[1] - p1[1]
         way, half = math.sqrt(x * x + y * y), p1[3] / 2
         # coinciding nodes have no direction: not a number, as with the competition's library
@@ -72,7 +75,7 @@ class RoadPoints:
         self, meters_from_road_start: float = 2.5, road_point_index: int = 0
     ) -> BeamNGPose:
         """Returns the pose in which the competition places the car at the start: in the middle of the right
-        lane.
+        lane, ``meters_from_road_start`` metres after the node with the index ``road_point_index``.
 
         Raises:
             AssertionError: the road has no node with this index.

@@ -1,4 +1,4 @@
-"""Defines the area of a road; it needs shapely in the generator's interpreter."""
+"""Defines the area of a road. The Python interpreter that runs the test generator must have shapely."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from self_driving.road_points import RoadPoints
 
 
 class RoadPolygon:
-    """The area of a road between its edges; its polygons are computed on access."""
+    """The area between the edges of a road. Each polygon is computed when it is first used."""
 
     def __init__(self, road_points: RoadPoints) -> None:
         """Takes nodes and edges.
@@ -30,7 +30,7 @@ class RoadPolygon:
 
     @property
     def num_polygons(self) -> int:
-        """Number of polygons, which is the number of nodes minus one."""
+        """Number of polygons between successive nodes: the number of nodes minus one."""
         return len(self.road_points.middle) - 1
 
     @cached_property
@@ -76,7 +76,7 @@ class RoadPolygon:
         return [(node[0], node[1]) for node in self.road_points.middle]
 
     def is_valid(self) -> bool:
-        """Returns whether the road does not intersect itself."""
+        """Returns False if the road intersects itself, else True; nothing else is checked."""
         return bool(ask("clear", left=self.road_points.left, right=self.road_points.right))
 
 

@@ -1,4 +1,4 @@
-"""Stores the records of a drive in the competition's files."""
+"""Stores the records of a drive in files that have the competition's format."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ class SimulationInfo:
 
 
 class SimulationData:
-    """A drive with the competition's fields, stored in ``simulations/NAME`` of the generator's folder."""
+    """A drive with the competition's fields. Its files are in ``simulations/NAME`` below the current
+    directory.
+    """
 
     f_info = "info"
     f_params = "params"
@@ -94,7 +96,10 @@ class SimulationData:
         return len(self.states)
 
     def set(self, params: Any, road: Any, states: Any, info: Optional[SimulationInfo] = None) -> None:
-        """Stores parameters, road, records and result of the drive."""
+        """Sets parameters, road, records (``states``) and result (``info``) of the drive; writes no files.
+
+        If ``info`` is None, a new SimulationInfo with a random id is made.
+        """
         self.params, self.road, self.states = params, road, states
         if info is None:
             info = SimulationInfo()
@@ -129,7 +134,7 @@ class SimulationData:
             imagery.save(self.path_road_img.with_suffix(suffix))
 
     def load(self) -> SimulationData:
-        """Reads the drive from its file."""
+        """Reads ``simulation.full.json`` of the drive into this object, and returns the object."""
         from self_driving.decal_road import DecalRoad
 
         read = json.loads(self.path_json.read_text(encoding="utf-8"))
@@ -141,7 +146,7 @@ class SimulationData:
         return self
 
     def complete(self) -> bool:
-        """Returns whether the drive's file exists."""
+        """Returns whether the drive has been saved, that is, whether ``simulation.full.json`` exists."""
         return self.path_json.exists()
 
     def min_oob_distance(self) -> float:
@@ -149,13 +154,13 @@ class SimulationData:
         return float(min(state.oob_distance for state in self.states))
 
     def start(self) -> None:
-        """Stores the time at which the drive starts."""
+        """Stores the current time as the start of the drive, and the name of the computer."""
         self.info.success = None
         self.info.start_time = str(datetime.datetime.now())
         self.info.computer_name = platform.node()
 
     def end(self, success: bool, exception: Any = None) -> None:
-        """Stores the time and result when the drive ends."""
+        """Stores the current time as the end of the drive, and the result of the drive."""
         self.info.end_time = str(datetime.datetime.now())
         self.info.success = success
         if exception:

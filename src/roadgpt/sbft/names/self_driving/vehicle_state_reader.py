@@ -1,5 +1,5 @@
-"""Defines VehicleState, the state of a car. The class that reads it needs BeamNG, so it is imported from a
-checkout of the competition's code."""
+"""Defines VehicleState, the state of a car. VehicleStateReader, the class that reads the state, needs BeamNG
+and is not defined here: it is imported from a checkout of the competition's code."""
 
 from __future__ import annotations
 

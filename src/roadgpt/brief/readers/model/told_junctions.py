@@ -1,0 +1,104 @@
+"""Counts the junctions that a description names, to tell a junction told twice from two junctions."""
+
+import re
+from collections.abc import Mapping
+
+from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
+from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
+from roadgpt.brief.readers.model.slots import SlottedText
+
+NOUNS: Mapping[JunctionKind, re.Pattern[str]] = {
+    "crossroads": re.compile(
+        r"\b(?:cross ?-? ?roads?|intersection|crossing(?! roads?| streets?| traffic)|kreuzung|carrefour|"
+        r"croisement|cruce|interseccion|incrocio)\b"
+    ),
+    "roundabout": re.compile(
+        r"\b(?:(?:mini)?roundabout|rotary|traffic circle|(?:mini)?kreisverkehr|(?:mini)?kreisel|rond - point|"
+        r"giratoire|glorieta|rotonda|rotatoria)\b"
+    ),
+    "y_junction": re.compile(r"\b(?:fork|y - junction|gabelung|bifurcation|fourche|bifurcacion|bivio)\b"),
+    "star": re.compile(r"\bstar\b"),
+}
+"""The singular nouns for junctions of each kind, in a text without accents."""
+SIDE_ROAD = re.compile(
+    r"\b(?:side (?:road|street)|t - junction|(?:neben|seiten)stra(?:ss|ß)e|einmundung|rue laterale|"
+    r"calle lateral|strada laterale)\b"
+)
+ANY_PLURAL = re.compile(rf"\b{PLURAL}\b")
+MORE = re.compile(
+    r"\b(?:another|again|second|next|twice|same|each|both|more|further|every|third|last|other|"
+    r"zweite[nrms]?|nachste[nrms]?|wieder|noch|weitere[nrms]?|beide[nr]?|jede[nrms]?|andere[nrms]?|dritte[nrms]?|"
+    r"letzte[nrms]?|autre|encore|deuxieme|seconde?|prochain|suivant|chaque|memes?|troisieme|dernier|"
+    r"otr[oa]|segund[oa]|siguiente|cada|mism[oa]|tercer[oa]?|ultim[oa]|altr[oa]|second[oa]|prossim[oa]|ogni|"
+    r"stess[oa]|terz[oa]|x)\b|\b\d+ (?:\w+ ){0,2}?(?:cross ?-?road|crossing|inter|rounda|kreis|kreuz|carref|"
+    r"crois|gira|rond|rot|glor|cruc|incr|fork|gabel|bif|four|biv|star|junction)"
+)
+"""Words that may stand for a further junction that has no noun of its own."""
+TOTAL = re.compile(
+    rf"\b(\d+) (?:\w+ )?{PLURAL} (?:in all|in total|all told|altogether|overall|insgesamt|en tout|au total|"
+    rf"en total|in tutto|in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
+    rf"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
+    rf"\binsgesamt (\d+) (?:\w+ )?{PLURAL}\b"
+)
+"""The number of all junctions of a route."""
+
+
+def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
+    """Returns for each kind the largest number of junctions that the words can mean, as far as they say it.
+
+    A kind is counted if its noun is in the text, in the singular, and no word speaks of further junctions.
+    """
+    said = text.text
+    if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(said):
+        return {}
+    found = {kind: len(noun.findall(said)) for kind, noun in NOUNS.items()}
+    return {kind: number for kind, number in found.items() if number}
+
+
+def _without_crossroads(said: str) -> str:
+    """Returns the words without "crossroads", which is singular and plural."""
+    return re.sub(r"\bcross ?-? ?roads\b", "", said)
+
+
+def names_a_junction(text: SlottedText) -> bool:
+    """Returns whether a noun of the text can only mean a junction."""
+    said = text.text
+    nouns = (NOUNS["crossroads"], NOUNS["roundabout"], SIDE_ROAD, ANY_PLURAL)
+    return any(noun.search(said) for noun in nouns)
+
+
+def has_told_kinds(brief: Brief, most: Mapping[JunctionKind, int]) -> bool:
+    """Returns whether a route has no more junctions of a kind than the words can mean."""
+    kinds = [junction.kind for junction in brief.junctions]
+    return all(kinds.count(kind) <= number for kind, number in most.items())
+
+
+def with_told_total(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route with as many junctions as its total says, if only some of no kind differ.
+
+    "Four junctions in all; the first is a roundabout and the last a T-junction" has two between them, and
+    "four junctions in any order, two with lights" has two more.
+    """
+    found = TOTAL.search(text.text)
+    number = int(next(filter(None, found.groups()))) if found else 0
+    counted = [n for n, each in enumerate(brief.junctions) if each.kind not in (*RAMPS, *LANE_KINDS)]
+    bare = [
+        n
+        for n in counted
+        if brief.junctions[n].kind == "junction"
+        and brief.junctions[n].take is None
+        and brief.junctions[n].control is None
+        and brief.stretches[n + 1].is_open
+    ]
+    surplus = len(counted) - number
+    if number and 0 < -surplus < number and len(counted) == len(brief.junctions):
+        more = (JunctionClause(kind="junction"),) * -surplus
+        roads = (*brief.stretches, *(Brief() for _ in more))
+        return brief.model_copy(update={"junctions": (*brief.junctions, *more), "stretches": roads})
+    if not number or not 0 < surplus <= len(bare):
+        return brief
+    gone = {*bare[:surplus]}
+    junctions = tuple(each for n, each in enumerate(brief.junctions) if n not in gone)
+    roads = tuple(each for n, each in enumerate(brief.stretches) if n - 1 not in gone)
+    return brief.model_copy(update={"junctions": junctions, "stretches": roads})

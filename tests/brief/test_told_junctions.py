@@ -1,0 +1,93 @@
+"""Junctions that are told twice, totals of junctions, and nouns that can only mean a junction."""
+
+import pytest
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.told_junctions import (
+    has_told_kinds,
+    most_of_kinds,
+    names_a_junction,
+    with_told_total,
+)
+
+
+@pytest.mark.parametrize(
+    ("words", "most"),
+    [
+        ("a crossroads where I have priority and the crossing road has stop signs", {"crossroads": 1}),
+        ("two roads meet at a crossroads; you reach the crossroads uphill", {"crossroads": 2}),
+        ("eine Kreuzung, dann ein Kreisverkehr, dritte Ausfahrt", {}),
+        ("une fourche, puis un giratoire", {"y_junction": 1, "roundabout": 1}),
+        ("a roundabout, then another", {}),
+        ("two roundabouts and a crossroads", {}),
+        ("straight over 2 crossroads", {}),
+        ("an uphill road", {}),
+    ],
+)
+def test_singular_nouns_are_counted_unless_more_may_be_meant(words: str, most: dict[str, int]) -> None:
+    assert most_of_kinds(slotted(words)) == most
+
+
+def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
+    twice, once = read_plan("crossroads // crossroads"), read_plan("crossroads // roundabout // t_junction")
+    assert not has_told_kinds(twice, {"crossroads": 1})
+    assert has_told_kinds(once, {"crossroads": 1})
+    assert has_told_kinds(twice, {})
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "wanted"),
+    [
+        (
+            "four junctions in all; the first is a roundabout and the last a T-junction where I turn left",
+            "roundabout // junction // junction // junction // t_junction left",
+            "roundabout // junction // junction // t_junction left",
+        ),
+        (
+            "insgesamt 3 Kreuzungen, die erste ein Kreisverkehr",
+            "roundabout // junction // junction // junction",
+            "roundabout // junction // junction",
+        ),
+        (
+            "two crossroads in total, left, then right",
+            "crossroads left // crossroads right // crossroads straight",
+            "crossroads left // crossroads right // crossroads straight",
+        ),
+        (
+            "four junctions in any order, exactly two with traffic lights for me",
+            "junction lights // junction lights // junction",
+            "junction lights // junction lights // junction // junction",
+        ),
+        (
+            "three junctions in all, then the ramp",
+            "junction // merge ramp",
+            "junction // merge ramp",
+        ),
+        (
+            "four junctions, one of them a fork",
+            "y_junction // junction // junction // junction // junction",
+            None,
+        ),
+    ],
+)
+def test_a_total_adds_or_takes_away_only_junctions_of_no_kind(
+    words: str, line: str, wanted: str | None
+) -> None:
+    assert plan(with_told_total(read_plan(line), slotted(words))) == (wanted or line)
+
+
+@pytest.mark.parametrize(
+    ("words", "is_named"),
+    [
+        ("links mündet eine Nebenstraße ein", True),
+        ("zwei Kreuzungen geradeaus", True),
+        ("a roundabout, second exit", True),
+        ("past a side road on the left", True),
+        ("the road crosses a hill, then turns left", False),
+        ("a road with a fork-shaped tree", False),
+        ("three turns and a hairpin", False),
+    ],
+)
+def test_some_nouns_can_only_mean_a_junction(words: str, is_named: bool) -> None:
+    assert names_a_junction(slotted(words)) == is_named

@@ -1,0 +1,299 @@
+"""Changes that take a value from another place, or name the stations between which a slope changes."""
+
+import numpy as np
+import pytest
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.check.measures import MeasuredFeature, Measures, measure
+from roadgpt.design import draft
+from roadgpt.design.edit import Edited, edit
+from roadgpt.design.edit.change_plan import change_plan, read_change_plan
+from roadgpt.errors import EditError
+from roadgpt.road import Design, World, build
+
+WORLD = World()
+STRAIGHT = draft(read_plan("straight flat len=240"), WORLD, seed=1)
+LENGTH = build(STRAIGHT).length
+LISTED = draft(
+    read_plan(
+        "straight len=60; turn left deg=60 r=40; straight len=35; turn right deg=90 r=25; straight len=50; "
+        "turn left deg=45 r=30; straight len=30 | flat"
+    ),
+    WORLD,
+    seed=2,
+)
+
+
+def edited(design: Design, plan: str) -> Edited:
+    return edit(design, read_change_plan(plan), WORLD)
+
+
+def measured(design: Design) -> Measures:
+    return measure(build(design).centreline())
+
+
+def turns(design: Design) -> tuple[MeasuredFeature, ...]:
+    return measured(design).turns
+
+
+def lengths(design: Design) -> list[float]:
+    return [straight.length for straight in measured(design).straights]
+
+
+def mean_grade(design: Design, start: float, end: float) -> float:
+    """The mean grade in percent between two stations in metres."""
+    road = build(design)
+    return float(100 * (road.at(end)[2] - road.at(start)[2]) / (end - start))
+
+
+@pytest.mark.parametrize(
+    "plan", ["turn 3: angle =turn 1", "turn right: angle =turn 1", "turn -1: angle =turn 1"]
+)
+def test_an_angle_is_taken_from_another_turn(plan: str) -> None:
+    after = turns(edited(LISTED, plan).design)
+    changed = after[1 if "right" in plan else 2]
+    assert changed.degrees == pytest.approx(turns(LISTED)[0].degrees, abs=1.5)
+
+
+def test_two_turns_exchange_their_radii_as_they_were_before() -> None:
+    before, after = (
+        turns(LISTED),
+        turns(edited(LISTED, "turn 1: radius =turn 2; turn 2: radius =turn 1").design),
+    )
+    assert after[0].radius == pytest.approx(before[1].radius, rel=0.06)
+    assert after[1].radius == pytest.approx(before[0].radius, rel=0.06)
+    assert after[2].radius == pytest.approx(before[2].radius, rel=0.02)
+
+
+def test_a_length_is_taken_from_another_straight() -> None:
+    before, after = lengths(LISTED), lengths(edited(LISTED, "straight -1: length =straight 1").design)
+    assert after[-1] == pytest.approx(before[0], abs=1.5)
+    assert after[:-1] == pytest.approx(before[:-1], abs=1.0)
+
+
+def test_no_longer_than_another_changes_only_what_is_longer() -> None:
+    before, after = lengths(LISTED), lengths(edited(LISTED, "straight all: length ..straight 2").design)
+    assert max(after) <= before[1] + 1.0
+    assert after[3] == pytest.approx(before[3], abs=0.5)
+
+
+def test_at_least_as_much_as_another_changes_only_what_is_less() -> None:
+    before, after = turns(LISTED), turns(edited(LISTED, "turn all: radius turn 3..").design)
+    assert min(turn.radius for turn in after) >= 0.95 * before[2].radius
+    assert after[0].radius == pytest.approx(before[0].radius, rel=0.02)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_model_with_a_new_value_gives_the_new_one(order: int) -> None:
+    plan = "; ".join(["turn 1: radius =52", "turn 2: radius =turn 1"][::order])
+    assert [turn.radius for turn in turns(edited(LISTED, plan).design)[:2]] == pytest.approx(
+        [52, 52], rel=0.06
+    )
+
+
+def test_a_model_with_a_new_slope_gives_its_direction() -> None:
+    after = edited(LISTED, "straight 1: slope down =5; straight 3: slope =straight 1").design
+    assert measured(after).straights[2].grade == pytest.approx(-5, abs=0.7)
+
+
+def test_a_model_that_changes_by_an_unknown_amount_is_refused() -> None:
+    with pytest.raises(EditError, match="need requests of their own"):
+        edited(LISTED, "turn 1: radius more; turn 2: radius =turn 1")
+
+
+@pytest.mark.parametrize(("first", "grade"), [("up =5", 5.0), ("down =4", -4.0), ("flat", 0.0)])
+def test_a_slope_is_taken_with_its_direction(first: str, grade: float) -> None:
+    sloped = edited(LISTED, f"road: slope up =7; straight 1: slope {first}").design
+    after = edited(sloped, "straight 3: slope =straight 1").design
+    found = measured(after).straights[2]
+    assert found.grade == pytest.approx(grade, abs=0.8)
+
+
+@pytest.mark.parametrize(
+    ("plan", "start", "end", "grade"),
+    [
+        ("road after(start len=150): slope down =4", 150, 0, -4.0),
+        ("road from(end len=90): slope down =4", -90, 0, -4.0),
+        ("road before(start len=80): slope up =5", 0, 80, 5.0),
+        ("road between(start len=60, start len=160): slope up =6", 60, 160, 6.0),
+        ("road between(end len=40, end len=120): slope up =6", -120, -40, 6.0),
+        ("road between(start len=60, end len=60): climb =4", 60, -60, 100 * 4 / (LENGTH - 120)),
+    ],
+)
+def test_stations_bound_a_slope(plan: str, start: float, end: float, grade: float) -> None:
+    after = edited(STRAIGHT, plan).design
+    length = build(after).length
+    assert length == pytest.approx(LENGTH, abs=1.0)
+    start, end = start % LENGTH, end % LENGTH or LENGTH
+    middle = np.array([start + 0.3 * (end - start), start + 0.7 * (end - start)])
+    assert mean_grade(after, *middle) == pytest.approx(grade, abs=0.7)
+    for low, high in ((0, start), (end, length)):
+        if high - low > 50:  # what lies outside stays level beyond the joint
+            away = (low, high - 25) if low == 0 else (low + 25, high)
+            assert abs(mean_grade(after, *away)) < 0.6
+
+
+@pytest.mark.parametrize(
+    ("plan", "complaint"),
+    [
+        ("turn 2: radius =straight 1", "compares with a straight, which does not bend"),
+        ("turn 2: angle =turn all", "has to compare with one turn or one straight"),
+        ("straight 2: length =road", "has to compare with one turn or one straight"),
+        ("turn 2: radius =turn 9", "there is no ninth turn"),
+        ("straight 2: length =start len=40", "cannot name a place"),
+        ("straight 1: climb =straight 2", "is not expected"),
+        ("turn 2: radius +turn 1", "is not expected"),
+        ("turn 2: radius turn 1", "something is missing"),
+        ("road after(start len=900): slope up", f"the road is only {LENGTH:.0f} m long, not 900 m"),
+        ("road between(start len=50, end len=900): slope up", "not 900 m"),
+        ("road between(start len=50, start len=52): slope up", "too short for a slope"),
+        ("road between(turn 1, start len=50): slope up", "mixes distances with other words"),
+        ("road flat after(start len=50): slope up", "mixes distances with other words"),
+        ("road on(start len=50): slope up", "mixes distances with other words"),
+        ("road after(start len=50): length more", "only its slope or its climb can be changed"),
+        ("add turn left at_end; road after(start len=50): slope up", "need requests of their own"),
+    ],
+)
+def test_what_cannot_be_taken_or_bounded_is_said(plan: str, complaint: str) -> None:
+    with pytest.raises(EditError, match=complaint):
+        edited(STRAIGHT if "start len" in plan else LISTED, plan)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "straight -1: length =straight 1",
+        "turn all but(turn 1): radius ..turn sharpest",
+        "straight 2: slope =straight after(turn 2)",
+        "straight 2: length straight 1..",
+        "turn all: radius turn sharpest left..; turn 1: angle more",
+        "road between(start len=50, start len=100): slope down =4",
+    ],
+)
+def test_plans_are_written_as_they_are_read(line: str) -> None:
+    assert change_plan(read_change_plan(line)) == line
+
+
+@pytest.mark.parametrize(
+    "plan", ["road: slope up =7; straight 1: slope flat", "straight 1: slope flat; road: slope up =7"]
+)
+def test_what_is_so_already_is_left_out_of_a_wish_for_the_whole_road(plan: str) -> None:
+    after = measured(edited(LISTED, plan).design).straights
+    assert abs(after[0].grade) < 1
+    assert [each.grade for each in after[1:]] == pytest.approx([7.0] * 3, abs=0.7)
+
+
+def test_what_is_so_already_within_a_stretch_is_refused() -> None:
+    with pytest.raises(EditError, match="need requests of their own"):
+        edited(LISTED, "road half1: slope up =7; straight 1: slope flat")
+
+
+@pytest.mark.parametrize(
+    ("plan", "length"),
+    [
+        ("road: length +20; straight 2: length ..100", 20),
+        ("road: length -20; straight 2: length =35", -20),
+        ("straight 1: length 20..; road: length +30", 30),
+    ],
+)
+def test_a_wish_that_is_met_does_not_change_the_length_of_the_road(plan: str, length: float) -> None:
+    before, after = build(LISTED).length, build(edited(LISTED, plan).design).length
+    assert after - before == pytest.approx(length, abs=0.025 * before)
+
+
+def test_a_limit_that_is_kept_leaves_the_other_wish_alone() -> None:
+    after = turns(edited(LISTED, "turn all: radius less; turn 1: radius ..60").design)
+    assert after[0].radius < 0.9 * turns(LISTED)[0].radius
+    longer = lengths(edited(LISTED, "straight all: length +10; straight 2: length ..80").design)
+    assert [new - old for new, old in zip(longer, lengths(LISTED), strict=True)] == pytest.approx(
+        [10] * 4, abs=1.5
+    )
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "road: slope up =7; straight 1: slope ..5",
+        "straight all: length =70; straight 2: length ..50",
+        "turn all: radius x2; turn 2: radius ..40",
+    ],
+)
+def test_a_limit_that_another_wish_breaks_is_refused(plan: str) -> None:
+    with pytest.raises(EditError, match="need requests of their own"):
+        edited(LISTED, plan)
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "road: slope up =4; road after(start len=150): slope down =4",
+        "road after(start len=150): slope down =4; road: slope up =4",
+    ],
+)
+def test_a_stretch_keeps_its_own_slope_beside_a_wish_for_the_whole_road(plan: str) -> None:
+    after = edited(STRAIGHT, plan).design
+    assert mean_grade(after, 20, 110) == pytest.approx(4, abs=0.5)
+    assert mean_grade(after, 190, LENGTH - 5) == pytest.approx(-4, abs=0.5)
+
+
+def test_a_shorter_stretch_wins_over_a_longer_one() -> None:
+    after = edited(STRAIGHT, "start len=60: slope flat; start len=200: slope up =6").design
+    assert abs(mean_grade(after, 0, 35)) < 0.7
+    assert mean_grade(after, 110, 170) == pytest.approx(6, abs=0.5)
+
+
+def test_a_level_model_gets_a_figure_without_a_direction() -> None:
+    after = measured(edited(LISTED, "straight 1: slope =5; straight 3: slope =straight 1").design).straights
+    assert abs(after[0].grade) == pytest.approx(5, abs=0.8)
+    assert abs(after[2].grade) == pytest.approx(5, abs=0.8)
+
+
+@pytest.mark.parametrize(
+    ("plan", "number", "radius"),
+    [
+        ("turn 1: radius +10; turn 2: radius =turn 1", 1, 50),
+        ("turn 1: radius x1.5; turn 2: radius =turn 1", 1, 60),
+        ("turn 3: radius ..60; turn 2: radius =turn 3", 1, 30),
+    ],
+)
+def test_the_new_value_of_a_model_is_computed(plan: str, number: int, radius: float) -> None:
+    before = turns(LISTED)
+    measured_at = {50: before[0].radius + 10, 60: 1.5 * before[0].radius, 30: before[2].radius}
+    assert turns(edited(LISTED, plan).design)[number].radius == pytest.approx(measured_at[radius], rel=0.06)
+
+
+@pytest.mark.parametrize(
+    "plan",
+    [
+        "turn 2: radius =turn 3; turn 3: radius =turn 1",
+        "turn 2: shape hairpin; turn 1: angle =turn 2",
+        "straight 1: length =turn 1; turn 1: radius =25",
+        "straight 1: slope more; straight 3: slope =straight 1",
+    ],
+)
+def test_the_unknown_new_value_of_a_model_is_refused(plan: str) -> None:
+    with pytest.raises(EditError, match="need requests of their own"):
+        edited(LISTED, plan)
+
+
+@pytest.mark.parametrize(
+    ("plan", "complaint"),
+    [
+        ("turn all: radius turn sharpest..", "is so already"),
+        ("straight all: length ..straight longest", "is so already"),
+        ("turn 3: radius turn 3..", "compares a place with itself"),
+        ("turn 1: radius =straight after(start len=50)", "cannot name a place"),
+        ("turn all but(turn after(start len=50)): remove", "cannot name a place"),
+        ("road after(start len=-50): slope up", "is no distance; give metres from 0 on"),
+        ("road half2: mirror", "only the whole road, or turns, can be mirrored"),
+        ("straight 2: slope flat =straight 1", "'=' is not expected"),
+    ],
+)
+def test_what_says_nothing_is_said(plan: str, complaint: str) -> None:
+    with pytest.raises(EditError, match=complaint):
+        edited(LISTED, plan)
+
+
+def test_all_but_the_model_get_its_value() -> None:
+    before, after = turns(LISTED), turns(edited(LISTED, "turn all: radius =turn 1").design)
+    assert after[0].radius == pytest.approx(before[0].radius, rel=0.01)

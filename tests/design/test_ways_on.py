@@ -1,0 +1,57 @@
+"""Where routes leave junctions: exits of roundabouts with a direction, T-junctions at which the road ends."""
+
+import pytest
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.check.junction_measures import measured_junctions
+from roadgpt.design import draft
+from roadgpt.design.route_room import room_for_route
+from roadgpt.errors import BriefError
+from roadgpt.network import build_route
+from roadgpt.road import World
+
+WORLD = World()
+
+
+def measured(plan: str, seed: int):
+    """The first junction of a route, as measured on its geometry."""
+    return measured_junctions(build_route(draft(read_plan(plan), WORLD, seed=seed), WORLD))[0]
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize(
+    ("take", "number", "degrees"),
+    [("right", 1, (-180, -25)), ("straight", 2, (-25, 25)), ("left", 2, (25, 180)), ("left", 3, (25, 180))],
+)
+def test_an_exit_with_a_direction_has_both(
+    take: str, number: int, degrees: tuple[float, float], seed: int
+) -> None:
+    found = measured(f"roundabout {take} exit={number}", seed)
+    assert found.exit == number
+    assert degrees[0] <= found.turn <= degrees[1]
+
+
+def test_the_exit_that_leads_back_is_the_last() -> None:
+    assert measured("roundabout back exit=3", 1).arms == 3
+    with pytest.raises(BriefError, match="the last exit of a roundabout leads back, not exit 2 of 4"):
+        draft(read_plan("roundabout back exit=2 arms=4"), WORLD, seed=1)
+
+
+@pytest.mark.parametrize("take", ["left", "right"])
+def test_the_road_ends_at_a_t_junction_where_one_turns(take: str) -> None:
+    assert all({*measured(f"t_junction {take}", seed).sides} == {"left", "right"} for seed in range(8))
+
+
+def test_a_priority_road_may_go_on_at_a_t_junction() -> None:
+    sides = [measured("t_junction left priority", seed).sides for seed in range(8)]
+    assert any("straight" in each for each in sides)
+
+
+def test_maps_grow_for_the_usual_exit_with_traffic_on_the_left() -> None:
+    asked = "| lanes=2 against=2 motorway len=400 // diverge ramp side={} {}"
+    sizes = [
+        room_for_route(read_plan(asked.format(*each)), WORLD)
+        for each in (("right", ""), ("left", "|| left_hand"))
+    ]
+    assert sizes[0] == sizes[1]
+    assert sizes[0] is not None
