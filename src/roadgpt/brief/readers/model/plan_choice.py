@@ -6,7 +6,7 @@ from typing import TypeVar
 
 from roadgpt.brief.feasible import check
 from roadgpt.brief.model import Brief, Clause, exactly
-from roadgpt.brief.normal import normal, total
+from roadgpt.brief.normal import STRAIGHT, normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
@@ -25,6 +25,8 @@ from roadgpt.errors import BriefError
 Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
+LONGEST_TURN = 1000.0
+"""Length in metres from which no length is that of each of several turns."""
 LIKELY = 2.5
 """Largest difference of score at which a plan is preferred that has as many junctions as the words name."""
 
@@ -74,7 +76,7 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
-    brief = with_words_of_all_turns(_level_at_zero(read_plan(line)), text)
+    brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line))), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_counted_junctions(brief, text)
     brief = _with_listed_hills(with_each_lane(with_counted_map(brief, text)))
@@ -91,6 +93,26 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
+
+
+def _with_length_of_road(brief: Brief) -> Brief:
+    """Returns the Brief with a length of the road instead of several turns of a kilometre or more each.
+
+    "3 turns of 6 km" tells the length of the road, since no turns are so long.
+    """
+    long = [clause for clause in brief.clauses if _is_too_long(clause)]
+    if len(long) != 1 or brief.length is not None or brief.junctions:
+        return brief
+    clauses = tuple(
+        clause.model_copy(update={"length": None}) if clause in long else clause for clause in brief.clauses
+    )
+    return brief.model_copy(update={"clauses": clauses, "length": long[0].length})
+
+
+def _is_too_long(clause: Clause) -> bool:
+    """True for several turns that are each at least a kilometre long."""
+    several = (clause.count.lo or 0) > 1 and clause.kind not in STRAIGHT
+    return several and clause.length is not None and (clause.length.lo or 0.0) >= LONGEST_TURN
 
 
 def _with_listed_hills(brief: Brief) -> Brief:
