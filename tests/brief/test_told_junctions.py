@@ -65,6 +65,11 @@ def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
             "junction // merge ramp",
         ),
         (
+            "insgesamt fünf Knoten, zwei Kreuzungen, zwei Einmündungen und ein Kreisverkehr",
+            "crossroads // crossroads // t_junction // t_junction // t_junction // roundabout",
+            "crossroads // crossroads // t_junction // t_junction // roundabout",
+        ),
+        (
             "four junctions, one of them a fork",
             "y_junction // junction // junction // junction // junction",
             None,

@@ -36,11 +36,19 @@ def grid(**more: Any) -> Route:
     return made(nodes, roads, [7, 1, 2, 5], **more)
 
 
-def village(**more: Any) -> Route:
-    """Crossroads, joined to a fork."""
+def village(*controls: str, **more: Any) -> Route:
+    """Crossroads, joined to a fork; with signs of their own if two are given."""
     nodes = [(200.0, 200.0, "crossroads"), (290.0, 200.0, "y_junction"), (160.0, 200.0, "end")]
     nodes += [(200.0, 160.0, "end"), (200.0, 240.0, "end"), (310.0, 235.0, "end"), (310.0, 165.0, "end")]
-    return made(nodes, [[1, 2], [3, 1], [4, 1], [5, 1], [2, 6], [2, 7]], [3, 1, 2, 6], **more)
+    roads = [[1, 2], [3, 1], [4, 1], [5, 1], [2, 6], [2, 7]]
+    if not controls:
+        return made(nodes, roads, [3, 1, 2, 6], **more)
+    data: dict[str, Any] = {
+        f"node{n}": {"at": [x, y, 0], "kind": kind} for n, (x, y, kind) in enumerate(nodes, 1)
+    }
+    for n, control in enumerate(controls, 1):
+        data[f"node{n}"]["control"] = control
+    return build_map(read_map_design({**data, "roads": roads, "route": [3, 1, 2, 6]})[0], WORLD)
 
 
 def told(asked: str, route: Route) -> list[str]:
@@ -111,6 +119,30 @@ def test_a_grid_that_is_not_as_asked(asked: str, wanted: str) -> None:
 )
 def test_a_village_that_is_as_asked(asked: str) -> None:
     assert told(asked, village()) == []
+
+
+@pytest.mark.parametrize(
+    ("asked", "wanted"),
+    [
+        ("map crossroads lights; y_junction", []),
+        ("map junction lights; junction", []),
+        ("map crossroads lights; y_junction stop", ["asked for stop signs at 1 junctions, has 0"]),
+        (
+            "map y_junction lights; crossroads",
+            ["asked for traffic lights at 1 of the kind Y-junction, has 0"],
+        ),
+        ("map junction stop; junction lights", ["asked for stop signs at 1 junctions, has 0"]),
+    ],
+)
+def test_signs_of_some_junctions_of_a_village(asked: str, wanted: list[str]) -> None:
+    found = told(asked, village("lights", "none"))
+    assert found[: len(wanted)] == wanted
+    assert bool(found) == bool(wanted)
+
+
+def test_lights_at_more_junctions_than_asked() -> None:
+    found = told("map junction lights; junction", village("lights", "lights"))
+    assert found == ["asked for traffic lights at 1 junctions, has 2"]
 
 
 @pytest.mark.parametrize(

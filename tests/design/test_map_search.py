@@ -48,6 +48,15 @@ CASES: dict[str, dict[str, Any]] = {
     },
     "map roundabout x3; t_junction lights": {"roundabouts": 3, "controls": {"lights": 4}},
     "map junction x3": {"junctions": 3},
+    "map junction x2 lights; roundabout; junction x2": {
+        "junctions": 5,
+        "roundabouts": 1,
+        "controls": {"lights": 2},
+    },
+    "map crossroads x2 stop; crossroads; t_junction lights": {
+        "kinds": {"X": 3, "T": 1},
+        "controls": {"stop": 2, "lights": 2},
+    },
     "map t_junction": {"junctions": 1, "kinds": {"T": 1}, "dead_ends": 3},
 }
 

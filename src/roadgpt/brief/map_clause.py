@@ -2,6 +2,7 @@
 
 map columns=3 rows=2 lights        a grid of three by two blocks with traffic lights
 map crossroads x3; roundabout      three crossroads and a roundabout, joined by roads
+map junction x2 lights; junction x3    five junctions, two of them with traffic lights
 map columns=2 rows=2 route=left+straight   a grid, and where the route through it goes at its junctions
 """
 
@@ -28,6 +29,8 @@ class JunctionCount(Frozen):
 
     kind: MapJunctionKind
     count: Amount = ONE
+    control: Control | None = None
+    """The sign or light of these junctions; None if they have that of the map."""
 
 
 class MapClause(Frozen):
@@ -43,7 +46,7 @@ class MapClause(Frozen):
     dead_ends: Amount | None = None
     """The number of dead ends; a road that leads out of the map also counts as a dead end."""
     control: Control | None = None
-    """The sign or light of all junctions."""
+    """The sign or light of all junctions that have none of their own."""
     route: tuple[Way, ...] = Field((), max_length=LONGEST_ROUTE)
     """Where the route goes at the junctions that it passes, in driving order; if empty, it is random."""
 
@@ -52,15 +55,18 @@ class MapClause(Frozen):
         is_grid = self.columns is not None and self.rows is not None
         if is_grid == bool(self.junctions) or (self.columns is None) != (self.rows is None):
             raise ValueError("a map has either columns and rows of blocks, or kinds of junctions")
+        if self.junctions and all(each.control for each in self.junctions):
+            raise ValueError("if every kind of junction has a control, the last one's is that of the map")
         return self
+
+    def control_of(self, junctions: JunctionCount) -> Control | None:
+        """Returns the sign or light that these junctions of the map must have; None if that is open."""
+        return junctions.control or self.control
 
 
 def map_plan(asked: MapClause) -> str:
     """Returns a map as a plan, such as "map columns=3 rows=2"."""
-    kinds = [
-        each.kind if each.count == ONE else f"{each.kind} x{amount_text(each.count)}"
-        for each in asked.junctions
-    ]
+    kinds = [_kind_text(each) for each in sorted(asked.junctions, key=lambda each: each.control is None)]
     words = [
         f"{key}={amount_text(amount)}"
         for key, name in KEYS.items()
@@ -69,6 +75,11 @@ def map_plan(asked: MapClause) -> str:
     words += [asked.control] if asked.control else []
     words += [f"{ROUTE}={'+'.join(asked.route)}"] if asked.route else []
     return " ".join([MAP, *filter(None, ["; ".join(kinds)]), *words])
+
+
+def _kind_text(each: JunctionCount) -> str:
+    count = "" if each.count == ONE else f"x{amount_text(each.count)}"
+    return " ".join(filter(None, [each.kind, count, each.control]))
 
 
 def is_map(line: str) -> bool:
@@ -85,19 +96,24 @@ def read_map(line: str) -> MapClause:
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
-    for word in re.sub(r"[;]", " ", line).split()[1:]:
+    *listed, last = line.split(";")
+    words = [*((word, False) for part in listed for word in part.split()), *((w, True) for w in last.split())]
+    for word, is_last in words[1:]:
         key, equals, value = word.partition("=")
         if equals and key in KEYS:
             found: tuple[str, object] = (KEYS[key], read_amount(value))
         elif key == ROUTE and equals:
             found = (ROUTE, read_ways(value))
+        elif word in CONTROLS and counts and not is_last and counts[-1].control is None:
+            counts[-1] = counts[-1].model_copy(update={"control": word})
+            continue
         elif word in CONTROLS:
             found = ("control", word)
         elif word in get_args(MapJunctionKind):
             counts.append(JunctionCount.model_validate({"kind": word}))
             continue
         elif counts and re.match(r"x[\d.]", word):
-            counts[-1] = JunctionCount(kind=counts[-1].kind, count=read_amount(word[1:]))
+            counts[-1] = counts[-1].model_copy(update={"count": read_amount(word[1:])})
             continue
         else:
             known = ", ".join([*(f"{key}=" for key in (*KEYS, ROUTE)), *CONTROLS, *get_args(MapJunctionKind)])

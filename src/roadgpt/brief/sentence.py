@@ -2,7 +2,7 @@
 
 from roadgpt.brief.junction_sentence import junction_text
 from roadgpt.brief.junctions import CONTROLS, NAMES
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
@@ -48,15 +48,23 @@ def _route_sentence(brief: Brief) -> str:
 def _map_sentence(asked: MapClause, brief: Brief) -> str:
     """Returns a sentence about a map of roads."""
     if asked.junctions:
-        kinds = [_counted(each.count, NAMES[each.kind][0]) for each in asked.junctions]
-        text = f"A map with {' and '.join(kinds)}"
+        text = f"A map with {' and '.join(_map_kind(asked, each) for each in asked.junctions)}"
     else:
         text = f"A grid of {asked.columns} by {asked.rows} blocks"
     text += f" of {asked.length} metres" if asked.length else ""
-    text += f" {CONTROLS[asked.control]}" if asked.control else ""
+    is_said = any(each.control for each in asked.junctions)
+    text += f" {CONTROLS[asked.control]}" if asked.control and not is_said else ""
     text += f"; {_counted(asked.dead_ends, 'dead end')}" if asked.dead_ends else ""
     text += f"; the route goes {', '.join(asked.route)}" if asked.route else ""
     return "; ".join([text, *_wishes(brief)]) + "."
+
+
+def _map_kind(asked: MapClause, each: JunctionCount) -> str:
+    """Returns a number of junctions of a map, with their signs if the kinds have signs of their own."""
+    is_said = any(one.control for one in asked.junctions)
+    control = asked.control_of(each) if is_said else None
+    text = _counted(each.count, NAMES[each.kind][0])
+    return f"{text} {CONTROLS[control]}" if control else text
 
 
 def _stretch(brief: Brief) -> str:

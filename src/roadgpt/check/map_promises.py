@@ -26,6 +26,8 @@ SAID: dict[Control, str] = {
     "lights": "traffic lights",
     "none": "no signs",
 }
+SAID_OF_ALL = ("lights", "stop")
+"""Signs that no junction has of which they were not asked; others are usual at roundabouts."""
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
@@ -33,6 +35,8 @@ def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
     """Returns one Finding for each requirement that the map of a route does not meet."""
     found = measured_map(route.network)
     out = [Finding(RULE, text) for text in (*_complaints(found, asked), *_route(route, asked))]
+    if any(each.control for each in asked.junctions):
+        return (*out, *(Finding(RULE, text) for text in _controls(found, asked)))
     for node in found.nodes:
         if asked.control is not None and not _is_controlled(node, asked.control):
             x, y = node.place
@@ -90,6 +94,24 @@ def _kinds(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
         allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts) + free)
         if found.number(kind) not in allowed:
             yield f"asked for {allowed} of the kind {NAMES[kind][0]}, has {found.number(kind)}"
+
+
+def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with the signs of a map some of whose kinds of junctions have their own."""
+    wanted = [asked.control_of(each) for each in asked.junctions]
+    for control in dict.fromkeys(each for each in wanted if each is not None):
+        counts = [span(each.count) for each in asked.junctions if asked.control_of(each) == control]
+        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
+        number = sum(_is_controlled(node, control) for node in found.nodes)
+        if number < allowed.lo or (control in SAID_OF_ALL and number > allowed.hi):
+            yield f"asked for {SAID[control]} at {allowed} junctions, has {number}"
+    for each in asked.junctions:
+        held = asked.control_of(each)
+        if held is not None and each.kind != "junction":
+            number = sum(each.kind in node.kinds and _is_controlled(node, held) for node in found.nodes)
+            if number < span(each.count).lo:
+                kind = NAMES[each.kind][0]
+                yield f"asked for {SAID[held]} at {each.count} of the kind {kind}, has {number}"
 
 
 def _allowed(length: Amount) -> Range:

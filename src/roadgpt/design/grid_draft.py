@@ -53,7 +53,8 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         for j, y in enumerate(ys):
             z = complex(x, y) + complex(*rng.uniform(-moved, moved, 2))
             joined = [numbers[cell] for cell in ((i - 1, j), (i, j - 1)) if cell in numbers]
-            numbers[i, j] = draft.add(DraftNode(z, "end", drawn_kerb(rng, haste)), *joined)
+            node = DraftNode(z, "end", drawn_kerb(rng, haste), control=asked.control or "none")
+            numbers[i, j] = draft.add(node, *joined)
     for cell, side in entrances:
         way = cmath.rect(1.0, cmath.phase(complex(*side)) + rng.uniform(-LEANING, LEANING) * pi / 180)
         node = draft.nodes[numbers[cell]]

@@ -8,7 +8,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from roadgpt.brief.junctions import PlainKind
+from roadgpt.brief.junctions import Control, PlainKind
 from roadgpt.network.map_design import NodeKind
 from roadgpt.network.ring import ring_width
 
@@ -31,6 +31,8 @@ class DraftNode:
     """Radius in metres of the kerbs between neighbouring roads at a junction."""
     radius: float | None = None
     """Radius in metres of a bend, or of the central island of a roundabout; None at any other node."""
+    control: Control = "none"
+    """The signs or lights of a junction."""
 
     @property
     def is_junction(self) -> bool:

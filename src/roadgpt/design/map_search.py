@@ -12,7 +12,6 @@ from math import inf, sqrt
 import numpy as np
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import Control
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
@@ -109,11 +108,8 @@ class MapSearch:
             self.failed[f"{which} leads through it"] += 1
             return None
         heights = self._heights(draft, haste)
-        control: Control = self.asked.control or "none"
         return MapDesign(
-            nodes=tuple(
-                _node(node, height, control) for node, height in zip(draft.nodes, heights, strict=True)
-            ),
+            nodes=tuple(_node(node, height) for node, height in zip(draft.nodes, heights, strict=True)),
             roads=tuple((one + 1, other + 1) for one, other in draft.roads),
             route=tuple(number + 1 for number in route),
         )
@@ -164,11 +160,11 @@ class MapSearch:
         return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
 
 
-def _node(node: DraftNode, height: float, control: Control) -> MapNode:
+def _node(node: DraftNode, height: float) -> MapNode:
     at = (node.z.real, node.z.imag, height)
     if not node.is_junction:
         return MapNode(at=at, kind=node.kind, radius=node.radius)
-    return MapNode(at=at, kind=node.kind, radius=node.radius, control=control, kerb=node.kerb)
+    return MapNode(at=at, kind=node.kind, radius=node.radius, control=node.control, kerb=node.kerb)
 
 
 def map_fits(brief: Brief, world: World) -> bool:

@@ -12,8 +12,8 @@ from math import pi, radians
 
 from roadgpt.brief.amount import span
 from roadgpt.brief.junction_check import MOST_OF_KIND
-from roadgpt.brief.junctions import JunctionClause, MapJunctionKind
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.design.clearance import Disc, Line, is_clear
 from roadgpt.design.grid_draft import drawn_count
 from roadgpt.design.junction_draft import drawn_junction
@@ -61,8 +61,8 @@ def draft_village(
         rng: random number generator.
         haste: from 0 to 1; the larger it is, the smaller the map.
     """
-    kinds = [each.kind for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
-    junctions = next((drawn for _ in range(DRAWN) if (drawn := _junctions(kinds, asked, rng, haste))), None)
+    counts = [each for each in asked.junctions for _ in range(drawn_count(each.count, rng, MOST_OF_KIND))]
+    junctions = next((drawn for _ in range(DRAWN) if (drawn := _junctions(counts, asked, rng, haste))), None)
     if junctions is None:
         return None
     village = _Village(asked, world, least_radius, rng, haste)
@@ -78,19 +78,20 @@ def draft_village(
 
 
 def _junctions(
-    kinds: Sequence[MapJunctionKind], asked: MapClause, rng: Rng, haste: float
+    kinds: Sequence[JunctionCount], asked: MapClause, rng: Rng, haste: float
 ) -> list[JunctionDesign] | None:
-    """Returns junctions of the given kinds in random order.
+    """Returns one junction for each of ``kinds``, in random order.
 
     Returns None if one of them was not found. Also returns None if the required number of dead ends is
     impossible: there are too few arms, or joining arms in pairs always leaves another number.
     """
     found = []
     for n in rng.permutation(len(kinds)):
-        junction = drawn_junction(JunctionClause(kind=kinds[n]), 1, rng, haste)
+        junction = drawn_junction(JunctionClause(kind=kinds[n].kind), 1, rng, haste)
         if junction is None:
             return None
-        found.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste)}))
+        control = asked.control_of(kinds[n]) or "none"
+        found.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste), "control": control}))
     free = sum(len(each.all_arms) + 1 for each in found) - 2 * (len(found) - 1)
     wanted = span(asked.dead_ends)
     return found if any(number in wanted for number in range(free, -1, -2)) else None
@@ -175,7 +176,8 @@ class _Village:
             joined_to: the number of this earlier node; left out for the first junction.
         """
         radius = junction.radius if junction.kind == "roundabout" else None
-        number = self.draft.add(DraftNode(z, junction.kind, junction.kerb, radius), *joined_to)
+        node = DraftNode(z, junction.kind, junction.kerb, radius, junction.control)
+        number = self.draft.add(node, *joined_to)
         reaches = self._reaches(junction)
         self.discs.append(Disc(z, max(reaches), number))
         for n, way in enumerate(_ways(junction, turn)):

@@ -3,10 +3,10 @@ ends or blocks the map has.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from roadgpt.brief.amount import Amount, exactly
-from roadgpt.brief.junctions import ARMS
+from roadgpt.brief.junctions import ARMS, MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import says
@@ -40,22 +40,27 @@ ACROSS = re.compile(
     r"deep|high|north|south|each|long|len\w*|lang|x)\b"
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
+ANY_KIND = r"junctions|intersections|knoten(?:punkte?n?)?|intersecciones|intersezioni"
+CROSSINGS = rf"{ANY_KIND}|kreuzungen|carrefours|croisements|cruces|incroci"
+IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
 ALL_KINDS = re.compile(
-    r"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:junctions|intersections|knoten(?:punkten?)?|"
-    r"intersecciones|intersezioni)\b"
+    rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|(?:{CROSSINGS}) (?:{IN_ALL})\b)"
 )
 """A number before a word for junctions of any kind."""
-NUMBER = r"\b(\d+) "
+NUMBER = (
+    r"\b(\d+) (?:(?:of (?:them|which|these)|davon|dont|de (?:ellos|ellas|los cuales|las cuales)|"
+    r"d(?:ei|elle) quali|di quest[ie])(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
+)
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
 )
 """Words with which the number before a noun may not be the number of all."""
-PLURALS = {
+KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
     "roundabout": re.compile(
         NUMBER + r"(?:small |large |big |mini - ?)?(?:roundabouts|kreisverkehre|kreisel|rotatorie|glorietas|"
         r"ronds - points|giratoires)\b"
     ),
-    "crossroads": re.compile(NUMBER + r"(?:cross ?- ?roads|kreuzungen)\b"),
+    "crossroads": re.compile(NUMBER + r"(?:cross ?-? ?roads|kreuzungen)\b"),
     "t_junction": re.compile(NUMBER + r"(?:t - junctions|einmundungen)\b"),
 }
 """A number before the plural noun of a kind of junction."""
@@ -105,7 +110,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
     update |= _other_junctions(asked, said)
     if asked.dead_ends is None or asked.dead_ends.exact:
-        dead_ends = _number(found) if found else _around_blocks(asked, said)
+        dead_ends = one_number(found) if found else _around_blocks(asked, said)
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
         if dead_ends is not None and not is_vague:
             update["dead_ends"] = exactly(dead_ends)
@@ -118,7 +123,7 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
     Each of them leads off at a T-junction, and the main street itself has two ends. Returns None for any
     other map.
     """
-    number = _number(dead_ends)
+    number = one_number(dead_ends)
     is_more = BLOCKS.search(said) or BY.search(said) or SIDE_STREETS.search(said) or MORE_KINDS.search(said)
     if not number or is_more or not MAIN_STREET.search(said):
         return None
@@ -132,7 +137,9 @@ def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
         return asked.junctions
     out = []
     for each in asked.junctions:
-        number = _number(PLURALS[each.kind].findall(said)) if each.kind in PLURALS else None
+        number = (
+            one_number(KINDS_IN_PLURAL[each.kind].findall(said)) if each.kind in KINDS_IN_PLURAL else None
+        )
         is_clear = number is not None and each.count.exact
         out.append(each.model_copy(update={"count": exactly(number)}) if is_clear and number else each)
     return tuple(out)
@@ -142,16 +149,37 @@ def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:
     """Returns the junctions of a map with those that the words count and no kind accounts for: of "14
     junctions, two of them roundabouts" twelve are of any kind.
     """
-    number = _number(ALL_KINDS.findall(said))
+    number = one_number(ALL_KINDS.findall(said))
     kinds = [each.kind for each in asked.junctions]
     counts = [each.count for each in asked.junctions]
-    if not number or not kinds or "junction" in kinds or TAKEN_BACK.search(said):
-        return {}
-    if not all(count.exact for count in counts):
+    if not number or not kinds or TAKEN_BACK.search(said) or not all(count.exact for count in counts):
         return {}
     others = number - int(sum(count.lo or 0 for count in counts))
+    if others < 0:
+        return _named_and_others(asked, number, said)
+    if "junction" in kinds:
+        return {}
     more = JunctionCount(kind="junction", count=exactly(others))
     return {"junctions": (*asked.junctions, more)} if others > 0 else {}
+
+
+def _named_and_others(asked: MapClause, number: int, said: str) -> dict[str, object]:
+    """Returns the junctions of the kinds that the words count, and junctions of any kind up to ``number``.
+
+    Of "six crossings in all, two of them roundabouts", the network may also count crossroads.
+    """
+    named = tuple(each for each in asked.junctions if is_counted(each, said))
+    others = number - int(sum(each.count.lo or 0 for each in named))
+    unnamed = {each.kind for each in asked.junctions if each not in named}
+    if not named or others <= 0 or unnamed - {"crossroads", "junction"}:
+        return {}
+    return {"junctions": (*named, JunctionCount(kind="junction", count=exactly(others)))}
+
+
+def is_counted(junctions: JunctionCount, said: str) -> bool:
+    """Returns whether the words have this number of junctions before the plural of their kind."""
+    noun, count = KINDS_IN_PLURAL.get(junctions.kind), junctions.count
+    return noun is not None and count.exact and f"{count.lo:g}" in noun.findall(said)
 
 
 def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
@@ -160,7 +188,7 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
     """
     found = BY.findall(said)
     is_exact = all(each is not None and each.exact for each in (asked.columns, asked.rows))
-    number = None if ACROSS.search(said) else _number(BLOCKS.findall(said))
+    number = None if ACROSS.search(said) else one_number(BLOCKS.findall(said))
     if len(found) == 1:
         columns, rows = map(int, found[0])
     elif number and not found and (number == 1 or IN_A_ROW.search(said)):
@@ -175,7 +203,7 @@ def _around_blocks(asked: MapClause, said: str) -> int | None:
     """Returns how many dead ends a map of junctions has, from its number of blocks; None if this is open."""
     found = BLOCKS.findall(said)
     is_tree = not found and SIDE_STREETS.search(said) and TREE.search(said) and not NOT_A_TREE.search(said)
-    blocks = 0 if is_tree else _number(found)
+    blocks = 0 if is_tree else one_number(found)
     exact = [int(each.count.lo or 0) for each in asked.junctions if each.count.exact]
     arms = [arms for each in asked.junctions if (arms := _arms(each.kind)) is not None]
     if blocks is None or not exact or not len(exact) == len(arms) == len(asked.junctions):
@@ -192,7 +220,7 @@ def _arms(kind: str) -> int | None:
     return int(least) if least == most else None
 
 
-def _number(found: Sequence[str]) -> int | None:
+def one_number(found: Sequence[str]) -> int | None:
     """Returns the number that was found, 0 for "no"; None if no number or several numbers were found."""
     if len(found) != 1:
         return None

@@ -4,11 +4,11 @@ network left it out.
 
 import re
 
-from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause, Way
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.own_lane import ONE_WAY
 
 ONE_WAY_ONLY = re.compile(
     r"\bone[- ]?way (?:streets|roads) (?:only|throughout|everywhere)\b|"
@@ -25,8 +25,6 @@ STOP_SIGNS = re.compile(
     r"stop signs?|stopp?(?:schild|tafel|zeichen)|panneaux? (?:de )?stop|senal(?:es)? de (?:stop|alto)|"
     r"(?:cartell[oi]|segnal[ei]) di stop"
 )
-ONE_WAY = exactly(0)
-"""The number of oncoming lanes of a one-way road."""
 FROM: dict[Way, Way] = {"left": "right", "right": "left", "straight": "left"}
 """The side from which traffic comes on a one-way road that the route crosses or turns into, by ``take``."""
 

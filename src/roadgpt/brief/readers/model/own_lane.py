@@ -3,6 +3,7 @@
 import re
 
 from roadgpt.brief.amount import exactly
+from roadgpt.brief.junctions import LANE_KINDS
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -14,6 +15,8 @@ BEGINS = re.compile(
     r"\b(?:empez|empiez|sal)\w* (?:en|por) el carril (?:de la )?(izquierd[ao]|derech[ao])\b|"
     r"\b(?:cominc|iniz|part)\w* (?:nella|sulla|in) corsia (?:di )?(sinistra|destra)\b"
 )
+ONE_WAY = exactly(0)
+"""The number of oncoming lanes of a one-way road."""
 LEFT = ("left", "linken", "gauche", "izquierdo", "izquierda", "sinistra")
 
 
@@ -37,11 +40,14 @@ def without_own_lane(brief: Brief, words: str) -> Brief:
 
 
 def with_each_lane(brief: Brief) -> Brief:
-    """Returns a route on which one lane ends or begins at a time.
+    """Returns a route on which one lane ends or begins at a time, and one-way roads stay one-way there.
 
     A place where two lanes end or begin is split into two places, with a road between them.
     """
     junctions, roads = list(brief.junctions), list(brief.stretches)
+    for n, junction in enumerate(junctions):
+        if junction.kind in LANE_KINDS and roads[n].against == ONE_WAY and roads[n + 1].against != ONE_WAY:
+            roads[n + 1] = roads[n + 1].model_copy(update={"against": None})
     for n in reversed(range(len(junctions))):
         before, behind = roads[n].lanes, roads[n + 1].lanes
         if before is None or behind is None or not (before.exact and behind.exact):

@@ -11,7 +11,9 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
+from roadgpt.brief.readers.model.exit_words import with_stay_on_motorway
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.map_signs import with_counted_lights
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
@@ -79,8 +81,9 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line))), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_counted_junctions(brief, text)
-    brief = _with_listed_hills(with_each_lane(with_counted_map(brief, text)))
-    return with_other_roads(with_whole_drive(without_own_lane(brief, words), words), words)
+    brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
+    brief = with_stay_on_motorway(without_own_lane(brief, words), words)
+    return with_other_roads(with_whole_drive(brief, words), words)
 
 
 def _level_at_zero(brief: Brief) -> Brief:

@@ -1,11 +1,12 @@
 """Counts the junctions that a description names, to tell a junction told twice from two junctions."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
+from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL
 from roadgpt.brief.readers.model.slots import SlottedText
 
 NOUNS: Mapping[JunctionKind, re.Pattern[str]] = {
@@ -36,10 +37,11 @@ MORE = re.compile(
 )
 """Words that may stand for a further junction that has no noun of its own."""
 TOTAL = re.compile(
-    rf"\b(\d+) (?:\w+ )?{PLURAL} (?:in all|in total|all told|altogether|overall|insgesamt|en tout|au total|"
-    rf"en total|in tutto|in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
-    rf"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
-    rf"\binsgesamt (\d+) (?:\w+ )?{PLURAL}\b"
+    rf"\b(\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND}) "
+    r"(?:in all|in total|all told|altogether|overall|insgesamt|en tout|au total|en total|in tutto|"
+    r"in totale|in (?:any|whatever) order|in beliebiger reihenfolge|"
+    r"dans n ' importe quel ordre|en cualquier orden|in qualsiasi ordine)\b|"
+    rf"\binsgesamt (\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND})\b"
 )
 """The number of all junctions of a route."""
 
@@ -83,14 +85,8 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     found = TOTAL.search(text.text)
     number = int(next(filter(None, found.groups()))) if found else 0
     counted = [n for n, each in enumerate(brief.junctions) if each.kind not in (*RAMPS, *LANE_KINDS)]
-    bare = [
-        n
-        for n in counted
-        if brief.junctions[n].kind == "junction"
-        and brief.junctions[n].take is None
-        and brief.junctions[n].control is None
-        and brief.stretches[n + 1].is_open
-    ]
+    bare = [n for n in counted if _is_bare(brief, n)]
+    bare = [n for n in bare if brief.junctions[n].kind == "junction"] or _too_many(brief, bare, text)
     surplus = len(counted) - number
     if number and 0 < -surplus < number and len(counted) == len(brief.junctions):
         more = (JunctionClause(kind="junction"),) * -surplus
@@ -102,3 +98,21 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     junctions = tuple(each for n, each in enumerate(brief.junctions) if n not in gone)
     roads = tuple(each for n, each in enumerate(brief.stretches) if n - 1 not in gone)
     return brief.model_copy(update={"junctions": junctions, "stretches": roads})
+
+
+def _is_bare(brief: Brief, number: int) -> bool:
+    """Returns whether nothing is asked of a junction but its kind, and nothing of the road behind it."""
+    junction = brief.junctions[number]
+    return junction == JunctionClause(kind=junction.kind) and brief.stretches[number + 1].is_open
+
+
+def _too_many(brief: Brief, bare: Sequence[int], text: SlottedText) -> list[int]:
+    """Returns the junctions without further wishes of a kind of which the words count fewer."""
+    out = []
+    for kind, noun in KINDS_IN_PLURAL.items():
+        said = noun.findall(text.text)
+        number = int(said[0]) if len(said) == 1 else 0
+        its = [n for n in bare if brief.junctions[n].kind == kind]
+        if 0 < number < sum(each.kind == kind for each in brief.junctions):
+            out += its[number:]
+    return out

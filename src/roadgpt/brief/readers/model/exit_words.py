@@ -1,0 +1,46 @@
+"""Corrects what a route does at an exit of a motorway if the words say that it stays on the motorway."""
+
+import re
+
+from roadgpt.brief.junctions import JunctionClause
+from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.numerals import plain
+
+ROAD = (
+    r"(?:motorway|freeway|highway|interstate|main (?:road|carriageway|line)|mainline|autobahn|hauptfahrbahn|"
+    r"autoroute|voie principale|autopista|autovia|calzada principal|autostrada|carreggiata principale)"
+)
+STAYS = re.compile(
+    rf"\b(?:stay|remain|keep|carry|continu)\w* (?:\w+ ){{0,3}}?(?:on|along) (?:the |my )?{ROAD}\b|"
+    rf"\bbleib\w* (?:\w+ ){{0,5}}?auf (?:der |meiner )?{ROAD}\b|\bauf der {ROAD} (?:zu )?bleib\w*|"
+    rf"\b(?:rest|continu|poursui)\w* (?:\w+ ){{0,2}}?sur (?:l ?' ?|la |ma )?{ROAD}\b|"
+    r"\b(?:sigo|sigue|seguir|permane\w*|quedo|queda\w*|continu\w*) "
+    rf"(?:\w+ ){{0,2}}?(?:en|por) (?:la |mi )?{ROAD}\b|"
+    rf"\b(?:rest|riman|rimang|prosegu|continu)\w* (?:\w+ ){{0,2}}?(?:in |sull ?' ?|sulla |nella ){ROAD}\b"
+)
+LEAVES = re.compile(
+    r"\b(?:leav\w*|off|come off|get off|take|taking|turn|exits? (?:there|again|right|left)|verlass\w*|"
+    r"(?:fahr\w*|geh\w*) [^.;]*\b(?:ab|raus|runter)|abfahren|ausfahren|herunter|nehm\w*|nimm\w*|genommen|"
+    r"(?:res)?sort(?:ir|ons|ez)|(?:res)?sors|on sort|prend\w*|prenons|quitt\w*|salgo|salir|salimos|"
+    r"abandon\w*|tom[oae]\w*|esco|uscire|usciamo|si esce|lasci\w*|not?|nicht|pas)\b"
+)
+
+
+def with_stay_on_motorway(brief: Brief, words: str) -> Brief:
+    """Returns the Brief of a route that passes its only exit, if the words say that it stays on the motorway.
+
+    The Brief is returned unchanged if a word may say that the route leaves the motorway, or stays on it
+    somewhere else.
+    """
+    ramps = [n for n, each in enumerate(brief.junctions) if each.kind == "diverge"]
+    said = plain(words)
+    if len(ramps) != 1 or _is_passed(brief.junctions) or not STAYS.search(said) or LEAVES.search(said):
+        return brief
+    at = ramps[0]
+    passed = brief.junctions[at].model_copy(update={"take": "main"})
+    return brief.model_copy(update={"junctions": (*brief.junctions[:at], passed, *brief.junctions[at + 1 :])})
+
+
+def _is_passed(junctions: tuple[JunctionClause, ...]) -> bool:
+    """Returns whether the route stays on the road at some ramp."""
+    return any(each.take == "main" for each in junctions)
