@@ -1,4 +1,4 @@
-"""Words that count the junctions of a map that have lights, and words that keep a route on a motorway."""
+"""Lights that words count on a map, and words for ramps: staying on the motorway, lengths of their lanes."""
 
 import pytest
 
@@ -7,6 +7,7 @@ from roadgpt.brief.readers.model.exit_words import with_stay_on_motorway
 from roadgpt.brief.readers.model.map_signs import with_counted_lights
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.own_lane import with_each_lane
+from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.sentence import sentence
 from roadgpt.errors import BriefError
@@ -116,6 +117,31 @@ def test_a_kind_has_one_sign() -> None:
 )
 def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right: str) -> None:
     assert plan(with_stay_on_motorway(read_plan(written), words)) == right
+
+
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        (
+            "an 80 m deceleration lane and a 30 m taper before it",
+            "| len=30 // diverge ramp len=80",
+            "diverge ramp len=80 taper=30",
+        ),
+        (
+            "Einfädelspur von 120 m, dann 400 m Autobahn",
+            "merge ramp // | len=400 motorway",
+            "merge ramp len=120 // | len=400 motorway",
+        ),
+        ("carril de aceleración: 90 m", "merge ramp // | len=90", "merge ramp len=90"),
+        ("a lane ends with a taper of 60 m", "merge main // lane_drop len=60", None),
+        ("a deceleration lane of 80 m, no, of 90 m", "diverge ramp len=90", None),
+        ("two acceleration lanes of 80 m", "merge ramp len=80 // merge ramp len=80", None),
+        ("80 m before the exit", "| len=80 // diverge ramp", None),
+    ],
+)
+def test_lengths_of_lanes_and_tapers_belong_to_the_ramp(words: str, written: str, right: str | None) -> None:
+    found = with_ramp_lengths(read_plan(written), slotted(words))
+    assert found == read_plan(right or written)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 from roadgpt.geometry import CubicProfile, GradeProfile, Piece, PieceCurve
 from roadgpt.network.network import Continuation, Junction, Network, NetworkRoad, RoadEnd, Roundabout
@@ -132,11 +132,15 @@ def one_way(
             left, at the start and at the end of the road.
         between: The marking between two lanes. The outer edges have no marking.
     """
+    return _one_way(tuple(_changing(each, length) for each in widths), _changing(offset, length), between)
+
+
+@lru_cache(maxsize=256)
+def _one_way(widths: tuple[Width, ...], offset: Width, between: Marking) -> Profile:
+    """Returns one Profile for all connecting roads that have the same lanes, since a Profile takes long."""
     marks: list[Marking] = [*[between] * (len(widths) - 1), "none"]
-    lanes = tuple(
-        Lane("driving", _changing(each, length), mark) for each, mark in zip(widths, marks, strict=True)
-    )
-    return Profile((), lanes, 0, "none", offset=_changing(offset, length))
+    lanes = tuple(Lane("driving", width, mark) for width, mark in zip(widths, marks, strict=True))
+    return Profile((), lanes, 0, "none", offset=offset)
 
 
 def _changing(change: Change, length: float) -> Width:

@@ -1,0 +1,72 @@
+"""Corrects the lengths of the lane and the taper at a ramp where the words say which number is which.
+
+The network often gives such a number to the road beside the ramp: of "a deceleration lane of 80 m with a
+taper of 30 m" it wrote a road of 30 m before the exit.
+"""
+
+import re
+
+from roadgpt.brief.amount import Amount, exactly
+from roadgpt.brief.junctions import RAMPS
+from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.map_words import TAKEN_BACK
+from roadgpt.brief.readers.model.slots import SlottedText
+
+SLOT = r"\[unused(\d+)\] metres"
+LANE = (
+    r"(?:(?:acceleration|deceleration|accel|decel|merging|merge|speed - change) lanes?|"
+    r"(?:einfadel|ausfadel|beschleunigungs|verzogerungs)(?:ungs)?(?:spur|streifen)|"
+    r"voie d ' (?:insertion|acceleration)|voie de deceleration|"
+    r"carril(?:es)? de (?:aceleracion|deceleracion|desaceleracion|incorporacion)|"
+    r"corsia di (?:accelerazione|decelerazione|immissione))"
+)
+TAPER = r"(?:tapers?|verziehung|biseau|cuna|rastremazione|raccordo)"
+LINK = (
+    r"(?: (?:of|is|lasts|measures|von|ist|mit|de|di|da|est|mesure|mide|es|misura|e|long|lunga?|longue|larga?|"
+    r"lang|:|,))"
+)
+OF = r"(?: (?:of|de|di|a|the|long|langer?|lange[nr]?|d '|für|fur))"
+
+
+def _places(noun: str) -> re.Pattern[str]:
+    """Returns a pattern for a length before or behind a noun."""
+    return re.compile(rf"{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{LINK}{{0,3}} {SLOT}")
+
+
+LANES, TAPERS = _places(LANE), _places(TAPER)
+ANY_LANE, ANY_TAPER = re.compile(rf"\b{LANE}\b"), re.compile(rf"\b{TAPER}\b")
+
+
+def with_ramp_lengths(brief: Brief, text: SlottedText) -> Brief:
+    """Returns the Brief of a route with the lengths that the words give to its only ramp.
+
+    The Brief is returned unchanged if the words or the plan have several ramps, if a lane ends or begins
+    elsewhere, which has a taper, too, or if a number may belong to several things. A road beside the ramp
+    that has the number loses it.
+    """
+    ramps = [n for n, each in enumerate(brief.junctions) if each.kind in RAMPS]
+    if len(ramps) != 1 or any(each.kind in ("lane_drop", "lane_gain") for each in brief.junctions):
+        return brief
+    at = ramps[0]
+    ramp = brief.junctions[at]
+    found = {"length": _told(LANES, ANY_LANE, text), "taper": _told(TAPERS, ANY_TAPER, text)}
+    update = {name: told for name, told in found.items() if told and getattr(ramp, name) != told}
+    if not update or found["length"] == found["taper"] or TAKEN_BACK.search(text.text):
+        return brief
+    roads = list(brief.stretches)
+    for n in (at, at + 1):
+        if roads[n].length in update.values():
+            roads[n] = roads[n].model_copy(update={"length": None})
+    junctions = list(brief.junctions)
+    junctions[at] = ramp.model_copy(update=update)
+    return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
+
+
+def _told(pattern: re.Pattern[str], noun: re.Pattern[str], text: SlottedText) -> Amount | None:
+    """Returns the length beside the only noun; None if there is none, or several."""
+    said = text.text
+    found = [int(one or other) - 1 for one, other in pattern.findall(said)]
+    if len(noun.findall(said)) != 1 or len(found) != 1 or found[0] >= len(text.slots):
+        return None
+    slot = text.slots[found[0]]
+    return exactly(slot.value) if slot.unit == "metres" else None
