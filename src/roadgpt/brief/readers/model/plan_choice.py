@@ -4,7 +4,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TypeVar
 
+from roadgpt.brief.amount import meets
 from roadgpt.brief.feasible import check
+from roadgpt.brief.junctions import BENDS
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.brief.normal import STRAIGHT, normal, total
 from roadgpt.brief.plan import read_plan
@@ -23,6 +25,7 @@ from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import has_told_kinds, most_of_kinds, with_told_total
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
+from roadgpt.brief.words import Range
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
@@ -83,6 +86,7 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
+    brief = _with_turns_by_degrees(brief)
     brief = with_stay_on_motorway(without_own_lane(brief, words), words)
     return with_other_roads(with_whole_drive(brief, words), words)
 
@@ -97,6 +101,17 @@ def _level_at_zero(brief: Brief) -> Brief:
 def _at_zero(said: Sloped) -> Sloped:
     is_level = said.slope is not None and said.incline == exactly(0)
     return said.model_copy(update={"slope": "flat", "incline": None}) if is_level else said
+
+
+def _with_turns_by_degrees(brief: Brief) -> Brief:
+    """Returns a route that goes left or right, not sharply or slightly, where the degrees say otherwise."""
+    junctions = tuple(
+        each.model_copy(update={"take": (each.take or "").rpartition("_")[2]})
+        if not meets(each.degrees, BENDS.get((each.take or "").partition("_")[0], Range()))
+        else each
+        for each in brief.junctions
+    )
+    return brief.model_copy(update={"junctions": junctions})
 
 
 def _with_length_of_road(brief: Brief) -> Brief:
