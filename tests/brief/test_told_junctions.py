@@ -3,6 +3,7 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.told_junctions import (
     has_told_kinds,
@@ -80,6 +81,29 @@ def test_a_total_adds_or_takes_away_only_junctions_of_no_kind(
     words: str, line: str, wanted: str | None
 ) -> None:
     assert plan(with_told_total(read_plan(line), slotted(words))) == (wanted or line)
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "wanted"),
+    [
+        (
+            "Turn left at the three-way junction, then right at the crossroads",
+            "crossroads left // crossroads right",
+            "junction left arms=3 // crossroads right",
+        ),
+        (
+            "a roundabout, then right at an intersection with five arms",
+            "roundabout // crossroads right",
+            "roundabout // star right arms=5",
+        ),
+        ("un cruce de cuatro brazos a la izquierda", "crossroads left", None),
+        ("a three-way junction, then again one", "crossroads // crossroads", None),
+        ("a three-way junction where I turn left", "t_junction left", None),
+        ("a roundabout with five arms", "roundabout arms=5", None),
+    ],
+)
+def test_the_arms_that_are_told_decide_the_kind(words: str, line: str, wanted: str | None) -> None:
+    assert read_plan(plan(with_told_arms(read_plan(line), slotted(words)))) == read_plan(wanted or line)
 
 
 @pytest.mark.parametrize(

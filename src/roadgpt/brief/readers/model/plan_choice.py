@@ -12,6 +12,7 @@ from roadgpt.brief.normal import STRAIGHT, normal, total
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
+from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.exit_words import with_stay_on_motorway
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
@@ -86,7 +87,7 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
-    brief = _with_turns_by_degrees(brief)
+    brief = _with_turns_by_degrees(with_told_arms(brief, text))
     brief = with_stay_on_motorway(without_own_lane(brief, words), words)
     return with_other_roads(with_whole_drive(brief, words), words)
 
