@@ -80,6 +80,11 @@ def test_other_words_change_nothing(words: str, written: str) -> None:
     assert corrected(words, written) == written
 
 
+def test_turns_of_so_much_each_stay_as_they_are() -> None:
+    words = "three curves of 1.5 km each"
+    assert plan(brief_of("turn x3 len=1500", slotted(words), words)) == "turn x3 len=1500"
+
+
 @pytest.mark.parametrize(
     ("written", "right"),
     [

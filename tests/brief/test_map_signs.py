@@ -52,6 +52,41 @@ def corrected(words: str, written: str) -> str:
             "map crossroads x2 lights; crossroads x3",
         ),
         (
+            "six crossroads of which two have lights",
+            "map crossroads x6 lights",
+            "map crossroads x2 lights; crossroads x4",
+        ),
+        (
+            "two roundabouts plus three crossroads with lights",
+            "map roundabout x2; crossroads x3 lights",
+            "map crossroads x3 lights; roundabout x2",
+        ),
+        (
+            "tres cruces con semáforo y dos rotondas",
+            "map crossroads x3; roundabout x2 lights",
+            "map crossroads x3 lights; roundabout x2",
+        ),
+        (
+            "three forks with lights and two stars",
+            "map y_junction x3; star x2 lights",
+            "map y_junction x3 lights; star x2",
+        ),
+        (
+            "four crossroads with lights at three of them",
+            "map crossroads x4 lights",
+            "map crossroads x3 lights; crossroads",
+        ),
+        (
+            "five crossroads, only one has lights",
+            "map crossroads x5 lights",
+            "map crossroads lights; crossroads x4",
+        ),
+        (
+            "eight crossings in all, two of them roundabouts",
+            "map crossroads x8; roundabout x2",
+            "map roundabout x2; junction x6",
+        ),
+        (
             "four crossroads, lights at two of them",
             "map crossroads x4 lights",
             "map crossroads x2 lights; crossroads x2",
@@ -75,7 +110,21 @@ def test_lights_are_where_the_words_count_them(words: str, written: str, right: 
         ("four crossroads with lights, no, two with lights", "map crossroads x4 lights"),
         ("a grid of three by two blocks with lights", "map columns=3 rows=2 lights"),
         ("at least three crossroads, two with lights", "map crossroads x3.. lights"),
-        ("six junctions with stop signs", "map junction x6 stop"),
+        ("six junctions, two of them with lights", "map junction x6 stop"),
+        ("three junctions and two roundabouts", "map junction x3; roundabout x2"),
+        ("two roundabouts and three intersections", "map roundabout x2; crossroads x3"),
+        ("six junctions, two have no lights", "map junction x6"),
+        ("sechs Kreuzungen, zwei haben keine Ampel", "map crossroads x6"),
+        ("sei incroci, 2 non hanno semafori", "map crossroads x6"),
+        ("six junctions, all but two with lights", "map junction x6 lights"),
+        ("six junctions, at least two with lights", "map junction x6 lights"),
+        ("sechs Kreuzungen, höchstens zwei mit Ampeln", "map crossroads x6 lights"),
+        ("four junctions and two dead ends with lights", "map junction x4 dead_ends=2 lights"),
+        ("five crossroads on roads of two lanes with lights", "map crossroads x5 lights"),
+        ("six junctions, traffic lights on 2 arms each", "map junction x6 lights"),
+        ("five crossroads, every one of them with traffic lights", "map crossroads x5 lights"),
+        ("five crossroads, two with lights", "map crossroads x2 lights; crossroads x3"),
+        ("four forks and three crossroads", "map y_junction x4; crossroads x3"),
     ],
 )
 def test_other_words_leave_the_map_as_it_is(words: str, written: str) -> None:
@@ -95,9 +144,27 @@ def test_signs_of_one_kind_are_written_and_said(written: str, said: str) -> None
     assert said in sentence(brief)
 
 
-def test_a_kind_has_one_sign() -> None:
-    with pytest.raises(BriefError, match="twice"):
-        read_plan("map junction lights stop; junction x2 lights yield stop")
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("map junction lights stop; junction", "two signs: 'stop'"),
+        ("map junction x2 lights; junction yield stop", "control of a map twice: 'stop'"),
+    ],
+)
+def test_a_kind_has_one_sign(line: str, said: str) -> None:
+    with pytest.raises(BriefError, match=said):
+        read_plan(line)
+
+
+def test_signs_behind_the_last_kind_are_those_of_the_map() -> None:
+    plain = read_plan("map crossroads x3 lights len=100")
+    assert (
+        plain
+        == read_plan("map crossroads x3 lights; len=100")
+        == read_plan("map crossroads x3; len=100 lights")
+    )
+    assert plain.map is not None
+    assert (plain.map.control, plain.map.junctions[0].control) == ("lights", None)
 
 
 @pytest.mark.parametrize(
@@ -109,6 +176,13 @@ def test_a_kind_has_one_sign() -> None:
             "merge ramp // | motorway // diverge main",
         ),
         ("an exit, but I stay on the motorway", "diverge ramp", "diverge main"),
+        ("stay on the motorway and do not take the exit", "diverge ramp", "diverge main"),
+        ("je reste sur l'autoroute sans prendre la sortie", "diverge ramp", "diverge main"),
+        ("stay on the motorway until the exit", "diverge ramp", "diverge ramp"),
+        ("stay on the motorway for 500 m, then exit", "diverge ramp", "diverge ramp"),
+        ("Ich bleibe auf der Autobahn bis zur nächsten Ausfahrt", "diverge ramp", "diverge ramp"),
+        ("restez 500 m sur l'autoroute jusqu'à la sortie", "diverge ramp", "diverge ramp"),
+        ("resto sull'autostrada fino all'uscita", "diverge ramp", "diverge ramp"),
         ("stay on the motorway for 300 m, then leave it", "diverge ramp", "diverge ramp"),
         ("restez 500 m sur l'autoroute et ressortez", "diverge ramp", "diverge ramp"),
         ("Ne restez pas sur l'autoroute", "diverge ramp", "diverge ramp"),
@@ -136,7 +210,16 @@ def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right
         ("a lane ends with a taper of 60 m", "merge main // lane_drop len=60", None),
         ("a deceleration lane of 80 m, no, of 90 m", "diverge ramp len=90", None),
         ("two acceleration lanes of 80 m", "merge ramp len=80 // merge ramp len=80", None),
-        ("80 m before the exit", "| len=80 // diverge ramp", None),
+        ("a deceleration lane of 80 to 100 m", "diverge ramp len=80..100", None),
+        ("at least 80 m of deceleration lane", "diverge ramp len=80..", None),
+        ("after 300 m a deceleration lane begins", "| len=300 // diverge ramp", None),
+        (
+            "acceleration lane of 100 m, then 100 m of motorway",
+            "merge ramp // | len=100 motorway",
+            "merge ramp len=100 // | len=100 motorway",
+        ),
+        ("un raccordo di 200 m verso l'autostrada", "merge ramp // | len=200", None),
+        ("tras 300 m de carril de aceleración", "merge ramp // | len=300", None),
     ],
 )
 def test_lengths_of_lanes_and_tapers_belong_to_the_ramp(words: str, written: str, right: str | None) -> None:
@@ -150,6 +233,10 @@ def test_lengths_of_lanes_and_tapers_belong_to_the_ramp(words: str, written: str
         (
             "| lanes=2 oneway // lane_drop // | lanes=1 against=1",
             "| lanes=2 oneway // lane_drop // | lanes=1",
+        ),
+        (
+            "| lanes=3 oneway // lane_drop // | lanes=2 against=1 // lane_drop // | lanes=1 against=1",
+            "| lanes=3 oneway // lane_drop // | lanes=2 // lane_drop // | lanes=1",
         ),
         ("| lanes=2 oneway // crossroads // | against=1", "| lanes=2 oneway // crossroads // | against=1"),
     ],

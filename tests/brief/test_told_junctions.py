@@ -71,6 +71,11 @@ def test_a_route_has_no_more_junctions_of_a_kind_than_are_told() -> None:
             "crossroads // crossroads // t_junction // t_junction // roundabout",
         ),
         (
+            "four junctions in all, two crossroads and two T-junctions, the first crossroads with lights",
+            "crossroads lights // crossroads // crossroads // t_junction // t_junction",
+            "crossroads lights // crossroads // t_junction // t_junction",
+        ),
+        (
             "four junctions, one of them a fork",
             "y_junction // junction // junction // junction // junction",
             None,

@@ -26,6 +26,15 @@ def test_every_name_has_words_in_five_languages() -> None:
             assert {*phrases} == {"before", "after"}
 
 
+def test_the_flag_alike_is_kept_once() -> None:
+    assert names_in("turn x3 | alike beside(rain)") == ["rain", "alike"]
+    assert with_names("turn x3 | alike", ["rain", "alike"]) == plan(read_plan("turn x3 | alike beside(rain)"))
+    rng = np.random.default_rng(1)
+    for _ in range(400):
+        made = with_mention("three equal turns", "turn x3 | alike", "en", rng)
+        assert made is None or read_plan(made[1]).alike
+
+
 def test_what_is_said_is_named_and_what_is_denied_is_not() -> None:
     rng = np.random.default_rng(4)
     named = denied = 0

@@ -96,15 +96,17 @@ def read_map(line: str) -> MapClause:
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
-    *listed, last = line.split(";")
-    words = [*((word, False) for part in listed for word in part.split()), *((w, True) for w in last.split())]
-    for word, is_last in words[1:]:
+    words = line.replace(";", " ").split()
+    last = max((n for n, word in enumerate(words) if word in get_args(MapJunctionKind)), default=0)
+    for n, word in enumerate(words[1:], 1):
         key, equals, value = word.partition("=")
         if equals and key in KEYS:
             found: tuple[str, object] = (KEYS[key], read_amount(value))
         elif key == ROUTE and equals:
             found = (ROUTE, read_ways(value))
-        elif word in CONTROLS and counts and not is_last and counts[-1].control is None:
+        elif word in CONTROLS and counts and n < last:
+            if counts[-1].control is not None:
+                raise BriefError(f"a plan gives a kind of junction two signs: '{word}'; give one of them")
             counts[-1] = counts[-1].model_copy(update={"control": word})
             continue
         elif word in CONTROLS:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.junctions import NAMES, Control
+from roadgpt.brief.junctions import NAMES, Control, MapJunctionKind
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
@@ -26,8 +26,8 @@ SAID: dict[Control, str] = {
     "lights": "traffic lights",
     "none": "no signs",
 }
-SAID_OF_ALL = ("lights", "stop")
-"""Signs that no junction has of which they were not asked; others are usual at roundabouts."""
+NEVER_USUAL = ("lights", "stop")
+"""Signs that a junction has only if they were asked for; a roundabout has signs to give way without it."""
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
@@ -103,15 +103,20 @@ def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
         counts = [span(each.count) for each in asked.junctions if asked.control_of(each) == control]
         allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
         number = sum(_is_controlled(node, control) for node in found.nodes)
-        if number < allowed.lo or (control in SAID_OF_ALL and number > allowed.hi):
+        if number < allowed.lo or (control in NEVER_USUAL and number > allowed.hi):
             yield f"asked for {SAID[control]} at {allowed} junctions, has {number}"
     for each in asked.junctions:
         held = asked.control_of(each)
-        if held is not None and each.kind != "junction":
-            number = sum(each.kind in node.kinds and _is_controlled(node, held) for node in found.nodes)
+        if held is not None:
+            number = sum(_is_of(node, each.kind) and _is_controlled(node, held) for node in found.nodes)
             if number < span(each.count).lo:
                 kind = NAMES[each.kind][0]
                 yield f"asked for {SAID[held]} at {each.count} of the kind {kind}, has {number}"
+
+
+def _is_of(node: MeasuredNode, kind: MapJunctionKind) -> bool:
+    """Returns whether a junction is of a kind; "junction" is any kind but a roundabout."""
+    return "roundabout" not in node.kinds if kind == "junction" else kind in node.kinds
 
 
 def _allowed(length: Amount) -> Range:

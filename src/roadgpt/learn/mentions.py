@@ -76,9 +76,10 @@ def with_talk(text: str, language: str, rng: np.random.Generator) -> str:
 
 
 def names_in(plan: str) -> list[str]:
-    """Returns the names that a plan lists in ``beside(...)``."""
+    """Returns the names that a plan lists in ``beside(...)``, and "alike" if it has this flag."""
     found = NAMED.search(plan)
-    return [name.strip() for name in found[1].split(",")] if found else []
+    flags = [ALIKE] if ALIKE in NAMED.sub("", plan).split() else []
+    return [*([name.strip() for name in found[1].split(",")] if found else []), *flags]
 
 
 def with_names(plan: str, names: Sequence[str]) -> str:
@@ -86,7 +87,7 @@ def with_names(plan: str, names: Sequence[str]) -> str:
 
     On a single road, "alike" becomes the flag of that name.
     """
-    bare = NAMED.sub("", plan).rstrip(" |")
+    bare = re.sub(rf" ?\b{ALIKE}\b", "", NAMED.sub("", plan)).rstrip(" |")
     whole = "||" if is_of_junctions(plan) else "|"
     joint = " " if whole in bare else f" {whole} "
     line = f"{bare}{joint}beside({', '.join(names)})".strip()

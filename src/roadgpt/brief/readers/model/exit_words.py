@@ -10,14 +10,28 @@ ROAD = (
     r"(?:motorway|freeway|highway|interstate|main (?:road|carriageway|line)|mainline|autobahn|hauptfahrbahn|"
     r"autoroute|voie principale|autopista|autovia|calzada principal|autostrada|carreggiata principale)"
 )
-STAYS = re.compile(
-    rf"\b(?:stay|remain|keep|carry|continu)\w* (?:\w+ ){{0,3}}?(?:on|along) (?:the |my )?{ROAD}\b|"
-    rf"\bbleib\w* (?:\w+ ){{0,5}}?auf (?:der |meiner )?{ROAD}\b|\bauf der {ROAD} (?:zu )?bleib\w*|"
-    rf"\b(?:rest|continu|poursui)\w* (?:\w+ ){{0,2}}?sur (?:l ?' ?|la |ma )?{ROAD}\b|"
-    r"\b(?:sigo|sigue|seguir|permane\w*|quedo|queda\w*|continu\w*) "
-    rf"(?:\w+ ){{0,2}}?(?:en|por) (?:la |mi )?{ROAD}\b|"
-    rf"\b(?:rest|riman|rimang|prosegu|continu)\w* (?:\w+ ){{0,2}}?(?:in |sull ?' ?|sulla |nella ){ROAD}\b"
+EXIT = r"(?:exit|off - ramp|off ramp|slip road|ausfahrt|abfahrt|sortie|salida|uscita|svincolo)"
+STAYS = (
+    rf"(?:(?:stay|remain|keep|carry|continu)\w* (?:\w+ ){{0,3}}?(?:on|along) (?:the |my )?{ROAD}|"
+    rf"bleib\w* (?:\w+ ){{0,5}}?auf (?:der |meiner )?{ROAD}|auf der {ROAD} (?:zu )?bleib\w*|"
+    rf"(?:rest|continu|poursui)\w* (?:\w+ ){{0,2}}?sur (?:l ?' ?|la |ma )?{ROAD}|"
+    r"(?:sigo|sigue|seguir|permane\w*|quedo|queda\w*|continu\w*) "
+    rf"(?:\w+ ){{0,2}}?(?:en|por) (?:la |mi )?{ROAD}|"
+    rf"(?:rest|riman|rimang|prosegu|continu)\w* (?:\w+ ){{0,2}}?(?:in |sull ?' ?|sulla |nella ){ROAD})\b"
 )
+PASSES = re.compile(
+    rf"\b{EXIT}\b(?:(?!\b(?:until|till|bis|jusqu|hasta|fino)\b)[^.;]){{0,40}}?\b{STAYS}|"
+    rf"\b(?:past|ignor\w+|skip\w*|vorbei an|depass\w+|paso de largo|supero|oltre) (?:\w+ ){{0,2}}?{EXIT}\b"
+    rf"[^.;]{{0,30}}?\b{STAYS}"
+)
+"""An exit, and words behind it that say that the route stays on the motorway."""
+REFUSES = re.compile(
+    rf"\b(?:not|n ' t|without) (?:take|taking|use|using) (?:the |that |this |any |my )?{EXIT}\b|"
+    rf"\bohne (?:abzufahren|auszufahren|rauszufahren)\b|\bsans (?:sortir|prendre (?:la |une )?{EXIT})\b|"
+    rf"\bsin (?:salir|tomar (?:la |ninguna )?{EXIT})\b|"
+    rf"\bsenza (?:uscire|prendere (?:l ?' ?|la |una )?{EXIT})\b"
+)
+"""Words that say that no exit is taken."""
 LEAVES = re.compile(
     r"\b(?:leav\w*|off|come off|get off|take|taking|turn|exits? (?:there|again|right|left)|verlass\w*|"
     r"(?:fahr\w*|geh\w*) [^.;]*\b(?:ab|raus|runter)|abfahren|ausfahren|herunter|nehm\w*|nimm\w*|genommen|"
@@ -34,7 +48,8 @@ def with_stay_on_motorway(brief: Brief, words: str) -> Brief:
     """
     ramps = [n for n, each in enumerate(brief.junctions) if each.kind == "diverge"]
     said = plain(words)
-    if len(ramps) != 1 or _is_passed(brief.junctions) or not STAYS.search(said) or LEAVES.search(said):
+    passes = PASSES.search(said) and not LEAVES.search(said)
+    if len(ramps) != 1 or _is_passed(brief.junctions) or not (passes or REFUSES.search(said)):
         return brief
     at = ramps[0]
     passed = brief.junctions[at].model_copy(update={"take": "main"})

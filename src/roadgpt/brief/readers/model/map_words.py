@@ -41,27 +41,32 @@ ACROSS = re.compile(
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
 ANY_KIND = r"junctions|intersections|knoten(?:punkte?n?)?|intersecciones|intersezioni"
-CROSSINGS = rf"{ANY_KIND}|kreuzungen|carrefours|croisements|cruces|incroci"
+CROSSINGS = rf"{ANY_KIND}|crossings|cross ?-? ?roads|kreuzungen|carrefours|croisements|cruces|incroci"
 IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
+OF_THESE = (
+    r"(?:of (?:them|which|these)|davon|dont|de (?:ellos|ellas|los cuales|las cuales)|d(?:ei|elle) quali|"
+    r"di quest[ie])"
+)
+IS_TOTAL = re.compile(rf"\b(?:{IN_ALL})\b|\b{OF_THESE}\b|\binsgesamt \d+\b")
+"""Words with which a number of junctions is that of all of them."""
 ALL_KINDS = re.compile(
     rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|(?:{CROSSINGS}) (?:{IN_ALL})\b)"
 )
 """A number before a word for junctions of any kind."""
-NUMBER = (
-    r"\b(\d+) (?:(?:of (?:them|which|these)|davon|dont|de (?:ellos|ellas|los cuales|las cuales)|"
-    r"d(?:ei|elle) quali|di quest[ie])(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
-)
+NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
 )
 """Words with which the number before a noun may not be the number of all."""
 KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
     "roundabout": re.compile(
-        NUMBER + r"(?:small |large |big |mini - ?)?(?:roundabouts|kreisverkehre|kreisel|rotatorie|glorietas|"
-        r"ronds - points|giratoires)\b"
+        NUMBER + r"(?:small |large |big |mini - ?)?(?:roundabouts|kreisverkehren?|kreisel|rotatorie|rotonde|"
+        r"glorietas|rotondas|ronds - points|giratoires)\b"
     ),
     "crossroads": re.compile(NUMBER + r"(?:cross ?-? ?roads|kreuzungen)\b"),
     "t_junction": re.compile(NUMBER + r"(?:t - junctions|einmundungen)\b"),
+    "y_junction": re.compile(NUMBER + r"(?:forks|gabelungen|fourches|bifurcations|bifurcaciones|bivi)\b"),
+    "star": re.compile(NUMBER + r"(?:stars|sterne|etoiles|estrellas|stelle)\b"),
 }
 """A number before the plural noun of a kind of junction."""
 TAKEN_BACK = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
@@ -108,7 +113,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
     update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said)}
     asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
-    update |= _other_junctions(asked, said)
+    asked = asked.model_copy(update=_other_junctions(asked, said))
     if asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = one_number(found) if found else _around_blocks(asked, said)
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
@@ -135,12 +140,11 @@ def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
     """Returns the junctions of a map, with the number before the only plural noun of each kind."""
     if OTHERS.search(said) or TAKEN_BACK.search(said):
         return asked.junctions
-    out = []
+    out, kinds = [], [each.kind for each in asked.junctions]
     for each in asked.junctions:
-        number = (
-            one_number(KINDS_IN_PLURAL[each.kind].findall(said)) if each.kind in KINDS_IN_PLURAL else None
-        )
-        is_clear = number is not None and each.count.exact
+        noun = KINDS_IN_PLURAL.get(each.kind)
+        number = one_number(noun.findall(said)) if noun else None
+        is_clear = number is not None and each.count.exact and kinds.count(each.kind) == 1
         out.append(each.model_copy(update={"count": exactly(number)}) if is_clear and number else each)
     return tuple(out)
 
@@ -156,7 +160,7 @@ def _other_junctions(asked: MapClause, said: str) -> dict[str, object]:
         return {}
     others = number - int(sum(count.lo or 0 for count in counts))
     if others < 0:
-        return _named_and_others(asked, number, said)
+        return _named_and_others(asked, number, said) if IS_TOTAL.search(said) else {}
     if "junction" in kinds:
         return {}
     more = JunctionCount(kind="junction", count=exactly(others))

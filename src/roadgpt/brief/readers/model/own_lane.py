@@ -45,8 +45,10 @@ def with_each_lane(brief: Brief) -> Brief:
     A place where two lanes end or begin is split into two places, with a road between them.
     """
     junctions, roads = list(brief.junctions), list(brief.stretches)
+    is_one_way = bool(roads) and roads[0].against == ONE_WAY
     for n, junction in enumerate(junctions):
-        if junction.kind in LANE_KINDS and roads[n].against == ONE_WAY and roads[n + 1].against != ONE_WAY:
+        is_one_way = (is_one_way and junction.kind in LANE_KINDS) or roads[n + 1].against == ONE_WAY
+        if is_one_way and roads[n + 1].against != ONE_WAY:
             roads[n + 1] = roads[n + 1].model_copy(update={"against": None})
     for n in reversed(range(len(junctions))):
         before, behind = roads[n].lanes, roads[n + 1].lanes

@@ -26,12 +26,14 @@ from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import has_told_kinds, most_of_kinds, with_told_total
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
+from roadgpt.brief.readers.model.word_set import word_set
 from roadgpt.brief.words import Range
 from roadgpt.errors import BriefError
 
 Sloped = TypeVar("Sloped", Brief, Clause)
 LEVEL = ("flat", "nearly_flat")
 NEARLY = 0.7  # difference of score
+EACH = word_set("each apiece every je jeweils jede chacun chacune chaque cada ciascuno ciascuna ogni")
 LONGEST_TURN = 1000.0
 """Length in metres from which no length is that of each of several turns."""
 LIKELY = 2.5
@@ -83,7 +85,7 @@ def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | N
 
 def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
-    brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line))), text)
+    brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
@@ -105,7 +107,9 @@ def _at_zero(said: Sloped) -> Sloped:
 
 
 def _with_turns_by_degrees(brief: Brief) -> Brief:
-    """Returns a route that goes left or right, not sharply or slightly, where the degrees say otherwise."""
+    """Returns a route that goes left or right where the degrees are too few for "sharply", or too many or
+    too few for "slightly".
+    """
     junctions = tuple(
         each.model_copy(update={"take": (each.take or "").rpartition("_")[2]})
         if not meets(each.degrees, BENDS.get((each.take or "").partition("_")[0], Range()))
@@ -115,13 +119,16 @@ def _with_turns_by_degrees(brief: Brief) -> Brief:
     return brief.model_copy(update={"junctions": junctions})
 
 
-def _with_length_of_road(brief: Brief) -> Brief:
+def _with_length_of_road(brief: Brief, text: SlottedText) -> Brief:
     """Returns the Brief with a length of the road instead of several turns of a kilometre or more each.
 
-    "3 turns of 6 km" tells the length of the road, since no turns are so long.
+    "3 turns of 6 km" tells the length of the road, since no turns are so long, unless a word such as "each"
+    says that they are.
     """
-    long = [clause for clause in brief.clauses if _is_too_long(clause)]
-    if len(long) != 1 or brief.length is not None or brief.junctions:
+    lengths = [clause for clause in brief.clauses if clause.length is not None]
+    long = [clause for clause in lengths if _is_too_long(clause)]
+    is_each = any(word.text in EACH for word in text.words)
+    if len(long) != 1 or len(lengths) > 1 or brief.length is not None or brief.junctions or is_each:
         return brief
     clauses = tuple(
         clause.model_copy(update={"length": None}) if clause in long else clause for clause in brief.clauses

@@ -20,17 +20,26 @@ LANE = (
     r"carril(?:es)? de (?:aceleracion|deceleracion|desaceleracion|incorporacion)|"
     r"corsia di (?:accelerazione|decelerazione|immissione))"
 )
-TAPER = r"(?:tapers?|verziehung|biseau|cuna|rastremazione|raccordo)"
+TAPER = r"(?:tapers?|verziehung|biseau|cuna|rastremazione)"
 LINK = (
     r"(?: (?:of|is|lasts|measures|von|ist|mit|de|di|da|est|mesure|mide|es|misura|e|long|lunga?|longue|larga?|"
     r"lang|:|,))"
 )
-OF = r"(?: (?:of|de|di|a|the|long|langer?|lange[nr]?|d '|für|fur))"
+OF = r"(?: (?:of|de|di|long|lange[nr]?|d '))"
+AFTER = r"(?:\b(after|in|nach|hinter|apres|dans|tras|en|despues de|dopo|fra|tra|until|bis|hasta|fino a) )?"
+"""A word before a length with which it is the distance to the lane."""
+BOUND = re.compile(
+    r"\b(?:at least|at most|up to|no (?:more|less|longer|shorter) than|minimum|maximum|min|max|mindestens|"
+    r"hochstens|bis zu|au moins|au plus|al menos|como (?:mucho|maximo|minimo)|almeno|al massimo|"
+    r"or (?:more|less|longer)|oder (?:mehr|langer)|o (?:mas|piu)|ou plus|between|zwischen|entre|tra)\b|"
+    r"(?:(?:to|bis)|metres a) \[unused"
+)
+"""Words with which some length is no exact one."""
 
 
 def _places(noun: str) -> re.Pattern[str]:
     """Returns a pattern for a length before or behind a noun."""
-    return re.compile(rf"{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{LINK}{{0,3}} {SLOT}")
+    return re.compile(rf"{AFTER}{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{LINK}{{0,3}} {SLOT}")
 
 
 LANES, TAPERS = _places(LANE), _places(TAPER)
@@ -51,11 +60,14 @@ def with_ramp_lengths(brief: Brief, text: SlottedText) -> Brief:
     ramp = brief.junctions[at]
     found = {"length": _told(LANES, ANY_LANE, text), "taper": _told(TAPERS, ANY_TAPER, text)}
     update = {name: told for name, told in found.items() if told and getattr(ramp, name) != told}
-    if not update or found["length"] == found["taper"] or TAKEN_BACK.search(text.text):
+    is_unclear = TAKEN_BACK.search(text.text) or BOUND.search(text.text)
+    if not update or found["length"] == found["taper"] or is_unclear:
         return brief
     roads = list(brief.stretches)
+    metres = [exactly(slot.value) for slot in text.slots]
     for n in (at, at + 1):
-        if roads[n].length in update.values():
+        length = roads[n].length
+        if length is not None and length in update.values() and metres.count(length) == 1:
             roads[n] = roads[n].model_copy(update={"length": None})
     junctions = list(brief.junctions)
     junctions[at] = ramp.model_copy(update=update)
@@ -65,7 +77,7 @@ def with_ramp_lengths(brief: Brief, text: SlottedText) -> Brief:
 def _told(pattern: re.Pattern[str], noun: re.Pattern[str], text: SlottedText) -> Amount | None:
     """Returns the length beside the only noun; None if there is none, or several."""
     said = text.text
-    found = [int(one or other) - 1 for one, other in pattern.findall(said)]
+    found = [int(one or other) - 1 for after, one, other in pattern.findall(said) if not after]
     if len(noun.findall(said)) != 1 or len(found) != 1 or found[0] >= len(text.slots):
         return None
     slot = text.slots[found[0]]

@@ -113,6 +113,7 @@ def _too_many(brief: Brief, bare: Sequence[int], text: SlottedText) -> list[int]
         said = noun.findall(text.text)
         number = int(said[0]) if len(said) == 1 else 0
         its = [n for n in bare if brief.junctions[n].kind == kind]
-        if 0 < number < sum(each.kind == kind for each in brief.junctions):
-            out += its[number:]
+        surplus = sum(each.kind == kind for each in brief.junctions) - number
+        if number > 0 and 0 < surplus <= len(its):
+            out += its[-surplus:]
     return out
