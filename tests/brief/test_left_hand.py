@@ -3,9 +3,10 @@
 import pytest
 
 from roadgpt.brief import read
-from roadgpt.brief.left_hand import says_left_hand, with_driving_side
+from roadgpt.brief.left_hand import may_mean_left_hand, says_left_hand, with_driving_side
 from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model import ModelReader
+from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.sentence import sentence
 
 READER = ModelReader()
@@ -74,3 +75,18 @@ def test_a_single_road_as_in_a_country_is_no_wish_for_its_traffic() -> None:
 def test_a_single_road_is_read_with_it(words: str) -> None:
     assert read(words).left_hand
     assert sentence(read(words)).endswith("raffic on the left.")
+
+
+@pytest.mark.parametrize(
+    ("words", "stays"),
+    [
+        ("a village with six junctions", False),
+        ("un village de six carrefours", False),
+        ("a village with six junctions, cars on the left", True),
+        ("six junctions, as in Scotland", True),
+        ("sechs Kreuzungen, man fährt links", True),
+    ],
+)
+def test_a_plan_with_traffic_on_the_left_needs_a_word_for_it(words: str, stays: bool) -> None:
+    written = read_plan("map junction x6 || left_hand")
+    assert may_mean_left_hand(words) == with_whole_drive(written, words).left_hand == stays

@@ -87,6 +87,16 @@ def corrected(words: str, written: str) -> str:
             "map roundabout x2; junction x6",
         ),
         (
+            "huit carrefours dont deux giratoires, aucun cul-de-sac",
+            "map roundabout x2 dead_ends=0",
+            "map roundabout x2; junction x6 dead_ends=0",
+        ),
+        (
+            "cinque incroci, uno solo con il semaforo, e tre strade senza uscita",
+            "map crossroads x5 dead_ends=3",
+            "map junction lights; junction x4 dead_ends=3",
+        ),
+        (
             "four crossroads, lights at two of them",
             "map crossroads x4 lights",
             "map crossroads x2 lights; crossroads x2",
@@ -111,6 +121,7 @@ def test_lights_are_where_the_words_count_them(words: str, written: str, right: 
         ("a grid of three by two blocks with lights", "map columns=3 rows=2 lights"),
         ("at least three crossroads, two with lights", "map crossroads x3.. lights"),
         ("six junctions, two of them with lights", "map junction x6 stop"),
+        ("five crossroads and three dead ends", "map crossroads x5 dead_ends=3"),
         ("three junctions and two roundabouts", "map junction x3; roundabout x2"),
         ("two roundabouts and three intersections", "map roundabout x2; crossroads x3"),
         ("six junctions, two have no lights", "map junction x6"),

@@ -9,6 +9,7 @@ from roadgpt.brief.readers.model.told_junctions import (
     has_told_kinds,
     most_of_kinds,
     names_a_junction,
+    number_of_listed,
     with_told_total,
 )
 
@@ -86,6 +87,19 @@ def test_a_total_adds_or_takes_away_only_junctions_of_no_kind(
     words: str, line: str, wanted: str | None
 ) -> None:
     assert plan(with_told_total(read_plan(line), slotted(words))) == (wanted or line)
+
+
+@pytest.mark.parametrize(
+    ("words", "number"),
+    [
+        ("five junctions: left at a T, straight over a crossroads", 5),
+        ("Drei Kreuzungen: links, rechts, geradeaus", 3),
+        ("left at a T, then two junctions: straight over both", None),
+        ("five junctions, the first a T", None),
+    ],
+)
+def test_a_number_of_junctions_before_their_list(words: str, number: int | None) -> None:
+    assert number_of_listed(slotted(words)) == number
 
 
 @pytest.mark.parametrize(

@@ -48,6 +48,14 @@ CASES: dict[str, dict[str, Any]] = {
         "sequence": [{"kind": "diverge", "take": "exit", "side": "right", "after": 300, "decel": [30, None]}],
         "between": [{"lanes": 2}, {"lanes": 1, "oneway": True}],
     },
+    "merge ramp // | lanes=2 len=120 motorway // diverge ramp": {
+        "sequence": [{"kind": "merge", "take": "ramp"}, {"kind": "diverge", "take": "exit", "after": 120}],
+        "between": [None, {"lanes": 2}, None],
+    },
+    "| lanes=3 len=120 motorway // diverge ramp side=right len=70": {
+        "sequence": [{"kind": "diverge", "take": "exit", "side": "right", "after": 120, "decel": 70}],
+        "between": [{"lanes": 3}, None],
+    },
     "| lanes=2 motorway // diverge main len=80 //": {
         "sequence": [{"kind": "diverge", "take": "main", "decel": 80}],
         "between": [{"lanes": 2}, {"lanes": 2}],

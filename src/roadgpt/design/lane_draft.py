@@ -5,7 +5,7 @@ from math import inf
 
 from roadgpt.brief.amount import Amount, at_least, between, span
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.lane_sequence import LEAST_LANE, WIDE_IN_TAPER
+from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import MOST_LANES, ROAD, Range, nearest
 from roadgpt.network.crossing_lanes import USUALLY_FED
@@ -42,11 +42,15 @@ def drawn_ramp(asked: JunctionClause, room: float) -> RampDesign:
     Args:
         asked: the requirements.
         room: length in metres that is available for the acceleration or deceleration lane with its taper. If
-            no length is required, the lane is made to fit, but is at least 20 m long without its taper.
+            no length is required, the lane is made to fit, but is at least 20 m long without its taper. If no
+            taper is required, it is shorter than usual where the lane would else not fit.
     """
     assert asked.kind in RAMPS
-    taper = RAMP_TAPER if asked.taper is None else _length(asked.taper) / (1 - WIDE_IN_TAPER)
-    length = min(ACCELERATION, max(room - taper, LEAST_BESIDE))
+    wide = LEAST_BESIDE_RAMP + SLACK if asked.length is None else _length(asked.length)
+    taper = min(RAMP_TAPER, max((room - wide) / (1 - WIDE_IN_TAPER), LEAST_TAPER))
+    if asked.taper is not None:
+        taper = _length(asked.taper) / (1 - WIDE_IN_TAPER)
+    length = min(ACCELERATION, max(room - taper, LEAST_BESIDE, wide - WIDE_IN_TAPER * taper))
     if asked.length is not None:
         length = max(_length(asked.length) - WIDE_IN_TAPER * taper, LEAST_LANE)
     return RampDesign(

@@ -19,6 +19,7 @@ from roadgpt.brief.readers.model.map_words import (
     TAKEN_BACK,
     is_counted,
     one_number,
+    said_of,
 )
 from roadgpt.brief.readers.model.slots import SlottedText
 
@@ -33,7 +34,7 @@ OF = (
 BETWEEN = rf"((?: (?:{OF}|{NOUNS})\b){{0,5}})"
 """The words that may stand between a number of junctions and their lights."""
 HAVE = r"(?:with|have|has|having|get|mit|haben|bekommen|avec|ont|con|tienen|llevan|hanno)"
-ARTICLE = r"(?:the |a set of |eine[rn]? |des |les |un |los |i |dei )?"
+ARTICLE = r"(?:the |a set of |eine[rn]? |des |les |un |los |i |il |el |le |dei )?"
 COUNTED = re.compile(rf"\b(\d+){BETWEEN},? {HAVE} {ARTICLE}{LIGHTS}\b")
 """A number, words for junctions, and a word such as "have" before lights: "two of them have lights"."""
 SIGNALLED = re.compile(rf"\b(\d+){BETWEEN} (?:are )?(?:signalled|signalised|signalized|semaforizad\w+)\b")
@@ -45,7 +46,7 @@ AT = re.compile(
 ONE = re.compile(
     r"\b(?:(?:only|just) one|(?<!every )(?<!each )one of (?:them|these|which)|nur eine[rs]?|"
     r"eine[rs]? davon|un seul|une seule|dont une?|"
-    r"solo un[oa]|un[oa] de (?:ellos|ellas|los cuales|las cuales)|un[oa] di (?:essi|esse|loro)) "
+    r"solo un[oa]|un[oa] solo|un[oa] de (?:ellos|ellas|los cuales|las cuales)|un[oa] di (?:essi|esse|loro)) "
     rf"{HAVE} {ARTICLE}{LIGHTS}\b"
 )
 BOUND = re.compile(
@@ -70,7 +71,7 @@ def with_counted_lights(brief: Brief, text: SlottedText) -> Brief:
     if the words do not give one exact number of junctions with lights that is smaller than that of all.
     """
     asked = brief.map
-    said = " ".join(word.text for word in text.words)
+    said = said_of(text)
     if asked is None or not asked.junctions or asked.control not in (None, "lights", "none"):
         return brief
     are_exact = all(each.count.exact and each.control is None for each in asked.junctions)

@@ -40,6 +40,8 @@ ACROSS = re.compile(
     r"deep|high|north|south|each|long|len\w*|lang|x)\b"
 )
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
+EIGHT = re.compile(r"\b(?:acht|huit|ocho|otto)\b(?= \w+[sni]\b)")
+"""The number 8 before a plural; the networks read these words themselves."""
 ANY_KIND = r"junctions|intersections|knoten(?:punkte?n?)?|intersecciones|intersezioni"
 CROSSINGS = rf"{ANY_KIND}|crossings|cross ?-? ?roads|kreuzungen|carrefours|croisements|cruces|incroci"
 IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
@@ -50,9 +52,12 @@ OF_THESE = (
 IS_TOTAL = re.compile(rf"\b(?:{IN_ALL})\b|\b{OF_THESE}\b|\binsgesamt \d+\b")
 """Words with which a number of junctions is that of all of them."""
 ALL_KINDS = re.compile(
-    rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|(?:{CROSSINGS}) (?:{IN_ALL})\b)"
+    rf"(?<!more )(?<!other )(?<!further )\b(\d+) (?:\w+ )?(?:(?:{ANY_KIND})\b|"
+    rf"(?:{CROSSINGS})(?: ,)? (?:(?:{IN_ALL})\b|(?:\d+ )?{OF_THESE}\b))"
 )
 """A number before a word for junctions of any kind."""
+EITHER = re.compile(r"\b(?:crossings|intersections|kreuzungen|carrefours|croisements|cruces|incroci)\b")
+"""Nouns that mean crossroads, or junctions of any kind."""
 NUMBER = rf"\b(\d+) (?:{OF_THESE}(?: (?:are|being|sind|son|sean|sont|sono|siano))? )?"
 OTHERS = re.compile(
     r"\b(?:more|others?|further|another|each|per|weitere[nrs]?|noch|andere[nrs]?|je|autres?|otr[oa]s?|altr[eio])\b"
@@ -92,7 +97,7 @@ NOT_A_TREE = re.compile(
 
 def asks_for_map(text: SlottedText) -> bool:
     """Returns whether a description says that it wants a map without a route."""
-    return says(ONLY_A_MAP, _said(text))
+    return says(ONLY_A_MAP, said_of(text))
 
 
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
@@ -106,7 +111,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     asked = brief.map
     if asked is None:
         return brief
-    said = _said(text)
+    said = said_of(text)
     found = DEAD_ENDS.findall(said)
     off_street = _off_main_street(said, found)
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
@@ -119,7 +124,20 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
         if dead_ends is not None and not is_vague:
             update["dead_ends"] = exactly(dead_ends)
-    return brief.model_copy(update={"map": asked.model_copy(update=update)})
+    asked = asked.model_copy(update=update)
+    return brief.model_copy(update={"map": _with_possible_ends(asked, said)})
+
+
+def _with_possible_ends(asked: MapClause, said: str) -> MapClause:
+    """Returns the map with junctions of any kind instead of crossroads, where a noun may mean both and the
+    crossroads cannot leave the number of dead ends that is asked for: 4 n arms leave an even number.
+    """
+    ends, kinds = asked.dead_ends, {each.kind for each in asked.junctions}
+    is_odd = ends is not None and ends.exact and (ends.lo or 0) % 2 == 1
+    if not is_odd or kinds - {"crossroads"} or not kinds or not EITHER.search(said):
+        return asked
+    junctions = tuple(each.model_copy(update={"kind": "junction"}) for each in asked.junctions)
+    return asked.model_copy(update={"junctions": junctions})
 
 
 def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] | None:
@@ -231,6 +249,7 @@ def one_number(found: Sequence[str]) -> int | None:
     return int(found[0]) if found[0].isdecimal() else int(re.fullmatch(ONE, found[0]) is not None)
 
 
-def _said(text: SlottedText) -> str:
+def said_of(text: SlottedText) -> str:
     """Returns the words in lower case without accents, with small numbers as figures."""
-    return " ".join(word.text for word in text.words)
+    said = " ".join(word.text for word in text.words)
+    return EIGHT.sub("8", said)

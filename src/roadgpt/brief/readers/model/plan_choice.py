@@ -24,7 +24,12 @@ from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lan
 from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.told_junctions import has_told_kinds, most_of_kinds, with_told_total
+from roadgpt.brief.readers.model.told_junctions import (
+    has_told_kinds,
+    most_of_kinds,
+    number_of_listed,
+    with_told_total,
+)
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
 from roadgpt.brief.readers.model.word_set import word_set
 from roadgpt.brief.words import Range
@@ -61,10 +66,18 @@ def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | 
     """Returns the likeliest plan without more junctions of a kind than the words can mean; None if there is
     none that is likely.
     """
-    most = most_of_kinds(text)
+    most, listed = most_of_kinds(text), number_of_listed(text)
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - LIKELY)
     kept = (draft for draft in near if is_of_junctions(draft.line) and can_be_kept(draft.line))
-    return next((draft for draft in kept if has_told_kinds(read_plan(draft.line), most)), None)
+    plans = ((draft, read_plan(draft.line)) for draft in kept)
+    return next(
+        (
+            draft
+            for draft, brief in plans
+            if has_told_kinds(brief, most) and listed in (None, len(brief.junctions))
+        ),
+        None,
+    )
 
 
 def _as_listed(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:

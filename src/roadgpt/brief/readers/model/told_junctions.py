@@ -46,6 +46,16 @@ TOTAL = re.compile(
 """The number of all junctions of a route."""
 
 
+LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:")
+"""The number of junctions before the list of all of them."""
+
+
+def number_of_listed(text: SlottedText) -> int | None:
+    """Returns how many junctions a description says that it lists ("five junctions: left at a T, ...")."""
+    found = LISTED.search(text.text)
+    return int(found[1]) if found else None
+
+
 def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     """Returns for each kind the largest number of junctions that the words can mean, as far as they say it.
 

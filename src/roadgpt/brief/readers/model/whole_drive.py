@@ -9,7 +9,7 @@ from collections.abc import Callable
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
-from roadgpt.brief.left_hand import NEGATED, says_left_hand
+from roadgpt.brief.left_hand import NEGATED, may_mean_left_hand, says_left_hand
 from roadgpt.brief.model import Brief, CentreLine
 from roadgpt.brief.readers.model.denial import says
 from roadgpt.brief.readers.model.numerals import plain
@@ -103,7 +103,7 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
 
     The Brief of a single road is returned unchanged. These requirements are added:
 
-    - Traffic drives on the left, if the words say so.
+    - Traffic drives on the left, if the words say so; it does not if no word may mean that.
     - Every road with oncoming traffic on the same carriageway gets a centre line, if the words name one kind
       of line without a place, and no road of the Brief has a line yet.
     - The first road gets a median if it is a dual carriageway, and no road of the Brief has one.
@@ -123,7 +123,8 @@ def with_whole_drive(brief: Brief, words: str) -> Brief:
     )
     return brief.model_copy(
         update={
-            "left_hand": brief.left_hand or says_left_hand(words, by_place=True),
+            "left_hand": (brief.left_hand and may_mean_left_hand(words))
+            or says_left_hand(words, by_place=True),
             "stretches": _alike(brief, roads, words),
         }
     )
