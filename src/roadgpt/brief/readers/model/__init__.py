@@ -352,7 +352,7 @@ def _climb(text: SlottedText, line: str) -> str | None:
 
 def _swap(text: SlottedText, line: str) -> str | None:
     """Returns the plan of a change request that asks two turns to change places; None for other requests."""
-    place = turns_to_swap(text) if line.startswith("!") else None
+    place = turns_to_swap(text) if "swap" not in line else None
     return f"{place}: swap" if place else None
 
 

@@ -57,6 +57,12 @@ OTHERWISE = NOT | word_set(
     "instead rather now statt anstatt jetzt bisher lieu plus maintenant vez ahora invece adesso ora"
 )
 """Words with which a fall may be what is not wanted, or what the road does so far."""
+BESIDE = re.compile(
+    r"\b(?:mirror\w*|swap\w*|reverse\w*|remove\w*|spiegel\w*|tausch\w*|umdreh\w*|entfern\w*|miroir|"
+    r"echang\w*|invers\w*|supprim\w*|espejo|intercambi\w*|invier\w*|quita\w*|specchi\w*|scambi\w*|"
+    r"inverti\w*|togli\w*)\b"
+)
+"""Words for a further wish, which a plan of nothing but a climb leaves out."""
 POSITIVE = re.compile(r"climb =(?=\d)")
 
 
@@ -96,14 +102,16 @@ def is_doubtful_climb(line: str, text: SlottedText) -> bool:
     """Returns whether a plan has a climb that the words leave in doubt.
 
     The words give only a bound of it, or the metres may be those along the road, or they mention a descent
-    together with an ascent, a negation or a word such as "instead".
+    together with an ascent, a negation or a word such as "instead"; or they have a further wish, which the
+    plan leaves out.
     """
     words = [word.text for word in text.words]
     numbers = [place for place, word in enumerate(words) if word.startswith("[unused")]
     is_bounded = any(bound_before(words, place) or bound_behind(words, place) for place in numbers)
     # "let it climb for 20 m" may tell how far
     is_along = len(text.slots) == 1 and ALONG.search(" ".join(words)) is not None
-    return ": climb" in line and (is_bounded or is_along or _falls(text) is None)
+    is_all = ";" not in line and BESIDE.search(" ".join(words)) is not None
+    return ": climb" in line and (is_bounded or is_along or is_all or _falls(text) is None)
 
 
 def _falls(text: SlottedText) -> bool | None:
