@@ -176,6 +176,21 @@ def test_crosswalks_and_arrows_have_ids_of_their_own() -> None:
     check_ids(here)
 
 
+def test_the_corners_of_a_crosswalk_are_those_of_its_length_and_width() -> None:
+    data = design(60.0, {"kind": "t_junction", "take": "left", "crosswalk": True}, 60.0)
+    here = WrittenMap(document(build_route(read_network_design(data)[0], WORLD), WORLD).to_text())
+    found = [each for each in here.root.iter("object") if each.attrib["type"] == "crosswalk"]
+    assert len(found) == 3
+    for each in found:
+        corners = [(float(c.attrib["u"]), float(c.attrib["v"])) for c in each.iter("cornerLocal")]
+        ring = shapely.Polygon(corners)
+        u, v = (float(each.attrib[name]) / 2 for name in ("length", "width"))
+        assert len(corners) == 4
+        assert ring.is_valid
+        assert ring.bounds == pytest.approx((-u, -v, u, v))
+        assert ring.area == pytest.approx(4 * u * v)
+
+
 def check_ids(here: WrittenMap) -> None:
     """No two roads, junctions, signs, lights or objects have the same id, but a sign and its line."""
     signs = [each.attrib["id"] for each in here.root.iter("signal")]

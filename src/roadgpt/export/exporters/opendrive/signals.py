@@ -147,7 +147,7 @@ class Signals:
         away = min(CROSSWALK[0] + CROSSWALK[1] / 2, member.road.length)
         s = member.road.length - away if end.contact == "end" else away
         left, right = (float(t) for t in member.profile.edges(s))
-        return XmlElement(
+        made = XmlElement(
             "object",
             {
                 "id": str(number),
@@ -164,6 +164,12 @@ class Signals:
                 "dynamic": "no",
             },
         )
+        # length and width say the same; CommonRoad's converter reads only the corners
+        u, v = CROSSWALK[1] / 2, (left - right) / 2
+        outline = made.add("outlines").add("outline", {"id": 0, "closed": "true", "outer": "true"})
+        for corner in ((-u, -v), (-u, v), (u, v), (u, -v)):
+            outline.add("cornerLocal", {"u": corner[0], "v": corner[1], "z": 0.0, "height": 0.01})
+        return made
 
     def _line(self, signal: _Signal) -> Iterator[XmlElement]:
         """Yields the stop line or give-way line of an arm; nothing for a road with priority."""
