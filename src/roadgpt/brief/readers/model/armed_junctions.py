@@ -5,16 +5,14 @@ import re
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.slots import SlottedText
+from roadgpt.brief.readers.model.told_junctions import NOUNS
 
-NOUN = (
-    r"(?:cross ?-? ?roads|intersection|crossing|junction|turning|fork|roundabout|rotary|kreuzung|einmundung|"
-    r"knoten(?:punkt)?|gabelung|kreisverkehr|kreisel|carrefour|croisement|intersection|fourche|rond - point|"
-    r"giratoire|cruce|interseccion|bifurcacion|rotonda|glorieta|incrocio|intersezione|bivio|rotatoria)"
-)
-ANY = re.compile(rf"\b{NOUN}\b")
+OF_ANY_KIND = r"\b(?:junction|turning|einmundung|knoten(?:punkt)?|intersezione)\b"
+NOUN = rf"(?:{'|'.join([*(noun.pattern for noun in NOUNS.values()), OF_ANY_KIND])})"
+ANY = re.compile(NOUN)
 ARMED = re.compile(
-    rf"\b([3-6]) ?-? ?(?:way|arm|armed|leg|legged) {NOUN}\b|"
-    rf"\b{NOUN} (?:with|mit|de|a|con) ([3-6]) (?:arms|legs|armen|branches|brazos|ramales|bracci)\b"
+    rf"\b([3-6]) ?-? ?(?:way|arm|armed|leg|legged) {NOUN}|"
+    rf"{NOUN} (?:with|mit|de|a|con) ([3-6]) (?:arms|legs|armen|branches|brazos|ramales|bracci)\b"
 )
 """A number of arms and a noun for a junction; each text in lower case, without accents."""
 COMMON_ARMS = 4

@@ -15,6 +15,7 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
+    ANY_KIND,
     KINDS_IN_PLURAL,
     TAKEN_BACK,
     is_counted,
@@ -26,7 +27,7 @@ from roadgpt.brief.readers.model.slots import SlottedText
 LIGHTS = (
     r"(?:(?:traffic )?(?:lights|signals)|ampeln?(?:anlagen?)?|lichtsignal\w*|feux(?: tricolores)?|semafor\w*)"
 )
-NOUNS = rf"(?:{NOUN}|knoten(?:punkte?n?)?|intersezioni|stars|sterne|etoiles|estrellas|stelle)"
+NOUNS = rf"(?:{NOUN}|{ANY_KIND}|stars|sterne|etoiles|estrellas|stelle)"
 OF = (
     r"(?:of|them|which|these|those|the|davon|von|ihnen|denen|dont|d|'|entre|elles|eux|de|ellos|ellas|los|las|"
     r"cuales|di|dei|delle|quali|queste|questi|esse|essi|loro)"
