@@ -60,7 +60,7 @@ class Judged(NamedTuple):
     verdict: str
     confidence: float | None = None
     is_flagged: bool = False
-    """Whether the answer said that something was not understood, or that it was not sure."""
+    """Whether the answer said that it was not sure, or that something is not built."""
     names_cause: bool = False
     """Of a refusal: whether its sentence names what the writer gave as the cause."""
 
@@ -89,7 +89,7 @@ def judged(row: dict[str, Any], reader: str) -> Judged:
     except RoadGPTError as error:
         parts = CAUSES.get(row.get("cause", ""), NO_ROAD)
         return Judged(REFUSED if cannot else HONEST, names_cause=any(part in str(error) for part in parts))
-    flagged = brief.confidence < SURE or bool(brief.unused or brief.beside)
+    flagged = brief.confidence < SURE or bool(brief.beside)
     if cannot:
         return Judged(BUILT, brief.confidence, flagged)
     if is_met(row["truth"], roads):

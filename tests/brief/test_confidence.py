@@ -1,17 +1,35 @@
-"""The confidence of a reading: a logistic model of features, and doubt where a "not" changed nothing."""
+"""The confidence of a reading: a logistic model of features, and doubt where a "not" or a number changed
+nothing.
+"""
 
+from collections.abc import Sequence
 from math import log
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
-from roadgpt.brief.readers.model.slots import slotted
+from roadgpt.brief.readers.model.slots import SlottedText, slotted
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.used_words import left_out
 
 HALF = {"bias": 0.0, "numbers": 0.0}
+PLAIN = slotted("a road")
+
+
+class Mind:
+    """A stand-in for a network that gives each token of every plan the same log-probability."""
+
+    def __init__(self, log_chance: float) -> None:
+        self.log_chance = log_chance
+
+    def chances_of(
+        self, texts: Sequence[SlottedText], tokens: Sequence[str], allowed: SlottedText
+    ) -> tuple[np.ndarray, np.ndarray]:
+        logs = np.full((len(texts), len(tokens) + 1), self.log_chance)
+        return logs, np.ones_like(logs)
 
 
 def draft(*tokens: str) -> ScoredPlan:
@@ -23,21 +41,38 @@ def test_numbers_that_the_plan_does_not_have_are_counted() -> None:
     turn = ("turn", "left", "deg=", "[1]", "r=", "[2]")
     assert left_out(turn, text) == [2]
     assert left_out((*turn, ";", "straight", "len=", "[3]"), text) == []
-    found = features(draft("turn"), text)
+    found = features([Mind(-0.1)], draft("turn"), text)  # type: ignore[list-item]
     assert found["numbers"] == pytest.approx(log(4))
 
 
 def test_equal_odds_are_one_half_and_threefold_odds_three_quarters() -> None:
-    assert confidence(HALF, {"numbers": 5.0}, ()) == 0.5
-    assert confidence({"bias": log(3)}, {}, ()) == 0.75
-    assert confidence({"bias": 0.0, "numbers": -log(3)}, {"numbers": 1.0}, ()) == 0.25
+    assert confidence(HALF, {"numbers": 5.0}, (), PLAIN) == 0.5
+    assert confidence({"bias": log(3)}, {}, (), PLAIN) == 0.75
+    assert confidence({"bias": 0.0, "numbers": -log(3)}, {"numbers": 1.0}, (), PLAIN) == 0.25
 
 
 @given(st.floats(-20, 20), st.sampled_from(["not", "keine", "sans", "nicht", "only"]))
 def test_a_negation_without_effect_leaves_doubt(bias: float, word: str) -> None:
-    sure = confidence({"bias": bias}, {}, ("tree", word))
+    sure = confidence({"bias": bias}, {}, ("tree", word), PLAIN)
     assert sure <= DOUBT
-    assert sure == min(DOUBT, confidence({"bias": bias}, {}, ("tree",)))
+    assert sure == min(DOUBT, confidence({"bias": bias}, {}, ("tree",), PLAIN))
+
+
+@given(st.floats(-20, 20))
+def test_a_number_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: float) -> None:
+    text = slotted("dear Ruth, three turns, one of them 40 m long, and a tree")
+    sure = confidence({"bias": bias}, {}, (), text)
+    assert confidence({"bias": bias}, {}, ("Ruth", "tree"), text) == sure
+    assert confidence({"bias": bias}, {}, ("Ruth", "40 m"), text) == min(DOUBT, sure)
+    assert confidence({"bias": bias}, {}, ("three",), text) == min(DOUBT, sure)
+
+
+def test_the_network_that_doubts_a_plan_most_is_heard() -> None:
+    minds = [Mind(-0.01), Mind(-2.0), Mind(-0.5)]
+    found = features(minds, draft("turn", "left"), PLAIN)  # type: ignore[arg-type]
+    assert found["sceptic"] == pytest.approx(log(0.03 + 3 * 2.0))
+    assert found["all"] == pytest.approx(log(0.03 + 0.3))
+    assert found["worst"] == pytest.approx(log(0.03 + 0.2))
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import pytest
 
 from roadgpt.brief.plan import plan, read_plan
-from roadgpt.brief.readers.model.exit_words import with_stay_on_motorway
+from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.map_signs import with_counted_lights
 from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.own_lane import with_each_lane
@@ -30,6 +30,11 @@ def corrected(words: str, written: str) -> str:
             "six junctions, two of them with lights",
             "map junction x6 lights",
             "map junction x2 lights; junction x4",
+        ),
+        (
+            "cuatro cruces, exactamente uno tiene semáforo",
+            "map crossroads x4 lights",
+            "map crossroads lights; crossroads x3",
         ),
         (
             "a village: three crossroads with lights and two roundabouts",
@@ -208,6 +213,36 @@ def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right
     ("words", "written", "right"),
     [
         (
+            "get on a two-lane motorway by the on-ramp and get off at the next exit",
+            "| motorway lanes=2 // merge ramp // | motorway lanes=2 len=600 // diverge ramp",
+            "merge ramp // | motorway lanes=2 len=600 // diverge ramp",
+        ),
+        ("join a motorway", "| len=90 motorway // merge ramp", "| len=90 // merge ramp // | motorway"),
+        (
+            "a two-lane motorway that a ramp joins, three lanes behind it",
+            "| motorway lanes=2 // merge ramp // | motorway lanes=3",
+            None,
+        ),
+        ("a motorway, and a ramp joins it", "| motorway // merge main", None),
+        (
+            "keep on a two-lane motorway while an on-ramp comes in from the right",
+            "merge ramp side=right // | motorway lanes=2",
+            "| motorway lanes=2 // merge main side=right // | motorway lanes=2",
+        ),
+        ("I keep along the motorway where a ramp joins from the left", "merge ramp", "merge main"),
+        ("come up the ramp, then stay on the motorway while a ramp joins", "merge ramp", None),
+        ("keep on the motorway until the ramp", "merge ramp", None),
+    ],
+)
+def test_the_motorway_is_where_the_words_have_it(words: str, written: str, right: str | None) -> None:
+    found = with_motorway_behind_ramp(read_plan(written), words)
+    assert plan(found) == plan(read_plan(right or written))
+
+
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        (
             "an 80 m deceleration lane and a 30 m taper before it",
             "| len=30 // diverge ramp len=80",
             "diverge ramp len=80 taper=30",
@@ -216,6 +251,11 @@ def test_who_stays_on_the_motorway_takes_no_exit(words: str, written: str, right
             "Einfädelspur von 120 m, dann 400 m Autobahn",
             "merge ramp // | len=400 motorway",
             "merge ramp len=120 // | len=400 motorway",
+        ),
+        (
+            "The acceleration lane is 250 m long at full width and then tapers out over another 60 m.",
+            "merge ramp len=250 // | len=60",
+            "merge ramp len=250 taper=60",
         ),
         ("carril de aceleración: 90 m", "merge ramp // | len=90", "merge ramp len=90"),
         ("a lane ends with a taper of 60 m", "merge main // lane_drop len=60", None),

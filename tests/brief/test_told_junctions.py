@@ -10,6 +10,7 @@ from roadgpt.brief.readers.model.told_junctions import (
     most_of_kinds,
     names_a_junction,
     number_of_listed,
+    with_told_letter,
     with_told_total,
 )
 
@@ -139,3 +140,19 @@ def test_the_arms_that_are_told_decide_the_kind(words: str, line: str, wanted: s
 )
 def test_some_nouns_can_only_mean_a_junction(words: str, is_named: bool) -> None:
     assert names_a_junction(slotted(words)) == is_named
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "wanted"),
+    [
+        ("en el cruce en Y sigue por la izquierda", "crossroads left", "y_junction left"),
+        ("au carrefour en T, à droite", "crossroads right", "t_junction right"),
+        ("a un incrocio a T con semaforo giro a destra", "junction right lights", "t_junction right lights"),
+        ("an einer Kreuzung in Form eines Y links", "crossroads left", "y_junction left"),
+        ("en el cruce a la izquierda", "crossroads left", "crossroads left"),
+        ("un cruce en T? no: oblicuo", "crossroads right skew", "crossroads right skew"),
+        ("un cruce en Y, luego un cruce", "crossroads left // crossroads", "crossroads left // crossroads"),
+    ],
+)
+def test_a_junction_has_the_letter_of_its_noun(words: str, line: str, wanted: str) -> None:
+    assert plan(with_told_letter(read_plan(line), slotted(words))) == plan(read_plan(wanted))

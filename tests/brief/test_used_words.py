@@ -6,7 +6,7 @@ import numpy as np
 
 from roadgpt.brief.readers.model import used_words
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.used_words import passes_over_a_negation, unused_words
+from roadgpt.brief.readers.model.used_words import passes_over, unused_words
 
 FILLERS = frozenset(("a", "road", "with", "and", "the"))
 REASONS = {"up": {"uphill", "climbing"}, "turn": {"turns", "bends"}, "3": {"3"}}
@@ -57,7 +57,19 @@ def test_long_texts_are_tried_up_to_a_limit() -> None:
 
 
 def test_a_negation_that_changes_nothing_is_noticed() -> None:
-    assert passes_over_a_negation(("Nicht", "purple"))
-    assert passes_over_a_negation(idle("don't turns", "turn"))
+    text = slotted("nicht 40 purple turns")
+    assert passes_over(("Nicht", "purple"), text)
+    assert passes_over(idle("don't turns", "turn"), slotted("don't turns"))
     assert idle("don't turns", "turn") == ("don't",)
-    assert not passes_over_a_negation(("purple", "turns"))
+    assert not passes_over(("purple", "turns"), text)
+
+
+def test_a_number_that_changes_nothing_is_noticed_even_if_there_are_more_than_fit() -> None:
+    assert idle("turns of 40 m", "turn") == ("40 m",)
+    assert passes_over(("40 m",), slotted("turns of 40 m"))
+    many = ", ".join(f"a straight of {n} m" for n in range(41, 56))
+    text = slotted(many)
+    found = idle(many, *(f"[{n}]" for n in range(1, len(text.slots) + 1)))
+    assert [word for word in found if word[0].isdecimal()] == [
+        f"{41 + n} m" for n in range(len(text.slots), 15)
+    ]

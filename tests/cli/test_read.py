@@ -89,7 +89,7 @@ def test_doubt_and_words_that_were_not_used_are_said() -> None:
     brief = read_plan("turn x3")
     assert "not sure" not in understood(brief)
     doubtful = brief.model_copy(update={"confidence": 0.4, "unused": ("purple",)})
-    assert "not understood: 'purple'" in understood(doubtful)
+    assert "not used: 'purple'" in understood(doubtful)
     assert "perhaps not understood as meant (40 % sure)" in understood(doubtful)
 
 

@@ -36,7 +36,7 @@ def test_it_says_what_it_understood_before_the_first_road_and_ends_with_the_plac
     lines = result.stdout.splitlines()
     assert lines[0].startswith("I read this as: ")
     assert "3 turns" in lines[0]
-    assert "not understood: " in lines[0]
+    assert "not used: " in lines[0]
     assert "flurbed" in lines[0]
     assert [line[:3] for line in lines if line[1:3] == "/2"] == ["1/2", "2/2"]
     assert "pictures: " in lines[-1]

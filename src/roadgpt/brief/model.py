@@ -139,7 +139,7 @@ class Brief(Frozen):
     """Names of things that the description mentions and that no requirement expresses, such as 'roundabout';
     ``brief.beside`` says what becomes of each."""
     unused: tuple[str, ...] = ()
-    """The words of the description that were not understood."""
+    """The words of the description that the reading does not depend on."""
     confidence: Annotated[float, Field(ge=0, le=1)] = 1.0
     junctions: tuple[JunctionClause, ...] = ()
     """The junctions that the route passes, in driving order. If there are any, ``stretches`` has the

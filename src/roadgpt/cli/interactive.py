@@ -43,7 +43,7 @@ how long and how steep the road is. For example:
   two hairpins, then a long straight
   a winding road downhill, 300 m long, with 5 turns, the last one to the left
   a flat road with four sharp left turns
-Then say how many roads you want. Words that were not understood are listed before
+Then say how many roads you want. Words that were not used are listed before
 the first road is made.
 Here all options have their defaults, or what your settings say. 'roadgpt run' takes options:
   roadgpt run "a winding road downhill" -n 20 --seed 7 --friction 0.6

@@ -223,13 +223,13 @@ def other_reading(brief: "Brief") -> str:
 
 
 def reading(brief: "Brief") -> str:
-    """Returns a text that says how a description was read, and which words were not understood."""
+    """Returns a text that says how a description was read, and which words the reading does not use."""
     from roadgpt.brief import sentence
 
     said = sentence(brief).removesuffix(".")
     told = f"{said[:1].lower()}{said[1:]}"
     if brief.unused:
-        told += "; not understood: " + ", ".join(f"'{word}'" for word in brief.unused)
+        told += "; not used: " + ", ".join(f"'{word}'" for word in brief.unused)
     return told
 
 

@@ -151,12 +151,12 @@ class ModelReader:
             return ChangeReading(known, CERTAIN, ())
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)
         draft = next((draft for draft in near if not _lost_numbers(draft, text)), found[0])
-        found_in = features(draft, text)
+        found_in = features(self.roads.networks, draft, text)
         if draft.is_refusal:
-            return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, ()), ())
+            return ChangeReading(draft.line, confidence(self._settings["changes"], found_in, (), text), ())
         lost = _lost_numbers(draft, text)
         unused = self.roads.unused(text, draft.tokens)
-        sure = confidence(self._settings["changes"], found_in, unused)
+        sure = confidence(self._settings["changes"], found_in, (*lost, *unused), text)
         sure = min(sure, DOUBT) if is_denial(words) or is_doubtful_climb(draft.line, text) else sure
         return ChangeReading(with_sign(draft.line, text), sure, tuple(dict.fromkeys([*lost, *unused])))
 
@@ -165,7 +165,7 @@ class ModelReader:
         read.
         """
         text = slotted(words)
-        _, found = self.scored(words, refuse_from)
+        ensemble, found = self.scored(words, refuse_from)
         draft = most_plausible(found, text) if found else None
         if draft is None:
             return None
@@ -175,7 +175,7 @@ class ModelReader:
             brief = brief_of(draft.line, text, words)
         except BriefError:
             return None
-        return UncalibratedReading(plan(normal(brief)), features(draft, text))
+        return UncalibratedReading(plan(normal(brief)), features(ensemble.networks, draft, text))
 
     def uncalibrated_change(self, words: str, key: Callable[[str], str]) -> UncalibratedReading | None:
         """Returns the likeliest plan of a change request, in normal form, as an UncalibratedReading; None if
@@ -189,7 +189,8 @@ class ModelReader:
         found = scored_plans(self.roads.networks, words, NEVER, key=key)
         if not found:
             return None
-        return UncalibratedReading(key(found[0].line), features(found[0], slotted(words, is_change=True)))
+        text = slotted(words, is_change=True)
+        return UncalibratedReading(key(found[0].line), features(self.roads.networks, found[0], text))
 
     def alternatives(
         self, words: str, number: int = 3, temperature: float = 1.0, seed: int = 0
@@ -295,7 +296,7 @@ class ModelReader:
         except BriefError as error:
             raise BriefError(NOT_ONE_ROAD) from error
         unused = ensemble.unused(*(seen or (text, draft.tokens)))
-        sure = ensemble.confidence(draft, text, unused)
+        sure = ensemble.confidence(draft, text, unused, seen)
         found = {"words": words, "unused": unused, "confidence": sure}
         # brief.read decides by the words whether a road without junctions is a motorway
         found["motorway"] = False

@@ -1,18 +1,21 @@
-"""Computes the confidence in a reading from the probability of its plan and from the numbers of the text that
-the plan lacks.
+"""Computes the confidence in a reading from the probability of its plan and from the numbers and negations of
+the text that the plan lacks.
 """
 
 import re
 from collections.abc import Mapping, Sequence
-from math import exp, log1p
+from math import exp, log, log1p
 
+from roadgpt.brief.readers.model.neural_network import NeuralNetwork
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
-from roadgpt.brief.readers.model.used_words import left_out, passes_over_a_negation
+from roadgpt.brief.readers.model.used_words import left_out, passes_over
 
 DOUBT = 0.5
-"""The highest confidence of a reading that would stay the same if a word such as "not" were left out, and of
-the reading of a change request that says only what must not change."""
+"""The highest confidence of a reading that lacks a number of the text, or that would stay the same if a word
+such as "not" were left out, and of the reading of a change request that says only what must not change."""
+LEAST_UNLIKELY = 0.03
+"""Added before a logarithm is taken, so that it is finite for a plan with probability 1."""
 
 DENIAL = re.compile(
     r"(?:please )?(?:do not|don'?t|never) [^,;:.]*[.!]*"
@@ -30,24 +33,54 @@ def is_denial(words: str) -> bool:
     return DENIAL.fullmatch(words.strip().replace("’", "'")) is not None
 
 
-def features(draft: ScoredPlan, text: SlottedText) -> dict[str, float]:
-    """Returns the inputs of the confidence model by name: how likely the plan is, and how many numbers of the
-    text the plan lacks.
+def features(
+    networks: Sequence[NeuralNetwork],
+    draft: ScoredPlan,
+    text: SlottedText,
+    seen: tuple[SlottedText, Sequence[str]] | None = None,
+) -> dict[str, float]:
+    """Returns the inputs of the confidence model by name, the unlikely ones on a logarithmic scale.
+
+    ``seen`` is the text that the networks read and the tokens that they wrote, if they differ from ``text``
+    and from the tokens of ``draft``.
+
+    - ``all``, ``worst``: how unlikely the plan is, and its unlikeliest token, for the variant of the text in
+      which the plan scores highest.
+    - ``sceptic``: how unlikely the plan is for the text itself and the network that doubts it most.
+    - ``agreement``: the share of the variants and networks whose likeliest plan this is.
+    - ``numbers``: how many numbers of the text the plan lacks.
     """
-    return {**draft.features, "numbers": log1p(len(left_out(draft.tokens, text)))}
+    read, tokens = seen or (text, draft.tokens)
+    sceptic = max(-float(each.chances_of([read], tokens, read)[0].sum()) for each in networks)
+    return {
+        "all": _unlikely(-sum(draft.log_chances)),
+        "worst": _unlikely(-min(draft.log_chances)),
+        "sceptic": _unlikely(sceptic),
+        "agreement": draft.agreement,
+        "numbers": log1p(len(left_out(draft.tokens, text))),
+    }
 
 
-def confidence(weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str]) -> float:
+def _unlikely(lost: float) -> float:
+    """Returns the logarithm of a negative log-probability."""
+    return log(LEAST_UNLIKELY + max(lost, 0.0))
+
+
+def confidence(
+    weights: Mapping[str, float], found: Mapping[str, float], unused: Sequence[str], text: SlottedText
+) -> float:
     """Returns the estimated probability (0 to 1) that a reading is right.
 
-    The confidence model was fitted on held-out texts. The result for a reading that ignores a
-    negation is at most ``DOUBT``.
+    The confidence model was fitted on held-out texts. The result for a reading that ignores a number or a
+    negation is at most ``DOUBT``. Other unused words do not lower it: on held-out texts, readings with and
+    without such words were right equally often.
 
     Args:
         weights: the weights of the confidence model by the names of the features, and its "bias".
         found: the features of the reading, as ``features`` returns them.
         unused: the words that the plan does not depend on.
+        text: the description or change request.
     """
     score = weights["bias"] + sum(weight * found[name] for name, weight in weights.items() if name != "bias")
     sure = round(1 / (1 + exp(-score)), 3)
-    return min(sure, DOUBT) if passes_over_a_negation(unused) else sure
+    return min(sure, DOUBT) if passes_over(unused, text) else sure

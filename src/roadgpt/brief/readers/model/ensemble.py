@@ -53,9 +53,17 @@ class Ensemble:
         """Returns the words that a plan does not depend on, each once, in the order of the text."""
         return unused_words(self.networks[0], text, tokens, self.fillers, self.meanings)
 
-    def confidence(self, draft: ScoredPlan, text: SlottedText, unused: Sequence[str]) -> float:
-        """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts."""
-        return confidence(self.weights, features(draft, text), unused)
+    def confidence(
+        self,
+        draft: ScoredPlan,
+        text: SlottedText,
+        unused: Sequence[str],
+        seen: tuple[SlottedText, Sequence[str]] | None = None,
+    ) -> float:
+        """Returns the fraction (0 to 1) of readings like this one that were right on held-out texts; for
+        ``seen`` see ``features``.
+        """
+        return confidence(self.weights, features(self.networks, draft, text, seen), unused, text)
 
 
 def scored_by(

@@ -1,4 +1,4 @@
-"""Corrects what a route does at an exit of a motorway if the words say that it stays on the motorway."""
+"""Corrects what a route does at a ramp of a motorway if the words say where it comes from or goes to."""
 
 import re
 
@@ -32,6 +32,14 @@ REFUSES = re.compile(
     rf"\bsenza (?:uscire|prendere (?:l ?' ?|la |una )?{EXIT})\b"
 )
 """Words that say that no exit is taken."""
+JOINED = re.compile(
+    r"^\W*(?:(?:i|we|you|let us|the (?:car|ego)) )?"
+    r"(?:stay|remain|keep|carry|continu)\w* (?:\w+ )?(?:on|along) (?:(?:the|my|an?) )?(?:\S+ ){0,2}?"
+    rf"{ROAD}[^.;]{{0,40}}?"
+    r"\b(?:while|as|where|when|past|whereas) (?:an?|the|another) "
+    r"(?:on ?-? ?ramp|slip road|ramp|entry|entrance)[^.;]{0,20}? (?:come|join|merge|run|feed|enter)\w*\b"
+)
+"""The route is on the motorway first, and a ramp joins it."""
 LEAVES = re.compile(
     r"\b(?:leav\w*|off|come off|get off|take|taking|turn|exits? (?:there|again|right|left)|verlass\w*|"
     r"(?:fahr\w*|geh\w*) [^.;]*\b(?:ab|raus|runter)|abfahren|ausfahren|herunter|nehm\w*|nimm\w*|genommen|"
@@ -54,6 +62,35 @@ def with_stay_on_motorway(brief: Brief, words: str) -> Brief:
     at = ramps[0]
     passed = brief.junctions[at].model_copy(update={"take": "main"})
     return brief.model_copy(update={"junctions": (*brief.junctions[:at], passed, *brief.junctions[at + 1 :])})
+
+
+def with_motorway_behind_ramp(brief: Brief, words: str) -> Brief:
+    """Returns the Brief of a route that joins a motorway, with the motorway where the words have it.
+
+    - If the route comes from a ramp, what is said of a motorway before the merge is true of the road behind
+      it, unless that road has other lanes.
+    - If the route is on the motorway while a ramp joins it, it does not come from the ramp.
+    """
+    merges = [n for n, each in enumerate(brief.junctions) if each.kind == "merge"]
+    if merges != [0]:
+        return brief
+    merge, (before, behind, *roads) = brief.junctions[0], brief.stretches
+    if JOINED.search(plain(words)) and merge.take != "main":
+        junctions = (merge.model_copy(update={"take": "main"}), *brief.junctions[1:])
+        has_lanes = before.motorway or before.lanes is not None
+        before = before if has_lanes else before.model_copy(update=_carriageway(behind))
+        return brief.model_copy(update={"junctions": junctions, "stretches": (before, behind, *roads)})
+    is_misplaced = before.motorway and merge.take == "ramp"
+    if not is_misplaced or (behind.lanes is not None and behind.lanes != before.lanes):
+        return brief
+    bare = before.model_copy(update={"motorway": False, "lanes": None, "against": None})
+    behind = behind.model_copy(update=_carriageway(before))
+    return brief.model_copy(update={"stretches": (bare, behind, *roads)})
+
+
+def _carriageway(road: Brief) -> dict[str, object]:
+    """Returns whether a road is a motorway, and its lanes."""
+    return {"motorway": road.motorway, "lanes": road.lanes, "against": road.against}
 
 
 def _is_passed(junctions: tuple[JunctionClause, ...]) -> bool:

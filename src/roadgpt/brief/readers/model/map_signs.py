@@ -29,12 +29,12 @@ LIGHTS = (
 )
 NOUNS = rf"(?:{NOUN}|{ANY_KIND}|stars|sterne|etoiles|estrellas|stelle)"
 OF = (
-    r"(?:of|them|which|these|those|the|davon|von|ihnen|denen|dont|d|'|entre|elles|eux|de|ellos|ellas|los|las|"
+    r"(?:others?|of|them|which|these|those|the|davon|von|ihnen|denen|dont|d|'|entre|elles|eux|de|ellos|ellas|los|las|"
     r"cuales|di|dei|delle|quali|queste|questi|esse|essi|loro)"
 )
 BETWEEN = rf"((?: (?:{OF}|{NOUNS})\b){{0,5}})"
 """The words that may stand between a number of junctions and their lights."""
-HAVE = r"(?:with|have|has|having|get|mit|haben|bekommen|avec|ont|con|tienen|llevan|hanno)"
+HAVE = r"(?:with|have|has|having|get|mit|haben|bekommen|avec|ont|con|tienen?|llevan?|hanno)"
 ARTICLE = r"(?:the |a set of |eine[rn]? |des |les |un |los |i |il |el |le |dei )?"
 COUNTED = re.compile(rf"\b(\d+){BETWEEN},? {HAVE} {ARTICLE}{LIGHTS}\b")
 """A number, words for junctions, and a word such as "have" before lights: "two of them have lights"."""
@@ -45,8 +45,9 @@ AT = re.compile(
 )
 """Lights, a preposition and a number: "lights at two of them"."""
 ONE = re.compile(
-    r"\b(?:(?:only|just) one|(?<!every )(?<!each )one of (?:them|these|which)|nur eine[rs]?|"
-    r"eine[rs]? davon|un seul|une seule|dont une?|"
+    r"\b(?:(?:only|just|exactly) one(?: other)?|(?<!every )(?<!each )one of (?:them|these|which)|"
+    r"(?:nur|genau) eine[rs]?|"
+    r"eine[rs]? davon|exactement une?|exactamente un[oa]|esattamente un[oa]|un seul|une seule|dont une?|"
     r"solo un[oa]|un[oa] solo|un[oa] de (?:ellos|ellas|los cuales|las cuales)|un[oa] di (?:essi|esse|loro)) "
     rf"{HAVE} {ARTICLE}{LIGHTS}\b"
 )

@@ -14,7 +14,7 @@ from roadgpt.brief.readers.model.alike_junctions import with_counted_junctions
 from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
-from roadgpt.brief.readers.model.exit_words import with_stay_on_motorway
+from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.map_signs import with_counted_lights
 from roadgpt.brief.readers.model.map_words import with_counted_map
@@ -28,6 +28,7 @@ from roadgpt.brief.readers.model.told_junctions import (
     has_told_kinds,
     most_of_kinds,
     number_of_listed,
+    with_told_letter,
     with_told_total,
 )
 from roadgpt.brief.readers.model.whole_drive import with_whole_drive
@@ -103,7 +104,8 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
     brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
     brief = _with_turns_by_degrees(with_told_arms(brief, text))
-    brief = with_stay_on_motorway(without_own_lane(brief, words), words)
+    brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
+    brief = with_motorway_behind_ramp(brief, words)
     return with_other_roads(with_whole_drive(brief, words), words)
 
 

@@ -26,6 +26,8 @@ LINK = (
     r"lang|:|,))"
 )
 OF = r"(?: (?:of|de|di|long|lange[nr]?|d '))"
+OUT = r"(?: (?:out|off|over|away|another|a further)){0,3}"
+"""Words behind the verb: "tapers out over another 60 m"."""
 AFTER = r"(?:\b(after|in|nach|hinter|apres|dans|tras|en|despues de|dopo|fra|tra|until|bis|hasta|fino a) )?"
 """A word before a length with which it is the distance to the lane."""
 BOUND = re.compile(
@@ -39,7 +41,7 @@ BOUND = re.compile(
 
 def _places(noun: str) -> re.Pattern[str]:
     """Returns a pattern for a length before or behind a noun."""
-    return re.compile(rf"{AFTER}{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{LINK}{{0,3}} {SLOT}")
+    return re.compile(rf"{AFTER}{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{OUT}{LINK}{{0,3}} {SLOT}")
 
 
 LANES, TAPERS = _places(LANE), _places(TAPER)

@@ -8,7 +8,6 @@ skipped to save time.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import log
 
 from roadgpt.brief.map_clause import MAP
 from roadgpt.brief.normal import normal
@@ -29,8 +28,6 @@ ENDS = " .!"
 SURE = -0.1
 """If the log-probability of a whole plan is above this, the other variants are skipped. Of 943 descriptions
 held out from training, 781 got such a plan, and the other variants changed none of their readings."""
-LEAST_UNLIKELY = 0.03
-"""Added before a logarithm is taken, so that it is finite for a plan with probability 1."""
 NOT_A_MAP = tuple(token for token in TOKENS if token != MAP)
 """All tokens but the one with which plans of maps begin."""
 UNDECIDED = (0.03, 0.97)
@@ -55,18 +52,6 @@ class ScoredPlan:
     def is_refusal(self) -> bool:
         """True if the network refuses the description, because it describes no road that can be built."""
         return self.tokens[0] in REFUSALS
-
-    @property
-    def features(self) -> dict[str, float]:
-        """The inputs of the confidence model, by name: how unlikely the plan and its unlikeliest token are,
-        on a logarithmic scale, and its ``agreement``.
-        """
-        unlikely, worst = -sum(self.log_chances), -min(self.log_chances)
-        return {
-            "all": log(LEAST_UNLIKELY + max(unlikely, 0.0)),
-            "worst": log(LEAST_UNLIKELY + max(worst, 0.0)),
-            "agreement": self.agreement,
-        }
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
-from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL
+from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL, TAKEN_BACK
 from roadgpt.brief.readers.model.slots import SlottedText
 
 NOUNS: Mapping[JunctionKind, re.Pattern[str]] = {
@@ -36,6 +36,13 @@ MORE = re.compile(
     r"crois|gira|rond|rot|glor|cruc|incr|fork|gabel|bif|four|biv|star|junction)"
 )
 """Words that may stand for a further junction that has no noun of its own."""
+CROSSINGS: tuple[JunctionKind, ...] = ("crossroads", "junction", "t_junction", "y_junction")
+LETTERED: Mapping[str, JunctionKind] = {"t": "t_junction", "y": "y_junction"}
+LETTER = re.compile(
+    r"\b(?:cruce|interseccion|incrocio|intersezione|carrefour|intersection|croisement|junction|kreuzung|einmundung)"
+    r" (?:en|a|in|in der|in the|en)(?: forme? de| forma d[ei]| form eines| shape of an?)? ([ty])\b"
+)
+"""A junction that is named by the shape of a letter: "cruce en Y", "incrocio a T"."""
 TOTAL = re.compile(
     rf"\b(\d+) (?:\w+ )?(?:{PLURAL}|{ANY_KIND}) "
     r"(?:in all|in total|all told|altogether|overall|insgesamt|en tout|au total|en total|in tutto|"
@@ -84,6 +91,21 @@ def has_told_kinds(brief: Brief, most: Mapping[JunctionKind, int]) -> bool:
     """Returns whether a route has no more junctions of a kind than the words can mean."""
     kinds = [junction.kind for junction in brief.junctions]
     return all(kinds.count(kind) <= number for kind, number in most.items())
+
+
+def with_told_letter(brief: Brief, text: SlottedText) -> Brief:
+    """Returns a route whose only junction has the shape of the letter that the words give it.
+
+    The network reads "cruce" as crossroads, also in "cruce en Y".
+    """
+    found = set(LETTER.findall(text.text))
+    if len(brief.junctions) != 1 or brief.junctions[0].kind not in CROSSINGS:
+        return brief
+    if len(found) != 1 or "?" in text.text or TAKEN_BACK.search(text.text):
+        return brief
+    kind = LETTERED[found.pop()]
+    junction = brief.junctions[0].model_copy(update={"kind": kind, "arms": None})
+    return brief.model_copy(update={"junctions": (junction,)})
 
 
 def with_told_total(brief: Brief, text: SlottedText) -> Brief:

@@ -53,7 +53,7 @@ def unused_words(
     missing, slot = set(left_out(tokens, text)) - used_diameters(tokens, text), 0
     for place, word in enumerate(text.words):
         if word.text.startswith("[unused") and word.written:
-            if slot in missing:
+            if slot in missing or slot >= len(text.slots):
                 out.append(word.written)
             slot += 1
         elif place in idle:
@@ -67,9 +67,12 @@ def left_out(tokens: Sequence[str], text: SlottedText) -> list[int]:
     return [index for index in range(len(text.slots)) if SLOT_TOKENS[index] not in tokens]
 
 
-def passes_over_a_negation(unused: Sequence[str]) -> bool:
-    """Returns whether an unused word denies or limits something, such as "not" or "only"."""
-    return any(plain(word.removesuffix("'t")) in NEGATORS for word in unused)
+def passes_over(unused: Sequence[str], text: SlottedText) -> bool:
+    """Returns whether one of the unused words is a number of the text, or denies or limits something, such as
+    "not" or "only".
+    """
+    numbers = {w.written for w in text.words if w.text.startswith("[unused") or w.text.isdecimal()}
+    return any(word in numbers or plain(word.removesuffix("'t")) in NEGATORS for word in unused)
 
 
 def _idle(
