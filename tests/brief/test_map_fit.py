@@ -5,7 +5,11 @@ import pytest
 from roadgpt.brief import alternatives, exactly, read
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.refusal import TooMuchError
+from roadgpt.check.measures import measure
+from roadgpt.design import draft
+from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError
+from roadgpt.road import World, build
 
 LONG = (
     ("a straight road of 3 km", 3000, True),
@@ -72,3 +76,26 @@ def test_a_single_straight_is_held_against_the_diagonal(size: float) -> None:
     read(f"straight {fits:.0f}; turn left", "plan", map_size=size)
     with pytest.raises(BriefError, match=f"map of {size} m, which is .* from corner to corner"):
         read(f"straight {large:.0f}; turn left", "plan", map_size=size)
+
+
+@pytest.mark.parametrize(
+    ("words", "metres", "turns"),
+    [("a road 3 km long with 3 turns", 3000, 3), ("eine 2 km lange Straße mit 5 Kurven", 2000, 5)],
+)
+def test_a_road_too_long_for_the_usual_map_is_read_if_the_map_may_grow(
+    words: str, metres: float, turns: int
+) -> None:
+    with pytest.raises(BriefError, match="larger map"):
+        read(words, map_size=250)
+    brief = read(words, map_size=250, is_map_fixed=False)
+    assert brief.length == exactly(metres)
+    wide = world_for(brief, World())
+    assert wide.site.map_size > 250
+    found = measure(build(draft(brief, wide, seed=2)).sample().points)
+    assert found.length == pytest.approx(metres, rel=0.1)
+    assert len(found.turns) == turns
+
+
+def test_no_map_grows_for_eight_hundred_turns() -> None:
+    with pytest.raises(BriefError, match="no map holds so many turns"):
+        read("a road with 800 turns", map_size=250, is_map_fixed=False)

@@ -18,6 +18,7 @@ MEANINGS = {
     "line": frozenset({"centre="}),
     "fork": frozenset({"y_junction"}),
     "turning": frozenset({"@take"}),
+    "long": frozenset({"long"}),
 }
 
 
@@ -32,6 +33,11 @@ def covered(words: str, plan: str) -> set[str]:
 @pytest.mark.parametrize(
     ("words", "plan", "wanted"),
     [
+        ("a road 900 m long", "| len=900", {"long"}),
+        ("a straight 900 m long and another long one", "straight len=900; straight", {"long"}),
+        ("a long straight, a left of 80 degrees", "straight; turn left deg=80", {"left"}),
+        ("a road 900 m long", "straight long", {"long"}),
+        ("a long straight on a road of 900 m", "straight | len=900", set()),
         ("the lights of a crossroads", "crossroads lights", {"lights"}),
         ("the lights of a crossroads", "crossroads", set()),
         ("left, and left again", "crossroads left", set()),

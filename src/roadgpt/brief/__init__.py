@@ -157,7 +157,8 @@ def read(
     except TooMuchError as refusal:
         brief = refusal.brief
         check(brief, *limits)
-        if map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS:
+        is_usual = map_size is not None and map_size <= USUAL_MAP and min_radius >= LEAST_RADIUS
+        if is_map_fixed and is_usual:
             raise
     else:
         check(brief, *limits)

@@ -82,9 +82,15 @@ def understood(
         if word.isdecimal():
             if _is_counted(word, tokens, there):
                 found.add(place)
-        elif any(there[token] >= said[word] for token in asked):
+        elif any(there[token] >= said[word] for token in asked) or _is_of_length(words, place, asked, there):
             found.add(place)
     return frozenset(found)
+
+
+def _is_of_length(words: Sequence[str], place: int, asked: Collection[str], there: Mapping[str, int]) -> bool:
+    """Returns whether a word such as "long" stands beside a length in metres, which the plan has."""
+    beside = words[max(place - 1, 0) : place + 3]
+    return "long" in asked and there.get("len=", 0) > 0 and "metres" in beside
 
 
 def _is_absent(asked: Collection[str], there: Mapping[str, int]) -> bool:
