@@ -19,7 +19,7 @@ HALF = {"bias": 0.0, "numbers": 0.0}
 PLAIN = slotted("a road")
 
 
-class Mind:
+class EvenNetwork:
     """A stand-in for a network that gives each token of every plan the same log-probability."""
 
     def __init__(self, log_chance: float) -> None:
@@ -41,7 +41,7 @@ def test_numbers_that_the_plan_does_not_have_are_counted() -> None:
     turn = ("turn", "left", "deg=", "[1]", "r=", "[2]")
     assert left_out(turn, text) == [2]
     assert left_out((*turn, ";", "straight", "len=", "[3]"), text) == []
-    found = features([Mind(-0.1)], draft("turn"), text)  # type: ignore[list-item]
+    found = features([EvenNetwork(-0.1)], draft("turn"), text)  # type: ignore[list-item]
     assert found["numbers"] == pytest.approx(log(4))
 
 
@@ -68,7 +68,7 @@ def test_a_number_that_is_ignored_leaves_doubt_and_another_word_does_not(bias: f
 
 
 def test_the_network_that_doubts_a_plan_most_is_heard() -> None:
-    minds = [Mind(-0.01), Mind(-2.0), Mind(-0.5)]
+    minds = [EvenNetwork(-0.01), EvenNetwork(-2.0), EvenNetwork(-0.5)]
     found = features(minds, draft("turn", "left"), PLAIN)  # type: ignore[arg-type]
     assert found["sceptic"] == pytest.approx(log(0.03 + 3 * 2.0))
     assert found["all"] == pytest.approx(log(0.03 + 0.3))

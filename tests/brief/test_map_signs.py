@@ -260,6 +260,8 @@ def test_the_motorway_is_where_the_words_have_it(words: str, written: str, right
         ("carril de aceleración: 90 m", "merge ramp // | len=90", "merge ramp len=90"),
         ("a lane ends with a taper of 60 m", "merge main // lane_drop len=60", None),
         ("a deceleration lane of 80 m, no, of 90 m", "diverge ramp len=90", None),
+        ("a deceleration lane over 80 m long", "diverge ramp len=80..", None),
+        ("a ramp that tapers off over 70 m", "diverge ramp", "diverge ramp taper=70"),
         ("two acceleration lanes of 80 m", "merge ramp len=80 // merge ramp len=80", None),
         ("a deceleration lane of 80 to 100 m", "diverge ramp len=80..100", None),
         ("at least 80 m of deceleration lane", "diverge ramp len=80..", None),

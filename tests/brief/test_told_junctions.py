@@ -149,6 +149,7 @@ def test_some_nouns_can_only_mean_a_junction(words: str, is_named: bool) -> None
         ("au carrefour en T, à droite", "crossroads right", "t_junction right"),
         ("a un incrocio a T con semaforo giro a destra", "junction right lights", "t_junction right lights"),
         ("an einer Kreuzung in Form eines Y links", "crossroads left", "y_junction left"),
+        ("a junction in the shape of a T, left", "junction left", "t_junction left"),
         ("en el cruce a la izquierda", "crossroads left", "crossroads left"),
         ("un cruce en T? no: oblicuo", "crossroads right skew", "crossroads right skew"),
         ("un cruce en Y, luego un cruce", "crossroads left // crossroads", "crossroads left // crossroads"),

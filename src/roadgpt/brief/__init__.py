@@ -18,7 +18,7 @@ from roadgpt import plugins
 from roadgpt.brief import beside, motorway
 from roadgpt.brief.feasible import check, is_possible
 from roadgpt.brief.left_hand import with_driving_side
-from roadgpt.brief.map_fit import ROAD_WIDTH
+from roadgpt.brief.map_fit import LARGEST_MAP, ROAD_WIDTH
 from roadgpt.brief.model import (
     Amount,
     Brief,
@@ -138,7 +138,7 @@ def read(
         max_grade: steepest slope allowed, as a ratio (0.15 is 15 %).
         chat: settings of the language model, for readers that use one; None takes the user's settings.
         road_width: width of the carriageway in metres.
-        is_map_fixed: False if the map may be enlarged for the road; ``check`` then ignores the map.
+        is_map_fixed: False if the map may be enlarged for the road, up to ``LARGEST_MAP``.
 
     Raises:
         NoRoomError: the map is too small for the road that is asked for; the message says what would fit on
@@ -151,7 +151,7 @@ def read(
         ChatError: the language model could not be asked.
     """
     words = words.encode("utf-8", "replace").decode()  # lone surrogates cannot be written to a file
-    limits = (map_size if is_map_fixed else None, min_radius, max_grade, road_width)
+    limits = (map_size if is_map_fixed else LARGEST_MAP, min_radius, max_grade, road_width)
     try:
         brief = reader_of(reader, chat).read(words)
     except TooMuchError as refusal:

@@ -306,7 +306,8 @@ def check_length(length: float) -> None:
         UsageError: The length in plan is below 1 mm or above 50 km.
     """
     if not SHORTEST <= length <= LONGEST:
-        raise UsageError(f"the road is {length:.4g} m long in plan; give one of up to {LONGEST / 1000:g} km")
+        longest = f"give one of up to {LONGEST / 1000:g} km"
+        raise UsageError(f"the road is {length:.7g} m long in plan; {longest}")
 
 
 def check_grade(profile: ElevationProfile, length: float) -> None:

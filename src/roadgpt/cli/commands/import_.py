@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from roadgpt.road import ImportedRoad, Road, World
 
 ROOM = 20.0  # m kept free around a road that is moved onto the map
-LARGEST_MAP = 10_000.0  # m
 ROUND = 50.0  # m, to which a map's size is rounded up
 
 
@@ -65,6 +64,7 @@ def command(file: Path, wanted: str | None, out: Path | None, keep_place: bool, 
 
 def _on_a_map(found: "ImportedRoad") -> tuple["Road", "World", list[str]]:
     """Returns the road moved onto a map, the World with that map, and remarks on what was changed."""
+    from roadgpt.brief.map_fit import LARGEST_MAP
     from roadgpt.check.extremes import lowest
     from roadgpt.check.ribbon import extent
     from roadgpt.check.sbft import SPLINE_REACH

@@ -100,10 +100,12 @@ def scored_by(
     found = roads.scored(words, refuse_from)
     if routes and found and not TOLD_ON_ROUTES.isdisjoint(found[0].tokens):
         return routes, read or routes.scored(words, refuse_from)
+    if routes is None or not read:
+        return roads, found
     against = _confidence(roads, found, text)
-    if routes and read and read[0].is_refusal:
+    if read[0].is_refusal:
         return (routes, read) if against < SURE else (roads, found)
-    return (routes, read) if routes and is_route and sure >= against else (roads, found)
+    return (routes, read) if is_route and sure >= against else (roads, found)
 
 
 def _confidence(ensemble: Ensemble, found: Sequence[ScoredPlan], text: SlottedText) -> float:

@@ -74,7 +74,9 @@ KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
     "star": re.compile(NUMBER + r"(?:stars|sterne|etoiles|estrellas|stelle)\b"),
 }
 """A number before the plural noun of a kind of junction."""
-TAKEN_BACK = re.compile(r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b")
+TAKEN_BACK = re.compile(
+    r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|\? (?:no|non|nein)\b"
+)
 """Words with which a number may be taken back."""
 SIDE_STREETS = re.compile(
     r"side (?:streets?|roads?)|(?:seiten|neben)stra(?:ss|ß)en?|rues? (?:laterale|secondaire|transversale)s?|"

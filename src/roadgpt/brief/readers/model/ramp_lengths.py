@@ -20,14 +20,15 @@ LANE = (
     r"carril(?:es)? de (?:aceleracion|deceleracion|desaceleracion|incorporacion)|"
     r"corsia di (?:accelerazione|decelerazione|immissione))"
 )
-TAPER = r"(?:tapers?|verziehung|biseau|cuna|rastremazione)"
+TAPER = (
+    r"(?:tapers?(?: (?:out|off|away))?(?: over)?(?: another| a further)?|"
+    r"verziehung|biseau|cuna|rastremazione)"
+)
 LINK = (
     r"(?: (?:of|is|lasts|measures|von|ist|mit|de|di|da|est|mesure|mide|es|misura|e|long|lunga?|longue|larga?|"
     r"lang|:|,))"
 )
 OF = r"(?: (?:of|de|di|long|lange[nr]?|d '))"
-OUT = r"(?: (?:out|off|over|away|another|a further)){0,3}"
-"""Words behind the verb: "tapers out over another 60 m"."""
 AFTER = r"(?:\b(after|in|nach|hinter|apres|dans|tras|en|despues de|dopo|fra|tra|until|bis|hasta|fino a) )?"
 """A word before a length with which it is the distance to the lane."""
 BOUND = re.compile(
@@ -41,7 +42,7 @@ BOUND = re.compile(
 
 def _places(noun: str) -> re.Pattern[str]:
     """Returns a pattern for a length before or behind a noun."""
-    return re.compile(rf"{AFTER}{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{OUT}{LINK}{{0,3}} {SLOT}")
+    return re.compile(rf"{AFTER}{SLOT}{OF}{{0,2}} {noun}\b|\b{noun}{LINK}{{0,3}} {SLOT}")
 
 
 LANES, TAPERS = _places(LANE), _places(TAPER)

@@ -40,7 +40,7 @@ CROSSINGS: tuple[JunctionKind, ...] = ("crossroads", "junction", "t_junction", "
 LETTERED: Mapping[str, JunctionKind] = {"t": "t_junction", "y": "y_junction"}
 LETTER = re.compile(
     r"\b(?:cruce|interseccion|incrocio|intersezione|carrefour|intersection|croisement|junction|kreuzung|einmundung)"
-    r" (?:en|a|in|in der|in the|en)(?: forme? de| forma d[ei]| form eines| shape of an?)? ([ty])\b"
+    r" (?:en|a|in(?: the)?)(?: forme? de| forma d[ei]| form eines| shape of an?)? ([ty])\b"
 )
 """A junction that is named by the shape of a letter: "cruce en Y", "incrocio a T"."""
 TOTAL = re.compile(
@@ -101,7 +101,7 @@ def with_told_letter(brief: Brief, text: SlottedText) -> Brief:
     found = set(LETTER.findall(text.text))
     if len(brief.junctions) != 1 or brief.junctions[0].kind not in CROSSINGS:
         return brief
-    if len(found) != 1 or "?" in text.text or TAKEN_BACK.search(text.text):
+    if len(found) != 1 or TAKEN_BACK.search(text.text):
         return brief
     kind = LETTERED[found.pop()]
     junction = brief.junctions[0].model_copy(update={"kind": kind, "arms": None})
