@@ -45,6 +45,27 @@ FIVE = "turn left r=30; turn right r=30; turn left r=30; turn right r=30; turn l
             "turn x5 | alike beside(compared)",
             "turn x5 | beside(compared)",
         ),
+        (
+            "six corners, all with 20 m radius, 2 of them hairpins",
+            "hairpin x2; turn x4 r=20",
+            "hairpin x2 r=20; turn x4 r=20",
+        ),
+        ("cinco curvas, todas de 40 grados", "turn x2; turn x3 deg=40", "turn x2 deg=40; turn x3 deg=40"),
+        (
+            "three lefts, all with 30 m radius, then two rights",
+            "turn x3 left r=30; turn x2 right",
+            "turn x3 left r=30; turn x2 right",
+        ),
+        (
+            "fünf Kurven, alle 30 Grad bis auf eine Kehre",
+            "turn x4 deg=30; hairpin",
+            "turn x4 deg=30; hairpin",
+        ),
+        (
+            "six bends of 20 m, all of them 20 degrees",
+            "turn x2 deg=20 r=20; turn x4 deg=20",
+            "turn x2 deg=20 r=20; turn x4 deg=20",
+        ),
         ("alle Kurven nach rechts bis auf die erste", "turn; turn x3 right", "turn left; turn x3 right"),
     ],
 )

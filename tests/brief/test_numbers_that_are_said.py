@@ -20,14 +20,45 @@ from roadgpt.errors import BriefError
         ("five bends, give or take two, uphill", "3 to 7 bends , uphill"),
         ("6 hairpins (± 2)", "4 to 8 hairpins"),
         ("vier Kurven plus minus eine", "3 to 5 kurven"),
-        ("a road of 300 m (plus or minus 10 %)", "a road of [unused1] metres"),
-        ("60±5 m of straight", "[unused1] metres of straight"),
+        ("a road of 300 m (plus or minus 10 %)", "a road of [unused1] metres to [unused2] metres"),
+        ("60±5 m of straight", "[unused1] metres to [unused2] metres of straight"),
+        ("jede 45 ± 5 Grad", "jede [unused1] degrees to [unused2] degrees"),
+        ("radius 75 ± 0 m", "radius [unused1] metres"),
         ("five bends plus two hairpins", "5 bends plus 2 hairpins"),
         ("3 turns + 2 turns", "3 turns + 2 turns"),
     ],
 )
-def test_a_tolerance_widens_a_count_and_says_nothing_of_a_measure(text: str, read: str) -> None:
+def test_a_tolerance_makes_a_range(text: str, read: str) -> None:
     assert slotted(text).text == read
+
+
+@pytest.mark.parametrize(
+    ("text", "least", "most"),
+    [
+        ("a road of 300 m (plus or minus 10 %)", 270, 330),
+        ("380 ± 20 m", 360, 400),
+        ("0.4 km ± 20 m", 380, 420),
+        ("0,4 km ± 0,1", 300, 500),
+        ("each 30 degrees plus or minus 10", 20, 40),
+        ("6 % ± 1 %", 5, 7),
+        ("un radio de 40 m más o menos 5 m", 35, 45),
+    ],
+)
+def test_a_measure_with_a_tolerance_has_two_ends_in_its_unit(text: str, least: float, most: float) -> None:
+    found = slotted(text).slots
+    assert [slot.value for slot in found] == [least, most]
+    assert len({slot.unit for slot in found}) == 1
+
+
+def test_a_tolerance_in_a_change_request_is_left_out() -> None:
+    """A change has one target."""
+    assert [slot.value for slot in slotted("radius to 40 m ± 5 m", is_change=True).slots] == [40]
+
+
+def test_a_range_that_no_slot_holds_is_an_unread_number() -> None:
+    text = ", ".join(f"{60 + n} m" for n in range(11)) + ", 90 m ± 5 m"
+    assert len(slotted(text).slots) == 11
+    assert slotted(text).text.endswith("[unused20]")
 
 
 @given(st.integers(2, 9), st.integers(1, 8), st.sampled_from(["± {}", "plus or minus {}", "give or take {}"]))

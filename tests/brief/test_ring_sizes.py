@@ -43,6 +43,22 @@ def sized(text: str, tokens: str) -> str:
         ("roundabout, 30 m across, no, 60 m across", "roundabout normal", "roundabout large"),
         ("roundabout of 30 m diameter, no lights", "roundabout large", "roundabout normal"),
         ("a roundabout 200 m across", "roundabout large", "roundabout large"),
+        (
+            "deux ronds-points de 50 m de diamètre, tout droit aux deux",
+            "roundabout straight mini // roundabout straight normal",
+            "roundabout straight large // roundabout straight large",
+        ),
+        (
+            "first exit at one roundabout, second at the other; both are 20 m across",
+            "roundabout exit= 1 // roundabout exit= 2",
+            "roundabout mini exit=1 // roundabout mini exit=2",
+        ),
+        (
+            "a roundabout 20 m across, then another roundabout",
+            "roundabout // roundabout",
+            "roundabout // roundabout",
+        ),
+        ("una rotonda con isla de 36 m de diámetro", "roundabout", "roundabout"),
     ],
 )
 def test_a_diameter_decides_the_size(text: str, written: str, wanted: str) -> None:

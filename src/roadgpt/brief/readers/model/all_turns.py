@@ -9,8 +9,8 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from roadgpt.brief.model import OTHER_SIDE, Brief, Clause, exactly
-from roadgpt.brief.normal import STRAIGHT
+from roadgpt.brief.model import OTHER_SIDE, Amount, Brief, Clause, exactly
+from roadgpt.brief.normal import STRAIGHT, total
 from roadgpt.brief.readers.model.bounds import SENTENCE_STOPS, STOPS
 from roadgpt.brief.readers.model.count_correction import measured_values
 from roadgpt.brief.readers.model.nouns import COUNTED, LEFT, ONE_TURN, RIGHT
@@ -37,6 +37,8 @@ ALL = word_set(
     "all every each alle samtliche jede jeder tous toutes todos todas toda tutti tutte ogni cada chaque"
 )
 """Words for all turns; "tout" is left out, since "tout sauf" says that something is denied."""
+EVERYONE = word_set("all alle samtliche tous toutes todos todas tutti tutte")
+"""Words for all turns together, in the plural."""
 ONE_OF_ALL = word_set(
     "first second third fourth fifth last final middle one erste ersten zweite zweiten dritte dritten",
     "vierte vierten letzte letzten mittlere mittleren eine einer einen premier premiere deuxieme troisieme",
@@ -51,6 +53,7 @@ def with_words_of_all_turns(brief: Brief, text: SlottedText) -> Brief:
     if brief.junctions or brief.map is not None:
         return brief
     brief = _with_limit_of_all(_with_whole_alternation(brief, text), text)
+    brief = _with_measure_of_all(brief, text)
     return _with_unlike_parts(_with_other_exception(brief, text), text)
 
 
@@ -116,6 +119,40 @@ def _with_limit_of_all(brief: Brief, text: SlottedText) -> Brief:
             clauses = tuple(_without(clause, name) for clause in brief.clauses)
             return brief.model_copy(update={"clauses": clauses, name: limit})
     return brief
+
+
+def _with_measure_of_all(brief: Brief, text: SlottedText) -> Brief:
+    """Gives every turn the radius or the angle of "six bends, all with a radius of 20 m, two of them ..."."""
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
+    told = _told_of_all(total(brief.clauses), text)
+    names = ("radius", "degrees") if all(clause.kind == "turn" for clause in turning) else ("radius",)
+    for name in names:
+        values = {getattr(clause, name) for clause in turning}
+        if len(values) == 2 and None in values and values - {None} == {told}:
+            clauses = tuple(
+                each if each.kind in STRAIGHT else each.model_copy(update={name: told})
+                for each in brief.clauses
+            )
+            return brief.model_copy(update={"clauses": clauses})
+    return brief
+
+
+def _told_of_all(turns: Amount, text: SlottedText) -> Amount | None:
+    """Returns the number behind a word for all, if the count before it is that of all turns and no other
+    number of the text has its value.
+    """
+    found = list[str]()
+    words = [word.text for word in text.words]
+    for at in (place for place, word in enumerate(words) if word in EVERYONE):
+        count = next((float(word) for word in reversed(words[:at]) if word.isdecimal()), None)
+        near = words[at + 1 : at + 1 + NEAR]
+        slot = next((place for place, word in enumerate(near) if word.startswith("[unused")), NEAR)
+        if count is not None and exactly(count) == turns and not any(map(str.isdecimal, near[:slot])):
+            found += near[slot : slot + 1]
+    names = {slot_name(at): slot.value for at, slot in enumerate(text.slots)}
+    if len(found) != 1 or [*names.values()].count(names.get(found[0], 0.0)) != 1:
+        return None
+    return exactly(names[found[0]])
 
 
 def _without(clause: Clause, name: str) -> Clause:

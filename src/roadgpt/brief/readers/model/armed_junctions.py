@@ -4,11 +4,11 @@ import re
 
 from roadgpt.brief.amount import exactly
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.map_words import KINDS_IN_SINGULAR
 from roadgpt.brief.readers.model.slots import SlottedText
-from roadgpt.brief.readers.model.told_junctions import NOUNS
 
 OF_ANY_KIND = r"\b(?:junction|turning|einmundung|knoten(?:punkt)?|intersezione)\b"
-NOUN = rf"(?:{'|'.join([*(noun.pattern for noun in NOUNS.values()), OF_ANY_KIND])})"
+NOUN = rf"(?:{'|'.join([*(noun.pattern for noun in KINDS_IN_SINGULAR.values()), OF_ANY_KIND])})"
 ANY = re.compile(NOUN)
 ARMED = re.compile(
     rf"\b([3-6]) ?-? ?(?:way|arm|armed|leg|legged) {NOUN}|"

@@ -26,11 +26,32 @@ DEAD_END = (
     r"vicol[io] ciec(?:o|hi)|strad[ae] senza uscita)"
 )
 DEAD_ENDS = re.compile(rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?{DEAD_END}\b")
+ROAD_OUT = (
+    r"(?:(?:roads?|streets?) (?:that )?(?:leads? out|leading out|goes? out|"
+    r"leaves? (?:it|the (?:town|village)))|"
+    r"(?:stra(?:ss|ß)en?|wege?) (?:(?:fuhr\w*|geh\w*) )?(?:\w+ ){0,3}?(?:hinaus|heraus)|"
+    r"(?:routes?|rues?|chemins?) (?:qui )?(?:menent|mene|sortent|sort) (?:hors|du|de la|vers l ' exterieur)|"
+    r"(?:caminos?|calles?|carreteras?) (?:que )?(?:llevan?|conducen?|salen?) (?:hacia )?(?:a)?fuera|"
+    r"(?:strad[ae]|vi[ae]) (?:che )?(?:portano?|porta|conduc\w+|escono|esce) fuori)"
+)
+"""A road that leads out of a map, which counts as a dead end."""
+ROADS_OUT = re.compile(rf"\b(\d+|{NONE}) (?:\w+ )?{ROAD_OUT}\b")
+ENDS = rf"(?:\w+ )?(?:{DEAD_END}|{ROAD_OUT})\b"
+LEAST_ENDS = re.compile(rf"\b(?:at least|mindestens|au moins|al menos|almeno) (\d+) {ENDS}")
+MOST_ENDS = re.compile(
+    rf"\b(?:at most|no more than|up to|hochstens|maximal|bis zu|au plus|como mucho|al massimo) (\d+) {ENDS}"
+)
+RANGE_OF_ENDS = re.compile(
+    rf"\b(?:(\d+) (?:to|bis|a|-) (\d+)|(?:between|zwischen|entre|tra) (\d+) (?:and|und|et|y|e) (\d+)) {ENDS}"
+)
 BLOCKS = re.compile(
     rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?(?:blocks?|(?:hauser)?blocke?|ilots?|manzanas?|isolat[oi])\b"
 )
 BY = re.compile(
     r"\b(\d+) (?:by|x|mal|auf|per|por|sur) (\d+)\b(?! (?:lanes?|spuren|streifen|voies|carriles|corsie))"
+)
+SIDE_OF_BLOCK = re.compile(
+    r"\b(?:blocks?|(?:hauser)?blocken?|ilots|manzanas|isolati) (?:of|von|de|di) \[unused(\d+)\] metres\b"
 )
 IN_A_ROW = re.compile(
     r"\bin (?:one|1|a|single|einer|una) (?:single |einzigen )?(?:row|reihe|fila)\b|en (?:une )?rangee"
@@ -42,13 +63,17 @@ ACROSS = re.compile(
 """Words of grids whose total number of blocks may be larger than the number in the text ("3 blocks deep")."""
 EIGHT = re.compile(r"\b(?:acht|huit|ocho|otto)\b(?= \w+[sni]\b)")
 """The number 8 before a plural; the networks read these words themselves."""
-ANY_KIND = r"junctions|intersections|knoten(?:punkte?n?)?|intersecciones|intersezioni"
+ANY_KIND = (
+    r"junctions|intersections|nodes|knoten(?:punkte?n?)?|jonctions|noeuds|intersecciones|nudos|nodos|"
+    r"intersezioni|nodi"
+)
 CROSSINGS = rf"{ANY_KIND}|crossings|cross ?-? ?roads|kreuzungen|carrefours|croisements|cruces|incroci"
 IN_ALL = r"in all|in total|all told|altogether|insgesamt|en tout|au total|en total|in tutto|in totale"
 OF_THESE = (
     r"(?:of (?:them|which|these)|davon|dont|de (?:ellos|ellas|los cuales|las cuales)|d(?:ei|elle) quali|"
     r"di quest[ie])"
 )
+ONE_OF_THESE = rf"\b(?:(?:{ONE}) {OF_THESE}|{OF_THESE} (?:{ONE})) (?:\w+ ){{0,3}}?"
 IS_TOTAL = re.compile(rf"\b(?:{IN_ALL})\b|\b{OF_THESE}\b|\binsgesamt \d+\b")
 """Words with which a number of junctions is that of all of them."""
 ALL_KINDS = re.compile(
@@ -74,6 +99,19 @@ KINDS_IN_PLURAL: Mapping[MapJunctionKind, re.Pattern[str]] = {
     "star": re.compile(NUMBER + r"(?:stars|sterne|etoiles|estrellas|stelle)\b"),
 }
 """A number before the plural noun of a kind of junction."""
+KINDS_IN_SINGULAR: Mapping[MapJunctionKind, re.Pattern[str]] = {
+    "crossroads": re.compile(
+        r"\b(?:cross ?-? ?roads?|intersection|crossing(?! roads?| streets?| traffic)|kreuzung|carrefour|"
+        r"croisement|cruce|interseccion|incrocio)\b"
+    ),
+    "roundabout": re.compile(
+        r"\b(?:(?:mini)?roundabout|rotary|traffic circle|(?:mini)?kreisverkehr|(?:mini)?kreisel|rond - point|"
+        r"giratoire|glorieta|rotonda|rotatoria)\b"
+    ),
+    "y_junction": re.compile(r"\b(?:fork|y - junction|gabelung|bifurcation|fourche|bifurcacion|bivio)\b"),
+    "star": re.compile(r"\bstar\b"),
+}
+"""The singular nouns for junctions of each kind, in a text without accents."""
 TAKEN_BACK = re.compile(
     r"\bno ,|\bnein ,|\bnot\b|\brather\b|\binstead\b|\bsondern\b|\bmake that\b|\? (?:no|non|nein)\b"
 )
@@ -118,10 +156,14 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
     off_street = _off_main_street(said, found)
     if off_street is not None and (asked.dead_ends is None or asked.dead_ends.exact):
         return brief.model_copy(update={"map": asked.model_copy(update=off_street)})
-    update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said)}
+    update: dict[str, object] = {} if asked.junctions else {**_blocks(asked, said), **_side(asked, text)}
     asked = asked.model_copy(update={"junctions": _counted_kinds(asked, said)})
     asked = asked.model_copy(update=_other_junctions(asked, said))
-    if asked.dead_ends is None or asked.dead_ends.exact:
+    found = found or ROADS_OUT.findall(said)
+    bounded = _bounded_ends(said)
+    if bounded is not None and len(found) == 1:
+        update["dead_ends"] = bounded
+    elif asked.dead_ends is None or asked.dead_ends.exact:
         dead_ends = one_number(found) if found else _around_blocks(asked, said)
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
         if dead_ends is not None and not is_vague:
@@ -201,9 +243,15 @@ def _named_and_others(asked: MapClause, number: int, said: str) -> dict[str, obj
 
 
 def is_counted(junctions: JunctionCount, said: str) -> bool:
-    """Returns whether the words have this number of junctions before the plural of their kind."""
+    """Returns whether the words have this number of junctions before the plural of their kind, or "one of
+    them" before its singular.
+    """
     noun, count = KINDS_IN_PLURAL.get(junctions.kind), junctions.count
-    return noun is not None and count.exact and f"{count.lo:g}" in noun.findall(said)
+    if noun is None or not count.exact:
+        return False
+    if count == exactly(1) and (single := KINDS_IN_SINGULAR.get(junctions.kind)) is not None:
+        return re.search(ONE_OF_THESE + single.pattern, said) is not None
+    return f"{count.lo:g}" in noun.findall(said)
 
 
 def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
@@ -221,6 +269,27 @@ def _blocks(asked: MapClause, said: str) -> dict[str, Amount]:
         return {}
     is_turned = asked.columns == exactly(rows) and asked.rows == exactly(columns)
     return {} if is_turned or not is_exact else {"columns": exactly(columns), "rows": exactly(rows)}
+
+
+def _side(asked: MapClause, text: SlottedText) -> dict[str, Amount]:
+    """Returns the length of a grid's roads, if the plan lacks it and the words give that of a block."""
+    found = SIDE_OF_BLOCK.findall(text.text)
+    if asked.length is not None or len(found) != 1 or int(found[0]) > len(text.slots):
+        return {}
+    return {"length": exactly(text.slots[int(found[0]) - 1].value)}
+
+
+def _bounded_ends(said: str) -> Amount | None:
+    """Returns the bound or range that the words give to the number of dead ends; None if there is none."""
+    if TAKEN_BACK.search(said):
+        return None
+    if found := RANGE_OF_ENDS.search(said):
+        least, most = (int(number) for number in found.groups() if number)
+        return Amount(lo=least, hi=most) if least < most else None
+    if found := LEAST_ENDS.search(said):
+        return Amount(lo=int(found[1]))
+    found = MOST_ENDS.search(said)
+    return Amount(hi=int(found[1])) if found else None
 
 
 def _around_blocks(asked: MapClause, said: str) -> int | None:

@@ -30,8 +30,9 @@ class Number:
     unit: Unit = ""
     is_bare: bool = True
     factor: float = 1.0
-    spread: int = 0
-    """Tolerance of a count: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns."""
+    spread: float = 0
+    """Tolerance: 1 for "four turns, plus or minus one", which accepts 3 to 5 turns. That of a measure has the
+    unit of its value."""
 
 
 def unit_at(tokens: Sequence[str], at: int) -> tuple[Unit, float, int] | None:

@@ -5,6 +5,7 @@ taper of 30 m" it wrote a road of 30 m before the exit.
 """
 
 import re
+from collections.abc import Collection
 
 from roadgpt.brief.amount import Amount, exactly
 from roadgpt.brief.junctions import RAMPS
@@ -12,6 +13,8 @@ from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.map_words import TAKEN_BACK
 from roadgpt.brief.readers.model.slots import SlottedText
 
+TAPERED = ("lane_drop", "lane_gain")
+"""The kinds that are a taper and nothing else."""
 SLOT = r"\[unused(\d+)\] metres"
 LANE = (
     r"(?:(?:acceleration|deceleration|accel|decel|merging|merge|speed - change) lanes?|"
@@ -50,31 +53,38 @@ ANY_LANE, ANY_TAPER = re.compile(rf"\b{LANE}\b"), re.compile(rf"\b{TAPER}\b")
 
 
 def with_ramp_lengths(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief of a route with the lengths that the words give to its only ramp.
+    """Returns the Brief of a route with the lengths that the words give to its only ramp, or to the taper of
+    its only lane that ends or begins.
 
-    The Brief is returned unchanged if the words or the plan have several ramps, if a lane ends or begins
-    elsewhere, which has a taper, too, or if a number may belong to several things. A road beside the ramp
-    that has the number loses it.
+    The Brief is returned unchanged if the words or the plan have several of these, or if a number may belong
+    to several things. The roads beside it lose the number, and a ramp without a lane of its own in the words
+    loses a length that is that of its taper.
     """
-    ramps = [n for n, each in enumerate(brief.junctions) if each.kind in RAMPS]
-    if len(ramps) != 1 or any(each.kind in ("lane_drop", "lane_gain") for each in brief.junctions):
-        return brief
-    at = ramps[0]
-    ramp = brief.junctions[at]
-    found = {"length": _told(LANES, ANY_LANE, text), "taper": _told(TAPERS, ANY_TAPER, text)}
-    update = {name: told for name, told in found.items() if told and getattr(ramp, name) != told}
+    places = [n for n, each in enumerate(brief.junctions) if each.kind in (*RAMPS, *TAPERED)]
     is_unclear = TAKEN_BACK.search(text.text) or BOUND.search(text.text)
-    if not update or found["length"] == found["taper"] or is_unclear:
+    if len(places) != 1 or is_unclear:
         return brief
-    roads = list(brief.stretches)
-    metres = [exactly(slot.value) for slot in text.slots]
+    at = places[0]
+    told = {"length": _told(LANES, ANY_LANE, text), "taper": _told(TAPERS, ANY_TAPER, text)}
+    update: dict[str, Amount | None] = {name: amount for name, amount in told.items() if amount}
+    if told["length"] == told["taper"]:
+        return brief
+    if brief.junctions[at].kind in TAPERED:
+        update = {"length": told["taper"]} if told["taper"] and not told["length"] else {}
+    elif brief.junctions[at].length == told["taper"] and not ANY_LANE.search(text.text):
+        update["length"] = None
+    junctions, roads = list(brief.junctions), list(brief.stretches)
+    junctions[at] = junctions[at].model_copy(update=update)
     for n in (at, at + 1):
-        length = roads[n].length
-        if length is not None and length in update.values() and metres.count(length) == 1:
-            roads[n] = roads[n].model_copy(update={"length": None})
-    junctions = list(brief.junctions)
-    junctions[at] = ramp.model_copy(update=update)
+        roads[n] = _without_length(roads[n], update.values(), text)
     return brief.model_copy(update={"junctions": tuple(junctions), "stretches": tuple(roads)})
+
+
+def _without_length(road: Brief, told: Collection[Amount | None], text: SlottedText) -> Brief:
+    """Returns a road without its length, if that is a number that the text has once, for something else."""
+    is_once = [exactly(slot.value) for slot in text.slots].count(road.length or exactly(0)) == 1
+    is_other = road.length is not None and road.length in told and is_once
+    return road.model_copy(update={"length": None}) if is_other else road
 
 
 def _told(pattern: re.Pattern[str], noun: re.Pattern[str], text: SlottedText) -> Amount | None:

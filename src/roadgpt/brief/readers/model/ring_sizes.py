@@ -10,13 +10,20 @@ from collections.abc import Sequence
 from roadgpt.brief.amount import exactly, span
 from roadgpt.brief.junctions import ACROSS, SIZES, JunctionClause
 from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.all_turns import EXCEPT
 from roadgpt.brief.readers.model.slots import SlottedText, slot_name
 from roadgpt.brief.readers.model.vocabulary import RING_SIZES, SIDES, SLOT_TOKENS, TAKES
 
 TOLD = re.compile(r"across|diam|durchmess|circle|ø")
 ISLAND = re.compile(
-    r"island|insel|ilot|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
+    r"island|insel|ilot|\bisla\b|isleta|islote|isola|anillo|inner|innen|interi|radius|rayon|radio|raggio"
 )
+SHARED = re.compile(
+    r"\b(?:both|each|all|every|beide|jeweils|alle|chacun|chaque|tous|cada|ambas|todas|tutte|entrambe|ognuna|"
+    r"ciascuna)\b|\b(?:roundabouts|ronds - points|giratoires|rotatorie|rotonde|glorietas|rotondas) "
+    r"(?:of|de|di) \[unused"
+)
+"""Words near the only diameter of a text with which it is that of all roundabouts."""
 CORRECTED = re.compile(
     r"^metres(?: \w+){0,3} [,.;:-] (?:no|nein|non|sorry|pardon|scusa|perdon) (?:[,.;:!]|\[unused)"
 )
@@ -94,6 +101,9 @@ def _sized_rings(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, in
     sizes = [found for found in _sizes(tokens, text) if found[1]]
     places = [place for place, token in enumerate(tokens) if token == ROUNDABOUT and _is_open(tokens, place)]
     sized = [place for place in places if _size_at(tokens, place) is not None]
+    is_shared = len(sizes) == 1 and SHARED.search(_near(text, sizes[0][0])) is not None
+    if is_shared and EXCEPT.isdisjoint(word.text for word in text.words):
+        sizes = sizes * len(places)
     rings = sized if len(sized) == len(sizes) else places
     if len(rings) != len(sizes) or "map" in tokens:
         return []
@@ -118,13 +128,19 @@ def _sizes(tokens: Sequence[str], text: SlottedText) -> list[tuple[int, str]]:
         name = slot_name(index)
         if slot.unit != "metres" or SLOT_TOKENS[index] in tokens or words.count(name) != 1:
             continue
-        place = words.index(name)
-        near = " ".join(words[max(0, place - REACH) : place + REACH + 2])
+        place, near = words.index(name), _near(text, index)
         is_taken_back = CORRECTED.match(" ".join(words[place + 1 : place + 8])) is not None
         if TOLD.search(near) and not ISLAND.search(near) and not is_taken_back:
             size = next((size for size, span in SIZES.items() if slot.value < span.hi + 1), "")
             found.append((index, size))
     return found
+
+
+def _near(text: SlottedText, index: int) -> str:
+    """Returns the words around a slot that the text has once."""
+    words = [word.text for word in text.words]
+    place = words.index(slot_name(index))
+    return " ".join(words[max(0, place - REACH) : place + REACH + 2])
 
 
 def _clause(tokens: Sequence[str], place: int) -> Sequence[str]:

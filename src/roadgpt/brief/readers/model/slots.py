@@ -107,7 +107,7 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     for number in numbers:
         as_grade(number, tokens)
     numbers = numbers if is_change else with_multiples(numbers, tokens)
-    found = _replaced(tokens, said, numbers)
+    found = _replaced(tokens, said, numbers, is_change)
     return SlottedText((Word(CHANGE, ""), *found.words), found.slots) if is_change else found
 
 
@@ -278,7 +278,7 @@ def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
     return best
 
 
-def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> SlottedText:
+def _replaced(tokens: list[str], said: list[str], numbers: list[Number], is_change: bool) -> SlottedText:
     out: list[Word] = []
     slots: list[NumberSlot] = []
     starts = {number.first: number for number in numbers}
@@ -297,19 +297,35 @@ def _replaced(tokens: list[str], said: list[str], numbers: list[Number]) -> Slot
             continue
         if number.is_bare and is_count(tokens, number):
             out += _count(number, spoken)
-        elif len(slots) >= SLOTS:
-            out.append(Word("[unused20]", spoken))
         else:
-            out.append(Word(slot_name(len(slots)), spoken))
-            slots.append(NumberSlot(number.value, number.unit))
-            out += [Word(text, "") for text in _tail(number)]
+            out += _measure(number, spoken, slots, is_change)
         at = number.last + 1
     return SlottedText(tuple(out), tuple(slots))
 
 
+def _measure(number: Number, spoken: str, slots: list[NumberSlot], is_change: bool) -> list[Word]:
+    """Returns the words for a measure and adds its slot to ``slots``; one with a tolerance becomes a range.
+
+    In a change request the tolerance is left out, because a change has one target.
+    """
+    has_range = 0 < number.spread < number.value and not is_change
+    ends = (-number.spread, number.spread) if has_range else (0.0,)
+    if len(slots) + len(ends) > SLOTS:
+        return [Word("[unused20]", spoken)]
+    out: list[Word] = []
+    for end in ends:
+        value = round(number.value + end, 1)
+        out += [Word("to", "")] if out else []
+        out.append(Word(slot_name(len(slots)), spoken))
+        slots.append(NumberSlot(value, number.unit))
+        out += [Word(text, "") for text in _tail(value, number.unit)]
+        spoken = ""
+    return out
+
+
 def _count(number: Number, spoken: str) -> list[Word]:
     """Returns a small number without a unit as digits; with a tolerance, as a range such as "3 to 5"."""
-    value, spread = int(number.value), number.spread
+    value, spread = int(number.value), int(number.spread)
     if not spread:
         return [Word(str(value), spoken)]
     return [Word(str(max(value - spread, 0)), spoken), Word("to", ""), Word(str(value + spread), spoken)]
@@ -323,17 +339,17 @@ def _is_ordinal(tokens: list[str], number: Number) -> bool:
     )
 
 
-def _tail(number: Number) -> list[str]:
+def _tail(value: float, unit: Unit) -> list[str]:
     """Returns the unit, and a mark if the size of the number matters for what the words mean."""
-    value, marks = number.value, {
+    marks = {
         "percent": ((15.0, "[unused21]"),),
         "metres": ((1500.0, "[unused21]"),),
         "degrees": ((210.0, "[unused21]"), (99.9, "[unused24]")),
     }  # fmt: skip
-    tail: list[str] = [number.unit] if number.unit else []
-    tail += [mark for limit, mark in marks.get(number.unit, ()) if value > limit][:1]
-    if number.unit == "metres" and value < 20:
+    tail: list[str] = [unit] if unit else []
+    tail += [mark for limit, mark in marks.get(unit, ()) if value > limit][:1]
+    if unit == "metres" and value < 20:
         tail.append("[unused22]" if value < 15 else "[unused23]")
-    if number.unit == "degrees" and value < 15:
+    if unit == "degrees" and value < 15:
         tail.append("[unused22]")
     return tail

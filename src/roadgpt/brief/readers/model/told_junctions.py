@@ -6,22 +6,9 @@ from collections.abc import Mapping, Sequence
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
-from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL, TAKEN_BACK
+from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL, KINDS_IN_SINGULAR, TAKEN_BACK
 from roadgpt.brief.readers.model.slots import SlottedText
 
-NOUNS: Mapping[JunctionKind, re.Pattern[str]] = {
-    "crossroads": re.compile(
-        r"\b(?:cross ?-? ?roads?|intersection|crossing(?! roads?| streets?| traffic)|kreuzung|carrefour|"
-        r"croisement|cruce|interseccion|incrocio)\b"
-    ),
-    "roundabout": re.compile(
-        r"\b(?:(?:mini)?roundabout|rotary|traffic circle|(?:mini)?kreisverkehr|(?:mini)?kreisel|rond - point|"
-        r"giratoire|glorieta|rotonda|rotatoria)\b"
-    ),
-    "y_junction": re.compile(r"\b(?:fork|y - junction|gabelung|bifurcation|fourche|bifurcacion|bivio)\b"),
-    "star": re.compile(r"\bstar\b"),
-}
-"""The singular nouns for junctions of each kind, in a text without accents."""
 SIDE_ROAD = re.compile(
     r"\b(?:side (?:road|street)|t - junction|(?:neben|seiten)stra(?:ss|ß)e|einmundung|rue laterale|"
     r"calle lateral|strada laterale)\b"
@@ -71,7 +58,7 @@ def most_of_kinds(text: SlottedText) -> dict[JunctionKind, int]:
     said = text.text
     if ANY_PLURAL.search(_without_crossroads(said)) or MORE.search(said):
         return {}
-    found = {kind: len(noun.findall(said)) for kind, noun in NOUNS.items()}
+    found = {kind: len(noun.findall(said)) for kind, noun in KINDS_IN_SINGULAR.items()}
     return {kind: number for kind, number in found.items() if number}
 
 
@@ -83,7 +70,7 @@ def _without_crossroads(said: str) -> str:
 def names_a_junction(text: SlottedText) -> bool:
     """Returns whether a noun of the text can only mean a junction."""
     said = text.text
-    nouns = (NOUNS["crossroads"], NOUNS["roundabout"], SIDE_ROAD, ANY_PLURAL)
+    nouns = (KINDS_IN_SINGULAR["crossroads"], KINDS_IN_SINGULAR["roundabout"], SIDE_ROAD, ANY_PLURAL)
     return any(noun.search(said) for noun in nouns)
 
 

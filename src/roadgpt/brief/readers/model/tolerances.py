@@ -1,6 +1,5 @@
-"""Reads tolerances: "four turns, plus or minus one" is read as three to five turns, "60 m ± 5 m" as 60 m.
-
-Lengths and angles always have the tolerances in ``brief.words``, so those in the text are dropped.
+"""Reads tolerances: "four turns, plus or minus one" is read as three to five turns, "60 m ± 5 m" as 55 to
+65 m.
 """
 
 from collections.abc import Sequence
@@ -45,7 +44,7 @@ def _is_count(tokens: Sequence[str], at: int) -> bool:
 
 
 def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:
-    """Removes the numbers that are tolerances; a count that has a tolerance keeps it as ``spread``."""
+    """Removes the numbers that are tolerances; the number that has the tolerance keeps it as ``spread``."""
     out: list[Number] = []
     for number in numbers:
         if out and _is_tolerance(tokens[out[-1].last + 1 : number.first]) and number.value < out[-1].value:
@@ -82,8 +81,19 @@ def _take(number: Number, tolerance: Number, tokens: Sequence[str]) -> None:
     if number.is_bare and tolerance.unit in ("metres", "degrees"):
         number.value = round(number.value * tolerance.factor, 1)
         number.unit, number.is_bare = tolerance.unit, False
-    if both_counts and tolerance.value == int(tolerance.value):
-        number.spread = int(tolerance.value)
+    if not both_counts:
+        number.spread = _in_unit_of(number, tolerance)
+    elif tolerance.value == int(tolerance.value):
+        number.spread = tolerance.value
     is_open = "(" in tokens[number.last + 1 : tolerance.first]
     closes = tolerance.last + 1 < len(tokens) and tokens[tolerance.last + 1] == ")"
     number.last = tolerance.last + (is_open and closes)
+
+
+def _in_unit_of(number: Number, tolerance: Number) -> float:
+    """Returns the tolerance of a measure in the unit of its value; a percentage of a length is one of it."""
+    if tolerance.unit == number.unit:
+        return tolerance.value
+    if tolerance.unit == "percent":
+        return number.value * tolerance.value / 100
+    return tolerance.value * number.factor if tolerance.is_bare else 0
