@@ -19,7 +19,7 @@ from roadgpt.brief import SURE as SURE_ENOUGH
 from roadgpt.brief.readers.model.height_words import height_wish
 from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.slots import slotted
-from roadgpt.brief.readers.model.swap_words import turns_to_swap
+from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
 from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.design.edit.reading import read_request
 from roadgpt.design.edit.request import Change, EditRequest, Target
@@ -505,3 +505,25 @@ def test_any_row_of_words_is_read_or_refused(words: list[str]) -> None:
 def test_any_text_is_read_or_refused(words: str) -> None:
     with suppress(EditError):
         assert read_request(words).changes
+
+
+@pytest.mark.parametrize(
+    ("words", "written", "right"),
+    [
+        (
+            "let the first and the fourth turn swap radii",
+            "turn 1,4: radius =turn 1",
+            "turn 1: radius =turn 4; turn 4: radius =turn 1",
+        ),
+        (
+            "Tausche die Längen der ersten und der letzten Geraden.",
+            "straight 1,-1: length =straight -1",
+            "straight 1: length =straight -1; straight -1: length =straight 1",
+        ),
+        ("turns 2 and 4 share the radius of turn 2", "turn 2,4: radius =turn 2", None),
+        ("échange les rayons des virages 1, 2 et 3", "turn 1,2,3: radius =turn 1", None),
+        ("swap turns 1 and 2, both with the radius of turn 5", "turn 1,2: radius =turn 5", None),
+    ],
+)
+def test_two_parts_exchange_a_value(words: str, written: str, right: str | None) -> None:
+    assert exchanged_values(written, slotted(words, is_change=True)) == right

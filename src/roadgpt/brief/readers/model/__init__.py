@@ -33,7 +33,7 @@ from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.ring_sizes import with_diameters
 from roadgpt.brief.readers.model.route_words import COMPANIONS
 from roadgpt.brief.readers.model.slots import SlottedText, slotted
-from roadgpt.brief.readers.model.swap_words import turns_to_swap
+from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan, scored_plans
 from roadgpt.brief.readers.model.total_turning import total_turning
 from roadgpt.brief.readers.model.vocabulary import plan_of
@@ -146,7 +146,8 @@ class ModelReader:
         found = scored_plans(self.roads.networks, words, self.roads.refuse_from, key=key)
         if not found:
             raise BriefError("this could not be read as changes; use shorter sentences")
-        known = _climb(text, found[0].line) or _swap(text, found[0].line)
+        line = found[0].line
+        known = _climb(text, line) or _swap(text, line) or exchanged_values(line, text)
         if known is not None:
             return ChangeReading(known, CERTAIN, ())
         near = (draft for draft in found if draft.score >= found[0].score - ALMOST)

@@ -1,4 +1,6 @@
-"""Recognises change requests that only ask two turns to change places, for which the network has no word."""
+"""Recognises change requests that ask two turns to change places, for which the network has no word, or two
+parts to exchange a value.
+"""
 
 import re
 
@@ -41,6 +43,8 @@ MORE = re.compile(
     r"radi\w+|raggi\w*|rayon\w*|angle\w*|winkel\w*|angul\w*|angol\w*|slope\w*|grade\w*|not|nicht|pas|no|non)\b"
 )
 """Words with which something other than the places of two turns is exchanged, or nothing."""
+COPIED = re.compile(r"(turn|straight) (-?\d),(-?\d): (angle|radius|length|slope) =(turn|straight) (-?\d)")
+"""A plan that gives one of two parts the value of the other."""
 WORDS = 12  # words of a request at most
 
 
@@ -57,3 +61,15 @@ def turns_to_swap(text: SlottedText) -> str | None:
         one, other = (ORDINALS.get(word) or int(word) for word in found[0] if word)
         return f"turn {one},{other}"
     return "turn all" if BOTH.search(said) else None
+
+
+def exchanged_values(line: str, text: SlottedText) -> str | None:
+    """Returns the plan in which two parts exchange a value, where the words say so and the network wrote that
+    both get the value of one: "turn 1,4: radius =turn 1". Returns None for other requests.
+    """
+    found = COPIED.fullmatch(line)
+    said = " ".join(word.text for word in text.words if word.written)
+    if found is None or found[1] != found[5] or found[6] not in found.group(2, 3) or not SWAP.search(said):
+        return None
+    noun, one, other, value = found.group(1, 2, 3, 4)
+    return f"{noun} {one}: {value} ={noun} {other}; {noun} {other}: {value} ={noun} {one}"
