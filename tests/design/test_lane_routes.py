@@ -24,7 +24,7 @@ from roadgpt.network import NetworkDesign, Route, build_route, read_network_desi
 from roadgpt.network.lane_design import narrow_part
 from roadgpt.road import Site, World
 
-WIDE = World(site=Site(map_size=600))
+WIDE = World(site=Site(map_size=800))
 TWO_EACH = {"lanes": 2, "lanes_against": 2}
 LANE_CHANGE = {"kind": "lane_change", "dir": "left"}
 CASES: dict[str, dict[str, Any]] = {
@@ -317,6 +317,34 @@ def test_the_centre_line_goes_on_where_the_route_leads_straight_on() -> None:
     assert centres(f"| centre=double // {ahead} // crossroads right") == ["double", "double", "broken"]
     assert centres(f"| centre=double // {ahead} // | centre=solid") == ["double", "solid"]
     assert centres("| centre=double // crossroads straight // | divided lanes=2 against=2")[0] == "double"
+
+
+def tightest(design: NetworkDesign, last: int) -> float:
+    """The smallest radius in metres of the roads before the place number ``last``."""
+    bends = [each for each in design.segments[: design.junctions[last].after] if each.turn_degrees]
+    return min((each.distance / np.radians(abs(each.turn_degrees)) for each in bends), default=np.inf)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_motorway_stays_one_behind_a_change_of_lanes(seed: int) -> None:
+    brief = read_plan("| motorway lanes=3 // lane_change right // | len=400 // diverge ramp")
+    design = Planner().draft(brief, WIDE, (), (), seed)
+    assert isinstance(design, NetworkDesign)
+    assert tightest(design, 1) > 500
+    before_the_exit = design.segments[: design.junctions[1].after]
+    assert max(abs(each.incline) for each in before_the_exit) <= 5
+
+
+def test_a_road_with_an_exit_has_sweeping_bends_unless_others_are_asked_for() -> None:
+    def radius(line: str, seed: int) -> float:
+        design = Planner().draft(read_plan(line), WIDE, (), (), seed)
+        assert isinstance(design, NetworkDesign)
+        return tightest(design, 0)
+
+    free = [radius("| len=400 lanes=2 // diverge ramp", seed) for seed in range(12)]
+    assert any(np.isfinite(free))
+    assert min(free) >= 40
+    assert max(radius("turn sharp // diverge ramp", seed) for seed in range(4)) < 40
 
 
 def test_a_motorway_is_nearly_straight_beside_a_ramp() -> None:

@@ -161,6 +161,23 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     return found
 
 
+def with_motorways(brief: Brief) -> Brief:
+    """Returns the requirements with "motorway" for every part of a motorway, so that no part is drafted with
+    tight bends or steep grades. A motorway continues where only its lanes change, and past its ramps.
+    """
+    roads = list(brief.stretches)
+    continued = [n for n, place in enumerate(brief.junctions) if _is_one_road(place)]
+    for n in (*continued, *reversed(continued)):
+        if roads[n].motorway or roads[n + 1].motorway:
+            roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
+    return brief.model_copy(update={"stretches": tuple(roads)})
+
+
+def main_roads(places: Sequence[JunctionClause]) -> set[int]:
+    """Returns the numbers of the roads of a route that a ramp joins or leaves."""
+    return {n + (place.kind == "merge") for n, place in enumerate(places) if place.kind in RAMPS}
+
+
 def _on_ramps(places: Sequence[JunctionClause]) -> list[bool]:
     """Returns for each road of a route whether the route passes a ramp between the crossings around it.
 

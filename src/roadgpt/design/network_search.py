@@ -25,6 +25,8 @@ from roadgpt.design.lane_draft import (
     drawn_change,
     drawn_ramp,
     lanes_of_roads,
+    main_roads,
+    with_motorways,
 )
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
@@ -85,7 +87,8 @@ class NetworkSearch:
         """
         for clause in brief.junctions:
             check_junction(clause)
-        self.brief, self.world, self.rng = brief, world, rng
+        self.brief, self.world, self.rng = with_motorways(brief), world, rng
+        self.has_wide_bends = main_roads(brief.junctions)
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
         self.failed: Counter[str] = Counter()
@@ -216,7 +219,7 @@ class NetworkSearch:
             if rest is not None and n in free:
                 left = rest - sum(drafted.line.s[-1] for _, drafted in found.values())
                 share = left / sum(each not in found for each in free)
-            draft = self._stretch(_without_ramps(briefs[n], n, junctions), haste, share, self._shortest(n))
+            draft = self._stretch(_without_ramps(briefs[n], n, junctions), n, haste, share)
             if draft is None:
                 self.failed[UNDRAFTED] += 1
                 return None
@@ -244,16 +247,16 @@ class NetworkSearch:
         )
         return float(self.rng.uniform(0.7 * low + 0.3 * high, 0.3 * low + 0.7 * high)) - inside
 
-    def _stretch(self, brief: Brief, haste: float, length: float | None, shortest: float) -> Draft | None:
+    def _stretch(self, brief: Brief, n: int, haste: float, length: float | None) -> Draft | None:
         """Returns a draft of a road between junctions; None if no draft was accepted.
 
         Args:
             brief: the requirements for the road.
+            n: the number of the road. If a ramp joins or leaves it, turns that are not required are sweeping.
             haste: from 0 to 1; the larger it is, the shorter the road.
             length: the length in metres that the road should have; None if it is open.
-            shortest: the least length in metres of a road of which no length is required.
         """
-        wanted = brief
+        wanted, shortest = brief, self._shortest(n)
         if length is not None:
             if length < SHORTEST:
                 return None
@@ -269,6 +272,8 @@ class NetworkSearch:
         elif not brief.clauses and brief.turns is None:
             is_straight = brief.motorway or self.rng.random() > CURVED * (1 - haste)
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
+        if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
+            wanted = wanted.model_copy(update={"sharpness": "sweeping"})
         search = DraftSearch(wanted, self.world, Shapes().of(()), self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
