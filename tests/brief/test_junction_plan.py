@@ -163,6 +163,9 @@ def test_what_is_no_plan_is_refused_in_one_sentence(line: str, told: str) -> Non
         ("map columns=2 rows=2 dead_ends=2.5", "a map has 0, 1, 2 or more dead ends, not 2.5"),
         ("map t_junction x3 dead_ends=2", "leave an odd number of dead ends, 5 at most, not 2"),
         ("map t_junction x2 dead_ends=6", "leave 4 dead ends at most, not 6"),
+        ("map t_junction x2 blocks=3", "enclose at most 2 blocks, not 3"),
+        ("map t_junction x3 blocks=0.5", "roads enclose 0, 1, 2 or more blocks, not 0.5"),
+        ("map t_junction x4 blocks=1 dead_ends=6", "cannot have 1 blocks and 6 dead ends: without blocks"),
         ("map columns=1 rows=1 dead_ends=0", "one block without dead ends has no junction"),
         ("map columns=2 rows=1 dead_ends=9", "6 roads at most lead out of this grid, not 9"),
         ("// roundabout mini r=30 //", "a mini roundabout is 13 to 25 m wide"),
@@ -215,6 +218,7 @@ def test_a_road_of_a_route_is_not_bound_by_the_map_alone() -> None:
         ("star deg=60", "At a star junction turn by 60 degrees."),
         ("merge ramp len=150 taper=50", "At a merge 150 metres long with a taper of 50 metres use the ramp."),
         ("map t_junction x3 dead_ends=1", "A map with 3 T-junctions; 1 dead end."),
+        ("map t_junction x4 blocks=0", "A map with 4 T-junctions; 0 blocks."),
         (
             "// t_junction straight ways=left+straight priority //",
             "At a T-junction with ways on to the left and straight on where the route has priority go "
@@ -263,3 +267,8 @@ def test_an_amount_of_arms_may_be_open() -> None:
 def test_a_road_of_which_nothing_is_asked_may_be_left_out(short: str, full: str) -> None:
     assert read_plan(short) == read_plan(full)
     assert "// //" not in plan(read_plan(full))
+
+
+def test_a_grid_has_no_blocks_besides_its_columns_and_rows() -> None:
+    with pytest.raises(BriefError, match="leave blocks= out of the plan"):
+        read_plan("map columns=2 rows=2 blocks=4")

@@ -57,6 +57,11 @@ MAPS = {
     "map t_junction x3 dead_ends=5": (0, 5),
     "map crossroads x2; t_junction x2 dead_ends=2": (3, 2),
     "map roundabout; t_junction dead_ends=1": (None, 1),
+    "map t_junction x4 blocks=0": (0, 6),
+    "map t_junction x2 blocks=2": (2, 0),
+    "map t_junction x2 blocks=1 dead_ends=2": (1, 2),
+    "map crossroads x3 blocks=0 lights": (0, 8),
+    "map crossroads; y_junction x2 blocks=2 || left_hand": (2, 2),
 }
 
 

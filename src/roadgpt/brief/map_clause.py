@@ -2,6 +2,7 @@
 
 map columns=3 rows=2 lights        a grid of three by two blocks with traffic lights
 map crossroads x3; roundabout      three crossroads and a roundabout, joined by roads
+map t_junction x4 blocks=0         four T-junctions whose roads enclose no area
 map junction x2 lights; junction x3    five junctions, two of them with traffic lights
 map columns=2 rows=2 route=left+straight   a grid, and where the route through it goes at its junctions
 """
@@ -11,13 +12,14 @@ from typing import Self, get_args
 
 from pydantic import Field, ValidationError, model_validator
 
-from roadgpt.brief.amount import Amount, Frozen, exactly
+from roadgpt.brief.amount import Amount, Frozen, exactly, span
 from roadgpt.brief.junctions import Control, MapJunctionKind, Way
 from roadgpt.brief.plan_amount import amount_text, read_amount
+from roadgpt.brief.words import Range
 from roadgpt.errors import BriefError
 
 MAP = "map"
-KEYS = {"columns": "columns", "rows": "rows", "len": "length", "dead_ends": "dead_ends"}
+KEYS = {"columns": "columns", "rows": "rows", "len": "length", "blocks": "blocks", "dead_ends": "dead_ends"}
 ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
 CONTROLS = get_args(Control)
@@ -43,6 +45,8 @@ class MapClause(Frozen):
     length: Amount | None = None
     """The distance in metres between neighbouring junctions."""
     junctions: tuple[JunctionCount, ...] = ()
+    blocks: Amount | None = None
+    """The number of areas that the roads between junctions enclose; a grid has columns and rows instead."""
     dead_ends: Amount | None = None
     """The number of dead ends; a road that leads out of the map also counts as a dead end."""
     control: Control | None = None
@@ -55,9 +59,23 @@ class MapClause(Frozen):
         is_grid = self.columns is not None and self.rows is not None
         if is_grid == bool(self.junctions) or (self.columns is None) != (self.rows is None):
             raise ValueError("a map has either columns and rows of blocks, or kinds of junctions")
+        if is_grid and self.blocks is not None:
+            raise ValueError("the blocks of a grid are its columns and rows; leave out blocks=")
         if self.junctions and all(each.control for each in self.junctions):
             raise ValueError("if every kind of junction has a control, the last one's is that of the map")
         return self
+
+    def ends_of_tree(self, arms: float) -> Range:
+        """Returns how many dead ends the map may have.
+
+        Args:
+            arms: the number of free arms if the junctions are joined as a tree, without blocks. Each block
+                joins two of them.
+        """
+        blocks = span(self.blocks)
+        enclosing = Range(arms - 2 * blocks.hi, arms - 2 * max(blocks.lo, 0))
+        asked = span(self.dead_ends)
+        return Range(max(asked.lo, enclosing.lo), min(asked.hi, enclosing.hi))
 
     def control_of(self, junctions: JunctionCount) -> Control | None:
         """Returns the sign or light that these junctions of the map must have; None if that is open."""
@@ -123,6 +141,8 @@ def read_map(line: str) -> MapClause:
         if found[0] in fields:
             raise BriefError(f"a plan gives {found[0]} of a map twice: '{word[:40]}'; give it once")
         fields[found[0]] = found[1]
+    if "blocks" in fields and "columns" in fields:
+        raise BriefError("the blocks of a grid are its columns and rows, so leave blocks= out of the plan")
     try:
         return MapClause(**fields, junctions=tuple(counts))
     except ValidationError as error:

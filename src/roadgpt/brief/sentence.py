@@ -54,6 +54,7 @@ def _map_sentence(asked: MapClause, brief: Brief) -> str:
     text += f" of {asked.length} metres" if asked.length else ""
     is_said = any(each.control for each in asked.junctions)
     text += f" {CONTROLS[asked.control]}" if asked.control and not is_said else ""
+    text += f"; {_counted(asked.blocks, 'block')}" if asked.blocks else ""
     text += f"; {_counted(asked.dead_ends, 'dead end')}" if asked.dead_ends else ""
     text += f"; the route goes {', '.join(asked.route)}" if asked.route else ""
     return "; ".join([text, *_wishes(brief)]) + "."

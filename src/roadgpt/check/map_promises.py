@@ -58,6 +58,8 @@ def _complaints(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
     if found.parts > 1:
         yield f"asked for one map, has {found.parts} parts that no road joins"
     yield from _kinds(found, asked) if asked.junctions else _grid(found, asked)
+    if asked.blocks is not None and found.blocks not in span(asked.blocks):
+        yield f"asked for {asked.blocks} enclosed blocks, has {found.blocks}"
     if asked.dead_ends is not None and found.ends not in span(asked.dead_ends):
         yield f"asked for {asked.dead_ends} dead ends, has {found.ends}"
     if asked.length is not None:

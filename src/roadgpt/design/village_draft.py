@@ -14,6 +14,7 @@ from roadgpt.brief.amount import span
 from roadgpt.brief.junction_check import MOST_OF_KIND
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.words import Range
 from roadgpt.design.clearance import Disc, Line, is_clear
 from roadgpt.design.grid_draft import drawn_count
 from roadgpt.design.junction_draft import drawn_junction
@@ -51,11 +52,12 @@ def draft_village(
 ) -> MapDraft | None:
     """Returns the draft of a map of roads with junctions.
 
-    Returns None if there was no room for a junction, or if the number of dead ends is not the required one.
+    Returns None if there was no room for a junction, or if the number of dead ends or of blocks is not the
+    required one.
 
     Args:
-        asked: the kinds of junctions, how many of each, the distance between them, and the number of dead
-            ends.
+        asked: the kinds of junctions, how many of each, the distance between them, and the numbers of blocks
+            and dead ends.
         world: the width of lanes and shoulders.
         least_radius: the smallest radius in metres of a bend.
         rng: random number generator.
@@ -69,7 +71,7 @@ def draft_village(
     village.put(junctions[0], 0j, float(rng.uniform(0, 2 * pi)))
     if not all(village.grow(junction) for junction in junctions[1:]):
         return None
-    for _ in range(1 if asked.dead_ends is None else ORDERS):
+    for _ in range(ORDERS if village.has_asked_ends else 1):
         trial = village.copied()
         if trial.join_arms():
             trial.end_arms()
@@ -93,7 +95,7 @@ def _junctions(
         control = asked.control_of(kinds[n]) or "none"
         found.append(junction.model_copy(update={"kerb": drawn_kerb(rng, haste), "control": control}))
     free = sum(len(each.all_arms) + 1 for each in found) - 2 * (len(found) - 1)
-    wanted = span(asked.dead_ends)
+    wanted = asked.ends_of_tree(free)
     return found if any(number in wanted for number in range(free, -1, -2)) else None
 
 
@@ -127,6 +129,13 @@ class _Village:
     draft: MapDraft = field(default_factory=MapDraft)
     free: list[_FreeArm] = field(default_factory=list)
     discs: list[Disc] = field(default_factory=list)
+    ends: Range = field(default_factory=Range)
+    """The allowed numbers of dead ends, once all junctions are joined."""
+
+    @property
+    def has_asked_ends(self) -> bool:
+        """Whether a number of dead ends or of blocks is required."""
+        return not (self.asked.dead_ends is None and self.asked.blocks is None)
 
     def copied(self) -> "_Village":
         """Returns a copy to which nodes and roads can be added without changing this draft."""
@@ -247,22 +256,22 @@ class _Village:
     def join_arms(self) -> bool:
         """Joins pairs of free arms by roads with one bend.
 
-        If a number of dead ends is required, arms that one bend cannot join are joined by two.
+        If a number of dead ends or of blocks is required, arms that one bend cannot join are joined by two.
 
-        Returns whether as many arms remain free as dead ends are required.
+        Returns whether as many arms remain free as dead ends are required, by their number or by that of
+        blocks.
         """
-        asked = self.asked.dead_ends
-        fewest, share = (ENDS, JOINED) if asked is None else (span(asked).lo, 1.0)
+        asked = self.has_asked_ends
+        self.ends = self.asked.ends_of_tree(len(self.free))
+        fewest, share = (self.ends.lo, 1.0) if asked else (ENDS, JOINED)
         pairs = list(combinations(self.free, 2))
         for n in self.rng.permutation(len(pairs)):
             one, other = pairs[n]
-            is_done = len(self.free) < fewest + 2 or (
-                asked is not None and self._is_met and self.rng.random() < DONE
-            )
+            is_done = len(self.free) < fewest + 2 or (asked and self._is_met and self.rng.random() < DONE)
             if is_done or one not in self.free or other not in self.free or one.node == other.node:
                 continue
             bends = self._meeting(one, other)
-            if not bends and asked is not None:
+            if not bends and asked:
                 bends = self._linked(one, other)
             if bends and self.rng.random() < share:
                 self.free.remove(one)
@@ -276,7 +285,7 @@ class _Village:
     @property
     def _is_met(self) -> bool:
         """Whether the number of free arms is an allowed number of dead ends."""
-        return len(self.free) in span(self.asked.dead_ends)
+        return len(self.free) in self.ends
 
     def _meeting(self, one: _FreeArm, other: _FreeArm) -> list[DraftNode]:
         """Returns the bend at which two arms meet; none if they do not, or something is in the way."""
