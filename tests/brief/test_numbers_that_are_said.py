@@ -42,12 +42,25 @@ def test_a_tolerance_makes_a_range(text: str, read: str) -> None:
         ("each 30 degrees plus or minus 10", 20, 40),
         ("6 % ± 1 %", 5, 7),
         ("un radio de 40 m más o menos 5 m", 35, 45),
+        ("a few hundred metres of straight road", 200, 500),
+        ("several hundred yards of it", 274.3, 823),
+        ("a few dozen metres further", 24, 60),
+        ("nach ein paar hundert Metern", 200, 500),
+        ("mehrere Hundert Meter", 300, 900),
+        ("quelques centaines de mètres tout droit", 200, 500),
+        ("unos cientos de metros", 200, 500),
+        ("qualche centinaio di metri", 200, 500),
     ],
 )
 def test_a_measure_with_a_tolerance_has_two_ends_in_its_unit(text: str, least: float, most: float) -> None:
     found = slotted(text).slots
-    assert [slot.value for slot in found] == [least, most]
+    assert [slot.value for slot in found] == pytest.approx([least, most], abs=0.1)
     assert len({slot.unit for slot in found}) == 1
+
+
+def test_sets_of_other_things_than_measures_stay_words() -> None:
+    assert slotted("a few hundred cars pass, then a left turn").slots[0].value == 100
+    assert [slot.value for slot in slotted("a couple of hundred metres").slots] == [200]
 
 
 def test_a_tolerance_in_a_change_request_is_left_out() -> None:

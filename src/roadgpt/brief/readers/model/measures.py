@@ -69,6 +69,7 @@ def take_unit(number: Number, tokens: list[str]) -> None:
         if found and not (tokens[at + skip] in ("º", "a", "e") and number.value < 10):
             unit, factor, size = found
             number.value, number.unit = round(number.value * factor, 1), unit
+            number.spread *= factor
             number.last, number.is_bare, number.factor = at + skip + size - 1, False, factor
             return
     number.value = round(number.value, 1)

@@ -36,6 +36,7 @@ from roadgpt.brief.readers.model.units import (
     SETS,
     SHARE_FILLERS,
     SHARES,
+    VAGUE_SETS,
     Unit,
 )
 
@@ -217,7 +218,7 @@ def _is_fraction(tokens: list[str], at: int) -> bool:
 
 
 def _set(tokens: list[str], at: int) -> Number | None:
-    """Reads "half a dozen" and the like, with or without hyphens."""
+    """Reads "half a dozen", "a few hundred metres" and the like, with or without hyphens."""
     best: Number | None = None
     key: list[str] = []
     for place in range(at, min(at + 6, len(tokens))):
@@ -226,6 +227,9 @@ def _set(tokens: list[str], at: int) -> Number | None:
         key.append(tokens[place])
         if tuple(key) in SETS:
             best = Number(SETS[tuple(key)], at, place)
+        if tuple(key) in VAGUE_SETS and unit_at(tokens, place + 1):
+            least, most = VAGUE_SETS[tuple(key)]
+            best = Number((least + most) / 2, at, place, spread=(most - least) / 2)
     return best
 
 

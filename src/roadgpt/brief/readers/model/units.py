@@ -115,12 +115,39 @@ SETS: dict[tuple[str, ...], int] = {
         60: "une soixantaine de|soixantaine de|una sessantina di|sessantina di",
         80: "una ottantina di|ottantina di|un ottantina di",
         100: "une centaine de|centaine de|un centinaio di|centinaio di|un centenar de|centenar de",
+        24: "a couple of dozen|couple of dozen|a couple dozen|couple dozen",
+        200: "a couple of hundred|couple of hundred|a couple hundred|couple hundred",
         12: "a dozen|dozen|ein dutzend|dutzend|une douzaine|une douzaine de|una docena|una docena de"
         "|una dozzina|una dozzina di",
     }.items()
     for key in keys.split("|")
 }
 """Words for a set of things ("a couple of"), and the number of things they mean."""
+VAGUE_SETS: dict[tuple[str, ...], tuple[int, int]] = {
+    tuple(key.split()): between
+    for between, keys in {
+        (20, 50): "a few tens of|few tens of|quelques dizaines de|unas decenas de|algunas decenas de"
+        "|qualche decina di|alcune decine di",
+        (24, 60): "a few dozen|few dozen|ein paar dutzend|einige dutzend|quelques douzaines de"
+        "|unas docenas de|qualche dozzina di|alcune dozzine di",
+        (30, 90): "several tens of|plusieurs dizaines de|varias decenas de|diverse decine di"
+        "|parecchie decine di",
+        (36, 90): "several dozen|mehrere dutzend|plusieurs douzaines de|varias docenas de",
+        (20, 90): "tens of|dizaines de|decenas de|decine di",
+        (200, 500): "a few hundred|few hundred|a few hundreds of|ein paar hundert|einige hundert"
+        "|wenige hundert|quelques centaines de|unos cientos de|algunos cientos de|unos centenares de"
+        "|algunos centenares de|qualche centinaio di|alcune centinaia di|poche centinaia di",
+        (300, 900): "several hundred|several hundreds of|mehrere hundert|plusieurs centaines de"
+        "|varios cientos de|varios centenares de|diverse centinaia di|parecchie centinaia di",
+        (200, 900): "hundreds of|hunderte|hunderte von|centaines de|cientos de|centenares de|centinaia di",
+        (2000, 5000): "a few thousand|few thousand|ein paar tausend|einige tausend|quelques milliers de"
+        "|unos miles de|qualche migliaio di|alcune migliaia di",
+    }.items()
+    for key in keys.split("|")
+}
+"""Words before a unit for roughly so many of it ("a few hundred metres"), with the least and the greatest
+number that they mean.
+"""
 ORDINALS = frozenset(["st", "nd", "rd", "th", "er", "ere", "eme", "e", "a", "o", "nde", "ste", "te"])
 FUNCTION_WORDS: dict[str, frozenset[str]] = {
     code: frozenset(its.split())
