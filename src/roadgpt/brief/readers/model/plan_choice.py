@@ -15,6 +15,7 @@ from roadgpt.brief.readers.model.all_turns import with_words_of_all_turns
 from roadgpt.brief.readers.model.armed_junctions import with_told_arms
 from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
+from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
 from roadgpt.brief.readers.model.map_signs import with_counted_lights
 from roadgpt.brief.readers.model.map_words import with_counted_map
@@ -106,6 +107,7 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = _with_turns_by_degrees(with_told_arms(brief, text))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_motorway_behind_ramp(brief, words)
+    brief = with_distances_from_start(brief, words)
     return with_other_roads(with_whole_drive(brief, words), words)
 
 
