@@ -41,7 +41,7 @@ def test_a_word_that_goes_with_another_one_is_not_reported_as_unread() -> None:
 
 
 def test_what_the_networks_for_roads_can_write_is_their_reading() -> None:
-    for words in ("three turns, no junctions", "a left bend and then a right one, without any lanes marked"):
+    for words in ("three turns, no junctions", "a left bend and then a right one, without any lane changes"):
         assert may_tell_a_route(words)
         by, plans = READER.scored(words)
         assert by is READER.roads

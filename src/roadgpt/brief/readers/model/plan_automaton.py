@@ -188,7 +188,8 @@ def _map(numbers: Numbers) -> Symbol:
     kinds = OneOf((*JUNCTIONS, "roundabout"))
     listed = Sequel(kinds, (count, ListTail(";", Sequel(kinds, (count,)), MOST_KINDS - 1)))
     grid = Sequel(Keyed("columns=", numbers), (Keyed("rows=", numbers),))
-    tail = InOrder((Keyed("len=", numbers), Keyed("dead_ends=", numbers), OneOf(CONTROLS)))
+    keys = ("len=", "blocks=", "dead_ends=")
+    tail = InOrder((*(Keyed(key, numbers) for key in keys), OneOf(CONTROLS)))
     whole = Sequel(OneOf(("||",)), (InOrder((OneOf(("left_hand",)), _beside()), least=1),), is_open=True)
     return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), tail, whole))
 

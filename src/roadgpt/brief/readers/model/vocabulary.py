@@ -98,6 +98,7 @@ NETWORKS = [
     *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
     "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
     "d=", *NEWER_FLAGS, "angle=", "in=", "out=", "dead_ends=", "taper=",
+    "blocks=",
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
 OF_ROADS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
