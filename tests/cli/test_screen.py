@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from roadgpt import stopping
 from roadgpt.cli.result_row import COLOURS, Row, metres, summary
 from roadgpt.cli.screen import Screen
 from roadgpt.cli.streams import apart
@@ -155,3 +156,18 @@ def test_an_error_while_a_step_is_made_leaves_standard_output_where_it_was() -> 
 )
 def test_a_margin_that_is_hardly_negative_is_not_minus_nothing(margin: float, told: str) -> None:
     assert metres(margin) == told
+
+
+@pytest.mark.parametrize(("status", "is_told"), [(143, True), (0, False)])
+def test_what_is_finished_is_told_if_a_library_replaces_the_interrupt(
+    status: int, is_told: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def work() -> None:
+        with Screen(3) as screen:
+            screen.row(KEPT)
+            raise OSError("interrupted")
+
+    monkeypatch.setattr(stopping, "status", lambda: status)
+    with pytest.raises(OSError, match="interrupted"):
+        work()
+    assert ("stopped; 1 of 3 roads are finished" in capsys.readouterr().err) is is_told

@@ -94,6 +94,7 @@ def test_control_c_and_a_polite_kill_leave_what_is_finished(sent: signal.Signals
     process.send_signal(sent)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 128 + sent
+    assert "stopped; " in said, said
     finished = int(said.split("stopped; ")[1].split(" of ")[0])
     tests = sorted(Path("here").glob("test.*.json"))
     # the last one may have been written and not yet been told of

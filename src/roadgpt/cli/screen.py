@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Self
 
 import click
 
+from roadgpt import stopping
 from roadgpt.cli.progress import progress
 from roadgpt.cli.result_row import WIDEST, Row, colour_of, row_of, summary
 from roadgpt.cli.streams import apart, is_coloured
@@ -54,7 +55,8 @@ class Screen:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._progress.__exit__(None, None, None)
-        if isinstance(error, KeyboardInterrupt):
+        # a library may raise another error in place of the KeyboardInterrupt
+        if isinstance(error, KeyboardInterrupt) or (error is not None and stopping.status()):
             finished = f"{self._number()} roads are finished and complete"
             _show(f"roadgpt: stopped; {finished}", on_stderr=True)
 
