@@ -59,6 +59,7 @@ def test_the_network_writes_a_map_where_the_words_ask_for_one() -> None:
             "one crossroads and four T-junctions make four blocks",
             "map crossroads; t_junction x4 dead_ends=0",
         ),
+        ("map t_junction x2 blocks=1", "zwei Einmündungen, zwei Blöcke", "map t_junction x2 dead_ends=0"),
         ("map t_junction x2 dead_ends=2", "zwei Einmündungen, zwei Blöcke", "map t_junction x2 dead_ends=0"),
         (
             "map t_junction x6 dead_ends=4",

@@ -191,29 +191,33 @@ def check_map(asked: MapClause) -> None:
 def _check_blocks(asked: MapClause, wanted: Range) -> None:
     if any(isfinite(each) and (each < 0 or each % 1) for each in (wanted.lo, wanted.hi)):
         raise BriefError(f"roads enclose 0, 1, 2 or more blocks, not {asked.blocks}; change it")
-    most = _most_ends(asked)
+    most = most_ends(asked)
+    if sum(span(each.count).hi for each in asked.junctions) == 1 and wanted.lo > 0:
+        raise BriefError(
+            "the roads of a single junction enclose no block; leave blocks= out, or add a junction"
+        )
     if 2 * wanted.lo > most:
         raise BriefError(
             f"the roads of these junctions enclose at most {most // 2:g} blocks, not {asked.blocks}; "
             "change it"
         )
-    if asked.dead_ends is not None and _is_fixed(asked):
+    if asked.dead_ends is not None and has_fixed_arms(asked):
         allowed = asked.ends_of_tree(most)
         if not any(number in allowed for number in range(int(most), -1, -2)):
             raise BriefError(
-                f"these junctions cannot have {asked.blocks} blocks and {asked.dead_ends} dead ends: without "
-                f"blocks they have {most:g}, and each block takes two; leave out one of the numbers"
+                f"these junctions have {most:g} dead ends without blocks, and each block takes two, so they "
+                f"cannot have blocks={asked.blocks} and dead_ends={asked.dead_ends}; leave one of them out"
             )
 
 
-def _most_ends(asked: MapClause) -> float:
+def most_ends(asked: MapClause) -> float:
     """Returns the greatest number of dead ends of a map of junctions, which it has without blocks."""
     counts = [span(each.count) for each in asked.junctions]
     arms = sum(ARMS[each.kind].hi * n.hi for each, n in zip(asked.junctions, counts, strict=True))
     return arms - 2 * (sum(n.hi for n in counts) - 1)
 
 
-def _is_fixed(asked: MapClause) -> bool:
+def has_fixed_arms(asked: MapClause) -> bool:
     """Returns whether the number of arms of all junctions of a map is fixed."""
     return all(each.kind in FIXED_ARMS and each.count.exact for each in asked.junctions)
 
@@ -234,7 +238,7 @@ def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
         return
     counts = [span(each.count) for each in asked.junctions]
     least, number = sum(max(each.lo, 1) for each in counts), sum(each.hi for each in counts)
-    most = _most_ends(asked)
+    most = most_ends(asked)
     if least == number == 1 and not meets(asked.dead_ends, ARMS[asked.junctions[0].kind]):
         raise BriefError(
             f"all arms of the only junction of a map are dead ends, {ARMS[asked.junctions[0].kind]} of them, "
@@ -244,7 +248,7 @@ def _check_dead_ends(asked: MapClause, wanted: Range) -> None:
         raise BriefError(
             f"the roads of these junctions leave {most:g} dead ends at most, not {asked.dead_ends}; change it"
         )
-    if _is_fixed(asked) and not any(number in wanted for number in range(int(most), -1, -2)):
+    if has_fixed_arms(asked) and not any(number in wanted for number in range(int(most), -1, -2)):
         raise BriefError(
             f"the roads of these junctions leave an {'odd' if most % 2 else 'even'} number of dead ends, "
             f"{most:g} at most, not {asked.dead_ends}; change the number, or add a junction"

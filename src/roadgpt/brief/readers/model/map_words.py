@@ -6,7 +6,8 @@ import re
 from collections.abc import Mapping, Sequence
 
 from roadgpt.brief.amount import Amount, exactly
-from roadgpt.brief.junctions import ARMS, MapJunctionKind
+from roadgpt.brief.junction_check import has_fixed_arms, most_ends
+from roadgpt.brief.junctions import MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.denial import says
@@ -168,6 +169,7 @@ def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
         is_vague = any(re.fullmatch(ONE, each) for each in found)  # "not a single one", "eine"
         if dead_ends is not None and not is_vague:
             update["dead_ends"] = exactly(dead_ends)
+            update |= {} if found else {"blocks": None}  # the dead ends follow from the blocks in the words
     asked = asked.model_copy(update=update)
     return brief.model_copy(update={"map": _with_possible_ends(asked, said)})
 
@@ -195,7 +197,13 @@ def _off_main_street(said: str, dead_ends: Sequence[str]) -> dict[str, object] |
     if not number or is_more or not MAIN_STREET.search(said):
         return None
     kinds = (JunctionCount(kind="t_junction", count=exactly(number)),)
-    return {"junctions": kinds, "columns": None, "rows": None, "dead_ends": exactly(number + 2)}
+    return {
+        "junctions": kinds,
+        "columns": None,
+        "rows": None,
+        "blocks": None,
+        "dead_ends": exactly(number + 2),
+    }
 
 
 def _counted_kinds(asked: MapClause, said: str) -> tuple[JunctionCount, ...]:
@@ -297,20 +305,11 @@ def _around_blocks(asked: MapClause, said: str) -> int | None:
     found = BLOCKS.findall(said)
     is_tree = not found and SIDE_STREETS.search(said) and TREE.search(said) and not NOT_A_TREE.search(said)
     blocks = 0 if is_tree else one_number(found)
-    exact = [int(each.count.lo or 0) for each in asked.junctions if each.count.exact]
-    arms = [arms for each in asked.junctions if (arms := _arms(each.kind)) is not None]
-    if blocks is None or not exact or not len(exact) == len(arms) == len(asked.junctions):
+    if blocks is None or not asked.junctions or not has_fixed_arms(asked):
         return None
-    ends = sum(count * number for count, number in zip(exact, arms, strict=True))
-    # blocks = roads - nodes + 1, where each dead end is a node and half a road's ends
-    dead_ends = ends - 2 * sum(exact) + 2 - 2 * blocks
-    return dead_ends if dead_ends >= 0 else None
-
-
-def _arms(kind: str) -> int | None:
-    """Returns how many roads meet at a kind of junction; None if that is open."""
-    least, most = next((each.lo, each.hi) for name, each in ARMS.items() if name == kind)
-    return int(least) if least == most else None
+    enclosing = asked.model_copy(update={"blocks": exactly(blocks), "dead_ends": None})
+    dead_ends = enclosing.ends_of_tree(most_ends(asked)).lo
+    return int(dead_ends) if dead_ends >= 0 else None
 
 
 def one_number(found: Sequence[str]) -> int | None:
