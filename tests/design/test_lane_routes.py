@@ -335,6 +335,41 @@ def test_a_motorway_stays_one_behind_a_change_of_lanes(seed: int) -> None:
     assert max(abs(each.incline) for each in before_the_exit) <= 5
 
 
+@pytest.mark.parametrize("take", ["left", "right"])
+@pytest.mark.parametrize("behind", [1, 2])
+@pytest.mark.parametrize("ways", ["", " ways=left+right"])
+def test_a_wide_road_ends_at_a_t_junction_from_which_a_narrow_one_is_taken(
+    take: str, behind: int, ways: str
+) -> None:
+    line = f"| lanes=3 against=3 // t_junction {take}{ways} // | lanes={behind} against={behind}"
+    for seed in range(6):
+        route = drafted(line, seed)
+        assert inspect(route, read_plan(line), WIDE) == ()
+        assert [member.profile.count for _, member in route.roads] == [(3, 3), (behind, behind)]
+
+
+@pytest.mark.parametrize("place", ["lane_change left", "crossroads straight", "t_junction straight"])
+def test_a_straight_road_stays_straight_where_it_goes_on(place: str) -> None:
+    for seed in range(8):
+        design = Planner().draft(
+            read_plan(f"straight | turns=0 lanes=2 oneway // {place}"), WIDE, (), (), seed
+        )
+        assert isinstance(design, NetworkDesign)
+        assert not any(each.turn_degrees for each in design.segments)
+
+
+def test_a_slope_goes_on_where_only_lanes_change() -> None:
+    for seed in range(8):
+        design = Planner().draft(read_plan("| up lanes=2 // lane_drop"), WIDE, (), (), seed)
+        assert isinstance(design, NetworkDesign)
+        behind = design.segments[design.junctions[0].after :]
+        assert max(each.incline for each in behind) > 0 <= min(each.incline for each in behind)
+    behind = read_plan("| up lanes=2 // lane_drop // | down")
+    found = Planner().draft(behind, WIDE, (), (), 1)
+    assert isinstance(found, NetworkDesign)
+    assert min(each.incline for each in found.segments[found.junctions[0].after :]) < 0
+
+
 def test_a_road_with_an_exit_has_sweeping_bends_unless_others_are_asked_for() -> None:
     def radius(line: str, seed: int) -> float:
         design = Planner().draft(read_plan(line), WIDE, (), (), seed)

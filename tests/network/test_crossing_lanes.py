@@ -122,3 +122,19 @@ def test_lanes_of_a_star_are_shared_out() -> None:
     arms = [(180.0, 3, 0), *((180.0 + turned, 0, 3) for turned in (72.0, 144.0, 216.0, 288.0))]
     led = Counter(i for way in ways(arms).values() for i, _ in way)
     assert set(led) == {0, 1, 2}
+
+
+@pytest.mark.parametrize("wide", [(0, 2), (1, 2)])
+@pytest.mark.parametrize("few", [1, 2])
+def test_a_narrow_arm_of_a_t_junction_leaves_no_lane_of_the_others_empty(
+    wide: tuple[int, int], few: int
+) -> None:
+    """Two of three roads have three lanes: the road that ends (number 0) and one of the road that goes on."""
+    directions, counts = (270.0, 360.0, 540.0), [3 if n in wide else few for n in range(3)]
+    reached = set()
+    for start in range(3):
+        order = [(start + n) % 3 for n in range(3)]
+        arms = [(directions[n], counts[n], counts[n]) for n in order]
+        for to, way in ways(arms).items():
+            reached |= {(order[to], lane) for _, lane in way}
+    assert reached == {(n, lane) for n in range(3) for lane in range(counts[n])}

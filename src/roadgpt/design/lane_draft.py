@@ -8,6 +8,7 @@ from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.lane_sequence import LEAST_BESIDE_RAMP, LEAST_LANE, WIDE_IN_TAPER
 from roadgpt.brief.model import Brief
 from roadgpt.brief.words import MOST_LANES, ROAD, Range, nearest
+from roadgpt.design.continuing import is_one_road, leads_straight_on
 from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.design import PlaceDesign
 from roadgpt.network.lane_design import (
@@ -161,18 +162,6 @@ def lanes_of_roads(brief: Brief, width: float) -> list[LanesDesign]:
     return found
 
 
-def with_motorways(brief: Brief) -> Brief:
-    """Returns the requirements with "motorway" for every part of a motorway, so that no part is drafted with
-    tight bends or steep grades. A motorway continues where only its lanes change, and past its ramps.
-    """
-    roads = list(brief.stretches)
-    continued = [n for n, place in enumerate(brief.junctions) if _is_one_road(place)]
-    for n in (*continued, *reversed(continued)):
-        if roads[n].motorway or roads[n + 1].motorway:
-            roads[n : n + 2] = [road.model_copy(update={"motorway": True}) for road in roads[n : n + 2]]
-    return brief.model_copy(update={"stretches": tuple(roads)})
-
-
 def main_roads(places: Sequence[JunctionClause]) -> set[int]:
     """Returns the numbers of the roads of a route that a ramp joins or leaves."""
     return {n + (place.kind == "merge") for n, place in enumerate(places) if place.kind in RAMPS}
@@ -202,12 +191,12 @@ def _continued(brief: Brief) -> list[Brief]:
     """
     roads, places, on_ramps = list(brief.roads), brief.junctions, _on_ramps(brief.junctions)
     for n, place in enumerate(places):
-        if _is_one_road(place):
+        if is_one_road(place):
             roads[n + 1] = _of_same_road(roads[n], roads[n + 1], place)
-        elif _leads_straight_on(place) and _may_have_centre(roads[n + 1]) and not on_ramps[n + 1]:
+        elif leads_straight_on(place) and _may_have_centre(roads[n + 1]) and not on_ramps[n + 1]:
             roads[n + 1] = roads[n + 1].model_copy(update={"centre": roads[n].centre})
     for n, place in reversed(list(enumerate(places))):
-        if _is_one_road(place):
+        if is_one_road(place):
             roads[n] = _of_same_road(roads[n + 1], roads[n], place)
     for n, place in enumerate(places):
         following = places[n + 1].kind if n + 1 < len(places) else None
@@ -220,11 +209,6 @@ def _continued(brief: Brief) -> list[Brief]:
         if _leads_on(place) and (n == 0 or places[n - 1].kind not in (*RAMPS, *LANE_KINDS, "roundabout")):
             roads[n] = _with_lanes_of(roads[n + 1], roads[n])
     return roads
-
-
-def _is_one_road(place: JunctionClause) -> bool:
-    """Returns whether the roads before and behind a place are the same road, with other lanes at most."""
-    return place.kind in LANE_KINDS or (place.kind in RAMPS and place.take == "main")
 
 
 def _may_have_centre(road: Brief) -> bool:
@@ -252,10 +236,6 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
     )
 
 
-def _leads_straight_on(place: JunctionClause) -> bool:
-    return place.take == "straight" and place.kind != "roundabout"
-
-
 def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     """Returns whether a road behind a junction keeps the lanes of the road before if it requires none itself.
 
@@ -264,7 +244,7 @@ def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     """
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
     turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
-    return _leads_straight_on(place) or (turns and is_said)
+    return leads_straight_on(place) or (turns and is_said)
 
 
 def _with_same_lanes(known: Brief, road: Brief) -> Brief:
@@ -281,7 +261,7 @@ def _with_same_lanes(known: Brief, road: Brief) -> Brief:
 
 def _leads_on(place: JunctionClause) -> bool:
     """Returns whether the lanes of the road before a junction lead to those of the road behind it."""
-    return place.kind == "y_junction" or _leads_straight_on(place)
+    return place.kind == "y_junction" or leads_straight_on(place)
 
 
 def _with_lanes_of(known: Brief, road: Brief) -> Brief:

@@ -17,6 +17,7 @@ from roadgpt.brief.junction_check import check_junction
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.check.route_promises import length_range
+from roadgpt.design.continuing import with_roads_continued
 from roadgpt.design.first_accepted import LANES_DIFFER, first_accepted
 from roadgpt.design.junction_draft import drawn_junction
 from roadgpt.design.lane_draft import (
@@ -26,7 +27,6 @@ from roadgpt.design.lane_draft import (
     drawn_ramp,
     lanes_of_roads,
     main_roads,
-    with_motorways,
 )
 from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
@@ -87,7 +87,7 @@ class NetworkSearch:
         """
         for clause in brief.junctions:
             check_junction(clause)
-        self.brief, self.world, self.rng = with_motorways(brief), world, rng
+        self.brief, self.world, self.rng = with_roads_continued(brief), world, rng
         self.has_wide_bends = main_roads(brief.junctions)
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)

@@ -51,22 +51,33 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
     for n, j in enumerate(exits):
         lanes = spans[n]
         beside = min(left - 1, room[n] - len(lanes)) if turns_left and n < len(exits) - 1 else 0
-        if turns_right and n == 0:
+        if (turns_right and n == 0) or (turns[n] == "straight" and _is_joined_from_the_left_only(stubs, j)):
             beside = room[n] - len(lanes)
         yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
+
+
+def _is_joined_from_the_left_only(stubs: Sequence[Stub], end: int) -> bool:
+    """Returns whether traffic turns left to an arm and none turns right to it.
+
+    Then traffic that goes straight on to the arm uses its right lanes, because the others do not lead there.
+    """
+    turns = {side_of(_turn(stub, stubs[end])) for n, stub in enumerate(stubs) if n != end and stub.into}
+    return "left" in turns and "right" not in turns
 
 
 def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
     """Returns how many lanes turn left and how many turn right to an arm.
 
     There is one of each. Only where the arm has more than two lanes and no way leads straight to it, its
-    lanes are divided between both turns.
+    lanes are divided between both turns, in halves if the other arms have lanes enough for that.
     """
     room = len(stubs[end].out_of)
-    others = [stub for n, stub in enumerate(stubs) if n != end and stub.into]
-    if room <= USUALLY_FED or any(side_of(_turn(stub, stubs[end])) == "straight" for stub in others):
+    others = [(side_of(_turn(stub, stubs[end])), len(stub.into)) for n, stub in enumerate(stubs) if n != end]
+    if room <= USUALLY_FED or any(side == "straight" and lanes for side, lanes in others):
         return 1, 1
-    return room - room // 2, room // 2
+    most = {side: max((n for each, n in others if each == side), default=0) for side in ("left", "right")}
+    left = min(max(room - room // 2, room - most["right"]), max(most["left"], 1))
+    return left, max(room - left, 1)
 
 
 def _usual_spans(into: int, room: Sequence[int], turns_right: int, turns_left: int) -> list[range]:

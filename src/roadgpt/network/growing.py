@@ -185,7 +185,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     - An arm of a roundabout has as many lanes as the ring.
     - An arm opposite the arm that the route takes has as many lanes as the arm taken, if that arm has more
       than two lanes in a direction, or more than one and the road of arrival is one-way. With fewer lanes
-      opposite, some lanes of the arm taken would lead nowhere.
+      opposite, some lanes of the arm taken would lead nowhere. For the same reason it has as many lanes as
+      the road of arrival, if that road has more than two in a direction and no arm is straight ahead.
     - An arm straight ahead has as many lanes as the road of arrival.
     - Any other arm has one lane.
 
@@ -209,8 +210,11 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     ]
     opposite = _continuing(junction)
     fed = USUALLY_FED if before.count[1] else 1  # no lane leads to a one-way road of arrival
-    if opposite is not None and max(after.count) > fed:
-        out, into = (max(count, 1) for count in after.count[::-1])
+    needed = [after.count[::-1]] if max(after.count) > fed else []
+    if max(before.count) > USUALLY_FED and all(side_of(arm.angle) != "straight" for arm in junction.all_arms):
+        needed.append(before.count)
+    if opposite is not None and needed:
+        out, into = (max(1, *counts) for counts in zip(*needed, strict=True))
         found[opposite] = Profile.of(out, into, width, shoulder)
     for n, arm in enumerate(junction.all_arms):
         if arm.one_way is not None:
