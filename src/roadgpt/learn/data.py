@@ -63,6 +63,8 @@ TALK = 0.07
 CAUSED = ("!contradiction", "!impossible")
 """Refusals that can name a cause; a plan that consists of one of these words alone names none."""
 MOTORWAY = re.compile(r" ?\bmotorway\b")
+STRIDE = 8
+"""The lengths of texts and plans in a batch are rounded up to a multiple of this number."""
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
 
@@ -221,7 +223,7 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
 
     Yields:
         The word pieces, of shape (size, length of the longest text), and the tokens, of shape (size, length
-        of the longest plan).
+        of the longest plan), both lengths rounded up to a multiple of ``STRIDE``.
     """
     rng = np.random.default_rng([seed, 8])
     while True:
@@ -234,8 +236,11 @@ def batches(stream: Iterator[Example], size: int, pool: int, seed: int) -> Itera
 
 
 def padded(rows: Sequence[Sequence[int]]) -> Numbers:
-    """Returns the rows as one array; shorter rows are padded with zeros at the end."""
-    out = np.zeros((len(rows), max(len(row) for row in rows)), dtype=np.int64)
+    """Returns the rows as one array, padded with zeros to a width that is a multiple of ``STRIDE``.
+
+    Torch prepares its kernels anew for each shape of its input, which takes longer than a step of training.
+    """
+    out = np.zeros((len(rows), -(-max(len(row) for row in rows) // STRIDE) * STRIDE), dtype=np.int64)
     for index, row in enumerate(rows):
         out[index, : len(row)] = row
     return out
