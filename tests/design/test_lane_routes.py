@@ -358,6 +358,32 @@ def test_a_straight_road_stays_straight_where_it_goes_on(place: str) -> None:
         assert not any(each.turn_degrees for each in design.segments)
 
 
+@pytest.mark.parametrize(
+    ("line", "lanes"),
+    [
+        ("| lanes=2 divided // roundabout straight large", [(2, 2), (2, 2)]),
+        ("| lanes=2 against=2 // roundabout straight // roundabout left", [(2, 2), (1, 1), (1, 1)]),
+        ("| lanes=2 against=2 // roundabout straight lanes=2 // | lanes=1", [(2, 2), (1, 1)]),
+        ("| lanes=2 against=2 // lane_change left // crossroads left", [(2, 2), (2, 2), (2, 2)]),
+    ],
+)
+def test_lanes_go_on_over_a_roundabout_and_behind_a_change_of_lanes(
+    line: str, lanes: list[tuple[int, int]]
+) -> None:
+    route = drafted(line, 1)
+    assert [member.profile.count for _, member in route.roads] == lanes
+    assert inspect(route, read_plan(line), WIDE) == ()
+
+
+def test_a_motorway_with_a_median_has_tighter_turns_where_the_map_is_small() -> None:
+    brief, small = read_plan("turn left | motorway lanes=2 against=2 divided"), World()
+    design = Planner().draft(brief, small, (), (), 1)
+    assert isinstance(design, NetworkDesign)
+    route, large = build_route(design, small), World(site=Site(map_size=3000))
+    assert inspect(route, brief, small) == ()
+    assert any("turn 1 has a radius" in finding.sentence for finding in inspect(route, brief, large))
+
+
 def test_a_slope_goes_on_where_only_lanes_change() -> None:
     for seed in range(8):
         design = Planner().draft(read_plan("| up lanes=2 // lane_drop"), WIDE, (), (), seed)

@@ -37,7 +37,7 @@ NAMES = _bag(
     "autobahn autobahnen schnellstrasse schnellstraße kraftfahrstrasse kraftfahrstraße autoroute autoroutes",
     "autopista autopistas autovia autovias autostrada autostrade superstrada superstrade",
 )
-PAIRS = frozenset([("dual", "carriageway"), ("voie", "rapide"), ("voies", "rapides")])
+PAIRS = frozenset([("voie", "rapide"), ("voies", "rapides")])
 NOT_ONE = _bag(
     "no not without off from to towards toward near beside leaving leave join joining over under",
     "kein keine keiner ohne neben zur zum von pas sans vers quitter sin hacia junto senza verso accanto non",

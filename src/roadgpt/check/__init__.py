@@ -109,8 +109,9 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         found_there = inspect_network(road.network, road, world)
         if brief is None:
             return found_there
-        promised = broken_promises(road, brief) if brief.map is None else broken_map(road, brief.map)
-        return (*found_there, *promised)
+        if brief.map is not None:
+            return (*found_there, *broken_map(road, brief.map))
+        return (*found_there, *broken_promises(road, brief, world.site.map_size))
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):
         found += rule(road, brief, world)

@@ -6,6 +6,7 @@ with its own requirements in the same way as a single road in the rule ``promise
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import inf
 
 import numpy as np
 
@@ -42,10 +43,15 @@ SLACK = 0.15  # ratio, allowed deviation from the radius of an island that is gi
 ROUNDING = 0.5  # m, allowed deviation from a range of outer diameters
 
 
-def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
+def broken_promises(route: Route, brief: Brief, map_size: float = inf) -> tuple[Finding, ...]:
     """Returns one Finding for each requirement that a route does not meet.
 
     If the number of junctions and lane changes on the route is wrong, only this is reported.
+
+    Args:
+        route: the route.
+        brief: the requirements.
+        map_size: the side of the map in metres; "motorway" requires less of a road that it cannot hold.
     """
     found = measured_places(route)
     if len(found) != len(brief.junctions):
@@ -66,7 +72,7 @@ def broken_promises(route: Route, brief: Brief) -> tuple[Finding, ...]:
     for n, ((start, road), stretch) in enumerate(zip(roads, brief.roads, strict=False)):
         if not stretch.is_open:
             more = moved[n + 1] - moved[n]
-            out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1), more)
+            out += _broken(start, road, stretch, (n > 0, n < len(roads) - 1), more, map_size)
     return (*out, *_length(route, brief))
 
 
@@ -94,7 +100,7 @@ def stretches_of(route: Route) -> list[tuple[float, Road]]:
 
 
 def _broken(
-    start: float, road: Road, asked: Brief, is_level: tuple[bool, bool], more: float
+    start: float, road: Road, asked: Brief, is_level: tuple[bool, bool], more: float, map_size: float
 ) -> Iterator[Finding]:
     """Yields a Finding for each requirement that a road does not meet.
 
@@ -103,7 +109,7 @@ def _broken(
     ``more`` metres are added to it.
     """
     yield from _broken_lanes(start, road, asked)
-    wanted = outline(asked.as_stretch)
+    wanted = outline(asked.as_stretch, map_size)
     found = measure(without_level_ends(road, is_level).centreline(), wanted.widest)
     heights = road.at(np.array([0.0, road.length]))[:, 2]
     found = replace(found, climb=float(heights[1] - heights[0]), length=found.length + more)

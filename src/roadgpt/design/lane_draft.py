@@ -20,6 +20,7 @@ from roadgpt.network.lane_design import (
     RampDesign,
     narrow_part,
 )
+from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
 
 ON_MOTORWAY = 2  # lanes of a carriageway of a motorway, if no number is required
 LEAST_TAPER = 10.0  # m
@@ -224,7 +225,7 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
     it.
     """
     says_against = road.against is not None or road.divided
-    keeps_lanes = place.kind in RAMPS and road.lanes is None
+    keeps_lanes = place.kind in (*RAMPS, "lane_change") and road.lanes is None
     return road.model_copy(
         update={
             "lanes": known.lanes if keeps_lanes else road.lanes,
@@ -239,9 +240,11 @@ def _of_same_road(known: Brief, road: Brief, place: JunctionClause) -> Brief:
 def _keeps_lanes(place: JunctionClause, road: Brief) -> bool:
     """Returns whether a road behind a junction keeps the lanes of the road before if it requires none itself.
 
-    It does if the route leads straight on, or if the route turns and ``road``, the road before, requires the
-    lanes of both directions.
+    It does if the route leads straight on, also over a roundabout whose ring may have so many lanes, or if
+    the route turns and ``road``, the road before, requires the lanes of both directions.
     """
+    if place.kind == "roundabout":
+        return place.take == "straight" and place.lanes is None and span(road.lanes).lo <= MOST_RING_LANES
     is_said = road.lanes is not None and road.against is not None and span(road.against).hi > 0
     turns = place.take in ("left", "right") and place.kind in ("t_junction", "crossroads", "junction")
     return leads_straight_on(place) or (turns and is_said)

@@ -22,7 +22,8 @@ from roadgpt.brief.readers.model.map_words import with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
-from roadgpt.brief.readers.model.ramp_lengths import with_ramp_lengths
+from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
+from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
 from roadgpt.brief.readers.model.told_junctions import (
@@ -102,12 +103,13 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     """Returns the Brief of a plan, corrected by rules where the words of the description are clear."""
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
-    brief = with_ramp_lengths(with_counted_junctions(brief, text), text)
+    brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
     brief = _with_turns_by_degrees(with_told_arms(brief, text))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_motorway_behind_ramp(brief, words)
     brief = with_distances_from_start(brief, words)
+    brief = with_sides_of_side_roads(brief, text, words)
     return with_other_roads(with_whole_drive(brief, words), words)
 
 

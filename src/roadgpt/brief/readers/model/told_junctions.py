@@ -6,7 +6,15 @@ from collections.abc import Mapping, Sequence
 from roadgpt.brief.junctions import LANE_KINDS, RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.alike_junctions import NOUN as PLURAL
-from roadgpt.brief.readers.model.map_words import ANY_KIND, KINDS_IN_PLURAL, KINDS_IN_SINGULAR, TAKEN_BACK
+from roadgpt.brief.readers.model.map_words import (
+    ALL_KINDS,
+    ANY_KIND,
+    IS_TOTAL,
+    KINDS_IN_PLURAL,
+    KINDS_IN_SINGULAR,
+    TAKEN_BACK,
+    one_number,
+)
 from roadgpt.brief.readers.model.slots import SlottedText
 
 SIDE_ROAD = re.compile(
@@ -42,6 +50,13 @@ TOTAL = re.compile(
 
 LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in total )?:")
 """The number of junctions before the list of all of them."""
+
+
+BOUND = re.compile(
+    r"\b(?:at least|at most|up to|or more|mindestens|hochstens|bis zu|au moins|au plus|al menos|como mucho|"
+    r"almeno|al massimo)\b"
+)
+"""Words with which a number of junctions is no exact one."""
 
 
 def number_of_listed(text: SlottedText) -> int | None:
@@ -107,6 +122,8 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     bare = [n for n in counted if _is_bare(brief, n)]
     bare = [n for n in bare if brief.junctions[n].kind == "junction"] or _too_many(brief, bare, text)
     surplus = len(counted) - number
+    if one_number(ALL_KINDS.findall(text.text)) == len(brief.junctions) and IS_TOTAL.search(text.text):
+        return _as_any_kind(brief, _too_many(brief, counted, text)) if not BOUND.search(text.text) else brief
     if number and 0 < -surplus < number and len(counted) == len(brief.junctions):
         more = (JunctionClause(kind="junction"),) * -surplus
         roads = (*brief.stretches, *(Brief() for _ in more))
@@ -117,6 +134,15 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     junctions = tuple(each for n, each in enumerate(brief.junctions) if n not in gone)
     roads = tuple(each for n, each in enumerate(brief.stretches) if n - 1 not in gone)
     return brief.model_copy(update={"junctions": junctions, "stretches": roads})
+
+
+def _as_any_kind(brief: Brief, numbers: Sequence[int]) -> Brief:
+    """Returns a route on which some junctions without further wishes may be of any kind."""
+    junctions = tuple(
+        JunctionClause(kind="junction") if n in numbers and _is_bare(brief, n) else each
+        for n, each in enumerate(brief.junctions)
+    )
+    return brief.model_copy(update={"junctions": junctions})
 
 
 def _is_bare(brief: Brief, number: int) -> bool:

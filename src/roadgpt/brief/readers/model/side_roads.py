@@ -1,0 +1,75 @@
+"""Adds the side of a side road to a T-junction where the neural network left it out."""
+
+import re
+
+from roadgpt.brief.junctions import JunctionClause, Side
+from roadgpt.brief.model import Brief
+from roadgpt.brief.plan import plan
+from roadgpt.brief.readers.model.denial import says
+from roadgpt.brief.readers.model.nouns import LEFT, RIGHT
+from roadgpt.brief.readers.model.numerals import plain
+from roadgpt.brief.readers.model.slots import SlottedText
+
+ENGLISH = frozenset(["left", "right"])
+BEFORE_SIDE = frozenset(["the", "my", "our", "your", "its"])
+"""Words before "left" or "right" where these are sides: "on the right", but not "right after the bend"."""
+AFTER_SIDE = frozenset(["-", "hand", "side"])
+OFF_A_ROAD = re.compile(
+    r"\b(?:left|right) off (?:the|a|our|my) (?:main|major|priority|through) (?:road|street)\b|"
+    r"\boff (?:the|a|our|my) (?:main|major|priority|through) (?:road|street) to the (?:left|right)\b|"
+    r"\bleave (?:the|our|my) (?:main|major|priority|through) (?:road|street) (?:to|on) the (?:left|right)\b|"
+    r"\b(?:links|rechts) von der (?:haupt|vorfahrt|durchgangs)s?stra(?:ss|ß)e ab|"
+    r"\bquitte[rz]? la (?:route|rue) principale (?:a|par la|sur la) (?:gauche|droite)\b|"
+    r"\b(?:deja|dejo|dejar|deje) la (?:calle|carretera|via) principal (?:a|por) la (?:izquierda|derecha)\b|"
+    r"\blasci(?:o|a|are|amo|ate) la (?:strada|via) principale (?:a|sulla) (?:sinistra|destra)\b"
+)
+"""Words that say that the route turns out of a road that goes straight on."""
+
+
+def with_sides_of_side_roads(brief: Brief, text: SlottedText, words: str) -> Brief:
+    """Returns the Brief of a route with the ways on at its T-junctions as far as the words tell them.
+
+    A T-junction that the route passes gets its side road on the side that is named, if the words name as many
+    sides as there are such T-junctions and the plan uses no side. At the only T-junction, where the route
+    turns "off the main road", that road goes straight on.
+    """
+    passed = [n for n, each in enumerate(brief.junctions) if _is_open(each) and each.take == "straight"]
+    sides = _sides(text)
+    if passed and not brief.left_hand and len(passed) == len(sides) and not _uses_sides(brief):
+        return _with_ways(brief, dict(zip(passed, sides, strict=True)))
+    turned = [n for n, each in enumerate(brief.junctions) if each.kind == "t_junction"]
+    if len(turned) == 1 and says(OFF_A_ROAD, plain(words)) and _is_open(brief.junctions[turned[0]]):
+        side = brief.junctions[turned[0]].take
+        if side in ("left", "right"):
+            return _with_ways(brief, {turned[0]: side})
+    return brief
+
+
+def _is_open(junction: JunctionClause) -> bool:
+    has_ways = junction.ways or junction.only_in or junction.only_out or junction.angle or junction.degrees
+    return junction.kind == "t_junction" and not has_ways
+
+
+def _sides(text: SlottedText) -> list[Side]:
+    """Returns the sides that a text names, in order."""
+    said = ["", *(word.text for word in text.words), ""]
+    return [
+        "left" if said[n] in LEFT else "right"
+        for n in range(1, len(said) - 1)
+        if said[n] in LEFT | RIGHT
+        and (said[n] not in ENGLISH or said[n - 1] in BEFORE_SIDE or said[n + 1] in AFTER_SIDE)
+        and said[n + 1] != "of"  # the right of way
+    ]
+
+
+def _uses_sides(brief: Brief) -> bool:
+    written = plan(brief).replace("left_hand", "")
+    return "left" in written or "right" in written
+
+
+def _with_ways(brief: Brief, sides: dict[int, Side]) -> Brief:
+    junctions = tuple(
+        each.model_copy(update={"ways": (sides[n], "straight")}) if n in sides else each
+        for n, each in enumerate(brief.junctions)
+    )
+    return brief.model_copy(update={"junctions": junctions})

@@ -1,0 +1,90 @@
+"""Side roads lie where the words say, exits as far behind as they say, and kinds are as many as counted."""
+
+import pytest
+
+from roadgpt.brief.plan import plan, read_plan
+from roadgpt.brief.readers.model.plan_choice import brief_of
+from roadgpt.brief.readers.model.slots import slotted
+
+
+def corrected(line: str, words: str) -> str:
+    return plan(brief_of(line, slotted(words), words))
+
+
+PASSED = "t_junction straight"
+ON_THE_RIGHT = "t_junction straight ways=right+straight"
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "expected"),
+    [
+        ("past a side road, a T-junction on the right", PASSED, ON_THE_RIGHT),
+        ("I pass a side road on my right-hand side", PASSED, ON_THE_RIGHT),
+        ("an einer Nebenstraße rechts vorbei", PASSED, ON_THE_RIGHT),
+        ("je passe devant une rue latérale à droite", PASSED, ON_THE_RIGHT),
+        ("pass a side road on the right, then one on the left", f"{PASSED} // {PASSED}",
+         f"{ON_THE_RIGHT} // t_junction straight ways=left+straight"),
+        ("past a side road on the right, another follows", f"{PASSED} // {PASSED}", None),
+        ("straight over the T-junction, right after the bend", f"turn // {PASSED}", None),
+        ("straight on at the tee, I have the right of way", PASSED, None),
+        ("past the T-junction, then a bend to the right", f"{PASSED} // turn right", None),
+        ("traffic on the left; past a T-junction", f"{PASSED} || left_hand", None),
+    ],
+)  # fmt: skip
+def test_a_side_road_that_is_passed_lies_on_the_side_that_is_named(
+    words: str, line: str, expected: str | None
+) -> None:
+    assert corrected(line, words) == plan(read_plan(expected or line))
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "expected"),
+    [
+        ("turn right off the main road", "t_junction right", "t_junction right ways=right+straight"),
+        ("at a tee off the main road to the left", "t_junction left", "t_junction left ways=left+straight"),
+        ("links von der Hauptstraße ab", "t_junction left", "t_junction left ways=left+straight"),
+        ("quittez la rue principale à gauche", "t_junction left", "t_junction left ways=left+straight"),
+        ("deja la vía principal a la derecha", "t_junction right", "t_junction right ways=right+straight"),
+        ("lascio la strada principale a destra", "t_junction right", "t_junction right ways=right+straight"),
+        ("don't turn right off the main road, take the T-junction left", "t_junction left", None),
+        ("right off the main road", "crossroads right", None),
+        ("turn right onto the main road", "t_junction right", None),
+    ],
+)  # fmt: skip
+def test_the_road_that_is_left_goes_straight_on(words: str, line: str, expected: str | None) -> None:
+    assert corrected(line, words) == plan(read_plan(expected or line))
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "expected"),
+    [
+        ("four junctions, two of them roundabouts, the last a T-junction, right",
+         "roundabout // roundabout // roundabout // t_junction right",
+         "roundabout // roundabout // junction // t_junction right"),
+        ("fünf Knoten, zwei davon Kreisverkehre",
+         "roundabout // roundabout // roundabout // junction // junction",
+         "roundabout // roundabout // junction // junction // junction"),
+        ("four junctions, at least two of them roundabouts",
+         "roundabout // roundabout // roundabout // junction", None),
+        ("four junctions, two of them roundabouts",
+         "roundabout exit=1 // roundabout exit=2 // roundabout left // junction", None),
+    ],
+)  # fmt: skip
+def test_no_more_junctions_are_of_a_kind_than_are_counted(
+    words: str, line: str, expected: str | None
+) -> None:
+    assert corrected(line, words) == plan(read_plan(expected or line))
+
+
+@pytest.mark.parametrize(
+    ("words", "line", "expected"),
+    [
+        ("onto the motorway, off again at the next exit, 500 m after the entry",
+         "merge ramp // | motorway // diverge ramp len=500",
+         "merge ramp // | len=500 motorway // diverge ramp"),
+        ("on the motorway, the exit with a deceleration lane of 120 m, 500 m after the entry",
+         "merge ramp // | len=500 motorway // diverge ramp len=120", None),
+    ],
+)  # fmt: skip
+def test_the_distance_to_an_exit_is_no_deceleration_lane(words: str, line: str, expected: str | None) -> None:
+    assert corrected(line, words) == plan(read_plan(expected or line))
