@@ -27,7 +27,7 @@ from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.road import World
