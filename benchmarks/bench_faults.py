@@ -31,7 +31,7 @@ from roadgpt.campaign.faults.remedy import Removed, remedies_of
 from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.campaign.workers.unordered_map import unordered_map
+from roadgpt.campaign.unordered_map import unordered_map
 
 DRIVERS = ("beamng_like", "lane_centring")
 CONDITIONS: dict[str, tuple[str, ...]] = {
