@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chromium import FOUND, Page, browser
+from chromium import FOUND, BrowserTab, browser
+from roadgpt.report.page import BrowserTab as Report
 from roadgpt.report.page import Figure, Section, Table, cell, write
-from roadgpt.report.page import Page as Report
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.heat import AxisRange, heat
 
@@ -30,7 +30,7 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     )
 
 
-def opened(page: Page, path: Path) -> None:
+def opened(page: BrowserTab, path: Path) -> None:
     page.send("Page.navigate", url=path.resolve().as_uri())
     while page.run("document.readyState + location.protocol") != "completefile:":
         time.sleep(0.02)

@@ -240,12 +240,12 @@ def test_a_driver_that_asks_for_a_camera_sees(fake: FakeBeamNG) -> None:
 
 
 def test_a_driver_that_fails_costs_its_drive_and_not_the_session(fake: FakeBeamNG) -> None:
-    class Broken:
+    class RaisesError:
         def steer(self, view: View) -> Command:
             raise ValueError("no idea")
 
     with pytest.raises(DriverError, match="no idea"):
-        simulator(fake, rate=20).simulate(SHORT, WORLD, Broken(), 7)
+        simulator(fake, rate=20).simulate(SHORT, WORLD, RaisesError(), 7)
     assert simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
     assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
 
@@ -340,7 +340,7 @@ def test_the_driver_of_the_guide_sees_and_drives(fake: FakeBeamNG) -> None:
     (code,) = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
     made: dict[str, Any] = {}
     exec(code, made)
-    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["Looks"](), 7)
+    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["LooksAtDecals"](), 7)
     assert {*drive["throttle"][1:].tolist()} == {0.0, 0.2}  # the image of the fake grows lighter with time
 
 
@@ -359,13 +359,13 @@ def test_steps_are_even_after_each_level_that_is_loaded(fake: FakeBeamNG) -> Non
 def test_lines_lie_on_the_asphalt_in_the_game_as_in_our_level(fake: FakeBeamNG) -> None:
     laid: list[dict[str, Any]] = []
 
-    class Looks(Reference):
+    class LooksAtDecals(Reference):
         def start(self, road: Road, world: World, seed: int) -> None:
             super().start(road, world, seed)
             ((_, objects, _),) = fake.scenarios.values()
             laid.extend(each for each in objects if each["class"] == "DecalRoad")
 
-    simulator(fake, rate=20).simulate(SHORT, WORLD, Looks(), 7)
+    simulator(fake, rate=20).simulate(SHORT, WORLD, LooksAtDecals(), 7)
     level = items("level", level_road(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
     decals = [each for each in level if each["class"] == "DecalRoad"]
     ours = {each["name"].partition("_")[0]: each["renderPriority"] for each in decals}  # of dashes, one
