@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import bootstrap, mannwhitneyu
 
-from roadgpt.campaign import Budget, Cell, Result
+from roadgpt.campaign import Cell, CellBudget, Result
 from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.generators.genetic import Genetic
 from roadgpt.campaign.generators.quality_diversity import QualityDiversity
@@ -186,7 +186,7 @@ def found(job: MethodRun) -> dict[str, Any]:
         setup=USUAL.model_copy(update={"driver": setting.driver}),
     )
     brief = brief_of(setting.words, request.world, request.setup)
-    cell = Cell("c01", request, brief, job.method, "failures", budget=Budget(tests=job.tests))
+    cell = Cell("c01", request, brief, job.method, "failures", budget=CellBudget(tests=job.tests))
     tried = walked(cell, job) if job.method == "walk" else searched(cell, job)
     return figures(cell, tried, job.referee, setting.truth)
 

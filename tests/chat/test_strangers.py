@@ -15,7 +15,7 @@ from chat.conftest import KEY
 from chat.stub_server import HeardRequest, Scene, StubServer, says, send, serving
 from roadgpt import provenance
 from roadgpt.campaign.lifecycle import begin
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
@@ -78,7 +78,7 @@ def test_a_store_does_not_get_the_users_key_sent(
     stub.play(says(GOOD))
     chat = ChatSettings(model="m", base_url=stub.url, retries=0)
     setup = {"designers": ("chat",), "reader": "plan", "drives": False, "chat": chat}
-    begin(Plan(prompts=("turn left",), budget=Budget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
+    begin(Plan(prompts=("turn left",), budget=CellBudget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
     provenance.SERVERS.forget()
     given = {"resume": [], "resume with a flag": [stub.url], "resume another": [ELSEWHERE]}[how]
     result = invoke("resume", "c", "-q", *(word for url in given for word in ("--base-url", url)))

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from misbehaving import write
-from roadgpt.campaign import Budget, Plan, begin, campaign, status_of, work
+from roadgpt.campaign import CellBudget, Plan, begin, campaign, status_of, work
 from roadgpt.campaign.faults.stability import once
 from roadgpt.cli import app
 from roadgpt.drive.simulators.beamng.session import leave_all
@@ -182,7 +182,7 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
 ) -> None:
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    budget = Budget(tests=5)
+    budget = CellBudget(tests=5)
     plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*continue with: roadgpt resume .*c"):

@@ -14,7 +14,7 @@ from beamngpy.connection import Connection
 
 from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
 from exported import HILLY
-from roadgpt.campaign import Budget, Plan, begin, campaign
+from roadgpt.campaign import CellBudget, Plan, begin, campaign
 from roadgpt.drive import Camera, Command, Drive, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
@@ -400,7 +400,7 @@ def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_dr
         campaign("| turns=1..", 3, 0, slippery, setup, tmp_path / "runs")
     with pytest.raises(UsageError, match=said):
         prove(SHORT, 0, slippery, setup)
-    plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=Budget(tests=3))
+    plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=CellBudget(tests=3))
     with pytest.raises(UsageError, match=said):
         begin(plan, tmp_path / "campaign")
     assert not [*tmp_path.iterdir()]
