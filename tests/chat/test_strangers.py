@@ -21,8 +21,7 @@ from roadgpt.campaign.plan_file import read_plan
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
 from roadgpt.chat.config import configured, key_for
 from roadgpt.cli import app
-from roadgpt.run import HeardRequest as Asked
-from roadgpt.run import Setup, perform, read_run, write_run
+from roadgpt.run import Request, Setup, perform, read_run, write_run
 
 ELSEWHERE = "https://elsewhere.example/v1"
 GOOD = '{"degrees": 30, "along": ["turn x1 left"], "road": "", "unused": []}'
@@ -94,7 +93,7 @@ def test_a_store_does_not_get_the_users_key_sent(
 def test_a_run_does_not_get_the_users_key_sent() -> None:
     setup = Setup(reader="plan", drives=False, chat=ChatSettings(model="m", base_url=ELSEWHERE))
     run = perform("turn left", setup=Setup(reader="plan", drives=False))
-    asked = Asked(words="turn left", setup=setup)
+    asked = Request(words="turn left", setup=setup)
     folder = write_run(type(run)(**{**vars(run), "request": asked}), Path("c"))
     assert key_for(ELSEWHERE) is not None  # a program that names it itself
     read_run(folder)

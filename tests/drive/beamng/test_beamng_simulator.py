@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from beamngpy.connection import Connection
 
-from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
+from drive.beamng.fake_beamng import FakeBeamNG, FakeFault, fake_home
 from exported import HILLY
 from roadgpt.campaign import CellBudget, Plan, begin, campaign
 from roadgpt.drive import Camera, Command, Drive, View, simulate
@@ -263,7 +263,7 @@ PLACES = [("LoadScenario", 1), ("CreateScenario", 1), ("SetAiWaypoint", 1)]
     ],
 )
 def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: str, nth: int) -> None:
-    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[FakeFault(kind, on, 1, nth)])
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=5))
     drive = made.simulate(SHORT, WORLD, BeamngLike(), 7)
     assert drive.ended == "goal"
@@ -276,14 +276,14 @@ def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: st
 def test_a_fault_while_loading_costs_one_more_try(
     tmp_path: Path, port: int, kind: str, on: str, nth: int
 ) -> None:
-    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[FakeFault(kind, on, 1, nth)])
     short = {"poll_timeout": 0.6, "load_timeout": 0.6, "first_load_timeout": 0.6}
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, **short))
     assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
 
 
 def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path: Path, port: int) -> None:
-    faults = [Fault("die", "Step", 1, 9), Fault("hang", "SensorRequest", 2, 9)]
+    faults = [FakeFault("die", "Step", 1, 9), FakeFault("hang", "SensorRequest", 2, 9)]
     home = fake_home(tmp_path / "home", protocol=OURS, faults=faults)
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6))
     with pytest.raises(
@@ -294,7 +294,7 @@ def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path
 
 
 def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> None:
-    with FakeBeamNG(port=port, protocol=OURS, faults=(Fault("hang", "Step", 1, 20),)) as fake:
+    with FakeBeamNG(port=port, protocol=OURS, faults=(FakeFault("hang", "Step", 1, 20),)) as fake:
         made = simulator(fake, poll_timeout=1.5, rate=20)
         assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
         leave_all()
