@@ -14,13 +14,13 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network.network import Network
 from roadgpt.network.passages import Passage
 from roadgpt.network.polygon import Area
+from roadgpt.network.surface import ROUND
 from roadgpt.road import Edges, Road
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
 JUST = 1e-6  # m, before or behind a station, so that a jump of widths at the station does not matter
 AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
-ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 
 
 def ground_of(network: Network) -> Area:
