@@ -340,7 +340,7 @@ def test_the_driver_of_the_guide_sees_and_drives(fake: FakeBeamNG) -> None:
     (code,) = re.findall(r"^```python\n(.*?)^```", page.read_text(encoding="utf-8"), re.M | re.S)
     made: dict[str, Any] = {}
     exec(code, made)
-    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["LooksAtDecals"](), 7)
+    drive = simulator(fake, rate=20).simulate(SHORT, WORLD, made["Looks"](), 7)
     assert {*drive["throttle"][1:].tolist()} == {0.0, 0.2}  # the image of the fake grows lighter with time
 
 
