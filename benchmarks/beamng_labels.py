@@ -22,7 +22,7 @@ TOLERANCE = 0.85  # of the recordings
 CURVATURES = 17
 
 
-class Labels(NamedTuple):
+class BeamngLabels(NamedTuple):
     """Arrays over roads."""
 
     curvature: np.ndarray
@@ -31,22 +31,22 @@ class Labels(NamedTuple):
     max_oob: np.ndarray
     """Largest share outside that was recorded, 0..1."""
 
-    def every(self, step: int) -> "Labels":
-        return Labels(*(column[::step] for column in self))
+    def every(self, step: int) -> "BeamngLabels":
+        return BeamngLabels(*(column[::step] for column in self))
 
 
-def halves(path: str) -> tuple[Labels, Labels]:
+def halves(path: str) -> tuple[BeamngLabels, BeamngLabels]:
     """(fitted to, test)"""
     with gzip.open(path, "rt", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     fitted = set(sorted({row["run"] for row in rows})[::2])
     of = np.array([row["run"] in fitted for row in rows])
-    labels = Labels(
+    labels = BeamngLabels(
         np.array([[float(row[f"k{i}"]) for i in range(CURVATURES)] for row in rows]),
         np.array([row["failed"] == "1" for row in rows]),
         np.array([float(row["max_oob"]) for row in rows]),
     )
-    first, second = (Labels(*(column[which] for column in labels)) for which in (of, ~of))
+    first, second = (BeamngLabels(*(column[which] for column in labels)) for which in (of, ~of))
     return first, second
 
 

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.stats import rankdata, spearmanr
 from sklearn.ensemble import GradientBoostingClassifier, GradientBoostingRegressor
 
-from beamng_labels import TOLERANCE, Labels, auc, halves, road_of
+from beamng_labels import TOLERANCE, BeamngLabels, auc, halves, road_of
 from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.driving_line import stations
@@ -58,13 +58,13 @@ def seen(curvatures: list[float]) -> Seen:
     return Seen(np.array([mean.max(), -mean.min()]), np.array([share.max(), *phases]))
 
 
-def seen_all(labels: Labels, jobs: int) -> Seen:
+def seen_all(labels: BeamngLabels, jobs: int) -> Seen:
     with ProcessPoolExecutor(jobs) as pool:
         found = list(pool.map(seen, labels.curvature.tolist(), chunksize=20))
     return Seen(np.array([one.lane for one in found]), np.array([one.drive for one in found]))
 
 
-def features(labels: Labels, roads: Seen) -> np.ndarray:
+def features(labels: BeamngLabels, roads: Seen) -> np.ndarray:
     """Curvatures as they are, sorted, and what is known to tell most."""
     k = labels.curvature
     three = np.abs(k[:, :-2] + k[:, 1:-1] + k[:, 2:])
@@ -73,7 +73,7 @@ def features(labels: Labels, roads: Seen) -> np.ndarray:
     return np.column_stack([k, np.sort(k, axis=1), most, turns.max(1), turns.sum(1), roads.lane])
 
 
-def learnt(known: np.ndarray, rest: np.ndarray, labels: Labels) -> tuple[np.ndarray, np.ndarray]:
+def learnt(known: np.ndarray, rest: np.ndarray, labels: BeamngLabels) -> tuple[np.ndarray, np.ndarray]:
     """Scores by boosting: of a classifier of failures, of a regressor of the rank of the share outside."""
     how = {"n_estimators": 200, "learning_rate": 0.04, "max_depth": 3, "subsample": 0.5, "random_state": 0}
     classifier = GradientBoostingClassifier(**how).fit(known, labels.failed)
@@ -81,29 +81,29 @@ def learnt(known: np.ndarray, rest: np.ndarray, labels: Labels) -> tuple[np.ndar
     return classifier.predict_proba(rest)[:, 1], regressor.predict(rest)
 
 
-Measure = Callable[[np.ndarray, Labels], float]
+Measure = Callable[[np.ndarray, BeamngLabels], float]
 
 
-def measured(measure: Measure, score: np.ndarray, labels: Labels) -> str:
+def measured(measure: Measure, score: np.ndarray, labels: BeamngLabels) -> str:
     rng = np.random.default_rng(0)
     count = len(score)
     some = []
     for _ in range(SAMPLES):
         chosen = rng.integers(0, count, count)
-        some.append(measure(score[chosen], Labels(*(column[chosen] for column in labels))))
+        some.append(measure(score[chosen], BeamngLabels(*(column[chosen] for column in labels))))
     low, high = np.percentile(some, [2.5, 97.5])
     return f"{measure(score, labels):.3f} ({low:.3f} to {high:.3f})"
 
 
-def of_failures(score: np.ndarray, labels: Labels) -> float:
+def of_failures(score: np.ndarray, labels: BeamngLabels) -> float:
     return auc(score, labels.failed)
 
 
-def of_ranks(score: np.ndarray, labels: Labels) -> float:
+def of_ranks(score: np.ndarray, labels: BeamngLabels) -> float:
     return float(spearmanr(score, labels.max_oob)[0])
 
 
-def row(name: str, score: np.ndarray, labels: Labels, is_share: bool = False) -> str:
+def row(name: str, score: np.ndarray, labels: BeamngLabels, is_share: bool = False) -> str:
     first = np.argsort(-score, kind="stable")[:100]
     cells = [
         name,
@@ -115,7 +115,7 @@ def row(name: str, score: np.ndarray, labels: Labels, is_share: bool = False) ->
     return f"| {' | '.join(cells)} |"
 
 
-def table(known: Labels, known_seen: Seen, rest: Labels, rest_seen: Seen) -> None:
+def table(known: BeamngLabels, known_seen: Seen, rest: BeamngLabels, rest_seen: Seen) -> None:
     """Prints the predictors of the test half."""
     k, ours = rest.curvature, rest_seen.drive
     plain = [features(known, known_seen), features(rest, rest_seen)]
@@ -142,7 +142,7 @@ def table(known: Labels, known_seen: Seen, rest: Labels, rest_seen: Seen) -> Non
         print(row(name, score, rest, is_share), flush=True)
 
 
-def verdicts(name: str, labels: Labels, roads: Seen) -> str:
+def verdicts(name: str, labels: BeamngLabels, roads: Seen) -> str:
     ours = roads.drive[:, 0] > TOLERANCE
     return (
         f"{name}: {len(ours)} roads; ours fails {100 * ours.mean():.1f} %, BeamNG's "

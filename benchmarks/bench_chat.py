@@ -37,7 +37,7 @@ HEAD = """\
 
 
 @dataclass(frozen=True)
-class Made:
+class ChatResult:
     """What came of one road."""
 
     words: str
@@ -86,7 +86,7 @@ class ReplayFirst:
             self.spent = self.spent + chat.spent.since(before)
 
 
-def made(words: str, way: str, number: int, folder: Path, base_url: str | None) -> Made:
+def made(words: str, way: str, number: int, folder: Path, base_url: str | None) -> ChatResult:
     """One road as ``roadgpt run`` makes it: of --seed NUMBER for chat, road NUMBER of --seed 1 for thesis."""
     designer_name, repair, rounds = way.split()
     told = {"repair": repair, "rounds": int(rounds), "max_completion": MOST}
@@ -100,11 +100,11 @@ def made(words: str, way: str, number: int, folder: Path, base_url: str | None) 
             designer = (ThesisDesigner if is_thesis else ChatDesigner)(settings, chat)
             design = designer.draft(brief, world, (), (), seed_of(seed, index))
     except (DesignError, ReplyError) as error:
-        return Made(words, way, number, None, chat.spent, str(error))
+        return ChatResult(words, way, number, None, chat.spent, str(error))
     road = build(design, "spline" if is_thesis else "arcs")
     found = inspect(road, brief, world)
     broken = {finding.rule for finding in found}
-    return Made(
+    return ChatResult(
         words,
         way,
         number,
@@ -118,10 +118,10 @@ def made(words: str, way: str, number: int, folder: Path, base_url: str | None) 
     )
 
 
-def row(name: str, roads: Sequence[Made]) -> str:
+def row(name: str, roads: Sequence[ChatResult]) -> str:
     """A row of the table."""
 
-    def number(of: Callable[[Made], object]) -> int:
+    def number(of: Callable[[ChatResult], object]) -> int:
         return sum(bool(of(one)) for one in roads)
 
     counts = (
@@ -137,7 +137,7 @@ def row(name: str, roads: Sequence[Made]) -> str:
     return f"| {name} | {' | '.join(map(str, counts))} |"
 
 
-def line(one: Made) -> str:
+def line(one: ChatResult) -> str:
     """A road of the recording, for the tests."""
     designer, repair, rounds = one.way.split()
     told = {"words": one.words, "designer": designer, "repair": repair, "rounds": int(rounds)}
@@ -154,7 +154,7 @@ def main() -> None:
     parser.add_argument("--roads", type=int, help="Of each description; as many as are recorded.")
     parser.add_argument("--write", type=Path, help="Write every road to this file, as JSON lines.")
     asked = parser.parse_args()
-    every: list[Made] = []
+    every: list[ChatResult] = []
     for way in asked.ways.split(","):
         for number in range(1, (asked.roads or WAYS[way]) + 1):
             for words in EVALUATION:

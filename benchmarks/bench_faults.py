@@ -31,7 +31,7 @@ from roadgpt.campaign.faults.remedy import Removed, remedies_of
 from roadgpt.campaign.faults.remedy_log import stored_remedies, task_of
 from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rerun import kept_run
-from roadgpt.campaign.workers.unordered_map import unordered_map
+from roadgpt.campaign.unordered_map import unordered_map
 
 DRIVERS = ("beamng_like", "lane_centring")
 CONDITIONS: dict[str, tuple[str, ...]] = {
@@ -59,7 +59,7 @@ class Pairs:
 
 
 @dataclass(frozen=True)
-class Row:
+class CampaignRow:
     """What one campaign shows."""
 
     driver: str
@@ -76,7 +76,7 @@ class Row:
     """Pairs across two faults of the failures that the faults were found with."""
 
 
-class Trial(NamedTuple):
+class RemedyTrial(NamedTuple):
     """A failure that had no part in finding the faults, and the kinds of changes to try on it."""
 
     folder: Path
@@ -103,7 +103,7 @@ def main() -> None:
     print("\n".join(table(rows)))
 
 
-def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, workers: int) -> Row:
+def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, workers: int) -> CampaignRow:
     """Searches, finds the faults, and tests further failures of each."""
     place = folder / f"{driver} {condition} {tests} {seed}".replace(" ", "-").replace("/", "")
     ready = place / "tested"
@@ -123,7 +123,7 @@ def measured(folder: Path, driver: str, condition: str, tests: int, seed: int, w
     within, across = pairs(faults, held_back(place, faults, seed, workers))
     _, across_tested = pairs(faults, tested[: len(faults)])
     count = sum(map(len, tested))
-    return Row(driver, condition, found.failures, count, faults, alone, within, across, across_tested)
+    return CampaignRow(driver, condition, found.failures, count, faults, alone, within, across, across_tested)
 
 
 def ours(*words: str) -> None:
@@ -135,17 +135,17 @@ def held_back(place: Path, faults: Sequence[Fault], seed: int, workers: int) -> 
     """Tries the changes of the faults on failures of each that had no part in finding the faults."""
     rng = np.random.default_rng(seed)
     kinds = frozenset(str(fault.remedy).split()[0] for fault in faults)
-    drawn: list[list[Trial]] = []
+    drawn: list[list[RemedyTrial]] = []
     for fault in faults:
         others = [each for each in fault.members if stored_remedies(task_of(place, each)) is None]
         some = sorted(rng.permutation(len(others))[:OTHERS])
-        drawn.append([Trial(place, others[at].name, kinds) for at in some])
+        drawn.append([RemedyTrial(place, others[at].name, kinds) for at in some])
     tasks = [each for some in drawn for each in some]
     removed = dict(unordered_map(tried, tasks, workers, place / "workers.log"))
     return [[removed[each.name] for each in some] for some in drawn]
 
 
-def tried(trial: Trial) -> tuple[NumberedTest, Removed]:
+def tried(trial: RemedyTrial) -> tuple[NumberedTest, Removed]:
     """Drives the road of a failure with changes, unless this was done before."""
     path = trial.folder / "held_back" / f"{trial.name.cell}-{trial.name.number}.json"
     if not path.is_file():
@@ -173,7 +173,7 @@ def _both(one: Removed, other: Removed, fault: Fault) -> bool:
     return bool(one[name]) and bool(other[name])
 
 
-def table(rows: Sequence[Row]) -> Iterator[str]:
+def table(rows: Sequence[CampaignRow]) -> Iterator[str]:
     """Yields the lines of the table."""
     yield (
         "| driver | condition | failures, tested | distinct faults: failures, what removes them | no fault | "

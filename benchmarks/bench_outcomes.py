@@ -26,7 +26,7 @@ CAUSES = ("out of lane", "fell", "stuck", "timeout")
 CASES = ((40, 1.0), (70, 1.0), (100, 1.0), (70, 0.6), (70, 0.35))  # km/h and friction
 
 
-class NeverSteers:
+class RollsStraight:
     """Rolls straight on at 40 km/h."""
 
     def steer(self, view: View) -> Command:
@@ -110,7 +110,7 @@ def main(count: int = 300, write: bool = False) -> None:
         if verge:
             failures[name, kmh, friction] = failed
 
-    add("never steers", NeverSteers, bent, 40, 1.0)
+    add("never steers", RollsStraight, bent, 40, 1.0)
     add("reference", Reference, roads, 40, 1.0)
     add("reference", Reference, roads, 70, 1.0)
     for kmh, friction in CASES:
@@ -146,12 +146,12 @@ def microseconds(driver: type[Any], road: Road) -> float:
     """Median time of one answer, over a drive."""
     seen: list[View] = []
 
-    class Watched(driver):  # type: ignore[misc]
+    class KeepsViews(driver):  # type: ignore[misc]
         def steer(self, view: View) -> Command:
             seen.append(view)
             return super().steer(view)
 
-    simulate(road, World(), Watched())
+    simulate(road, World(), KeepsViews())
     one = driver()
     one.start(road, World(), 0)
     times = []

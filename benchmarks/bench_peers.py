@@ -71,7 +71,7 @@ class Kit:
 
 
 @dataclass(frozen=True)
-class Job:
+class ToolRun:
     """One run of one tool."""
 
     tool: str
@@ -98,7 +98,7 @@ class Job:
         return words + ([] if tool.is_ours else ["--python", python])
 
 
-def run(job: Job, kit: Kit, folder: Path) -> Figures:
+def run(job: ToolRun, kit: Kit, folder: Path) -> Figures:
     """Runs a generator, unless the folder already has what it found.
 
     Raises:
@@ -117,7 +117,7 @@ def run(job: Job, kit: Kit, folder: Path) -> Figures:
     return found
 
 
-def run_generator(job: Job, kit: Kit, out: Path) -> Figures:
+def run_generator(job: ToolRun, kit: Kit, out: Path) -> Figures:
     """Runs a generator; its results are in ``out`` then.
 
     Raises:
@@ -184,7 +184,7 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def said(job: Job, found: Sequence[Figures], version: str, errors: Sequence[str]) -> str:
+def said(job: ToolRun, found: Sequence[Figures], version: str, errors: Sequence[str]) -> str:
     """A row of the table, in Markdown: medians over runs that differ only in the seed."""
     cells = [TOOLS[job.tool].title, " / ".join(sorted({one["version"] for one in found})) or version]
     cells += [job.driver.rpartition(":")[2], f"{job.tolerance:g}", str(len(found))]
@@ -225,12 +225,12 @@ def table(asked: argparse.Namespace, kit: Kit, folder: Path) -> list[str]:
     lines = header()
     seeds = range(asked.first_seed, asked.first_seed + asked.seeds)
     for what in itertools.product(asked.tools, asked.drivers, asked.tolerances):
-        lines.append(row([Job(*what, seed, asked.tests) for seed in seeds], kit, folder))
+        lines.append(row([ToolRun(*what, seed, asked.tests) for seed in seeds], kit, folder))
         write(asked.markdown, lines)
     return [*lines, "", *adaptations(asked.tools)]
 
 
-def row(jobs: Sequence[Job], kit: Kit, folder: Path) -> str:
+def row(jobs: Sequence[ToolRun], kit: Kit, folder: Path) -> str:
     """Runs a tool, and returns its row of the table."""
     found: list[Figures] = []
     errors: list[str] = []

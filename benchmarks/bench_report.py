@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 from roadgpt.brief import read
-from roadgpt.campaign.model import Budget, Cell, Proposal, Result
+from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.single_test import FinishedTest
@@ -26,8 +26,8 @@ WORDS = "an uphill road with 3 turns"
 
 def store_of(folder: Path, tests: int) -> None:
     """A campaign of so many tests in one cell."""
-    plan = Plan(prompts=(WORDS,), budget=Budget(tests=tests))
-    cell = Cell("c01", Request(words=WORDS), None, "words", None, budget=Budget(tests=tests))
+    plan = Plan(prompts=(WORDS,), budget=CellBudget(tests=tests))
+    cell = Cell("c01", Request(words=WORDS), None, "words", None, budget=CellBudget(tests=tests))
     brief, world = read(WORDS), World()
     made = [
         Result(

@@ -26,7 +26,7 @@ import numpy as np
 from roadgpt import plugins
 from roadgpt.campaign import lifecycle, scheduler
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
+from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, Record
 from roadgpt.campaign.rows import design_text
@@ -111,7 +111,7 @@ def of_no_cost(tests: int, function: Callable[..., FinishedTest]) -> tuple[Plan,
         setattr(scheduler, "execute", function)  # noqa: B010
         setattr(lifecycle, "WorkerSetup", lambda setups: nothing)  # noqa: B010
 
-    return Plan(generators=("same",), budget=Budget(tests=tests), drives=False), ready
+    return Plan(generators=("same",), budget=CellBudget(tests=tests), drives=False), ready
 
 
 def overhead() -> None:
@@ -151,7 +151,7 @@ def workers() -> None:
     for count in (1, 2):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name) / "c"
-            begin(Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=tests), seeds=(7,)), folder)
+            begin(Plan(prompts=(ROAD,), reader="plan", budget=CellBudget(tests=tests), seeds=(7,)), folder)
             before = time.process_time()
             for _ in work(folder, count):
                 pass
@@ -199,7 +199,9 @@ def leaks() -> None:
     real = 800
     print("\nReal tests: drafted, driven, judged.\n")
     with tempfile.TemporaryDirectory() as name:
-        begin(Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=real), seeds=(7,)), Path(name) / "c")
+        begin(
+            Plan(prompts=(ROAD,), reader="plan", budget=CellBudget(tests=real), seeds=(7,)), Path(name) / "c"
+        )
         curve(work(Path(name) / "c", 2), real)
 
 
@@ -219,7 +221,7 @@ def million() -> None:
     tests = 1_000_000
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        plan = Plan(prompts=(ROAD,), reader="plan", budget=Budget(tests=tests // 4), seeds=(0, 1, 2, 3))
+        plan = Plan(prompts=(ROAD,), reader="plan", budget=CellBudget(tests=tests // 4), seeds=(0, 1, 2, 3))
         Store.new(folder, plan.model_dump_json(), plan.cells({}), {}).close()
         _fill(folder, tests)
         size = (folder / STORE).stat().st_size

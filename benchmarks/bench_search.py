@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import bootstrap, mannwhitneyu
 
-from roadgpt.campaign import Budget, Cell, Result
+from roadgpt.campaign import Cell, CellBudget, Result
 from roadgpt.campaign.behaviour import cell_of
 from roadgpt.campaign.generators.genetic import Genetic
 from roadgpt.campaign.generators.quality_diversity import QualityDiversity
@@ -68,7 +68,7 @@ TURN = {"kind": "turn", "deg": [20, 125]}
 
 
 @dataclass(frozen=True)
-class Setting:
+class MethodSetting:
     """What several methods are compared on; the first is what the others are compared with."""
 
     words: str
@@ -88,21 +88,21 @@ class Setting:
 
 
 SETTINGS = {
-    "flat": Setting("a flat road", AGAINST_THE_WALK, truth={"turns": [1, None], "grade": "flat"}),
-    "wet": Setting(
+    "flat": MethodSetting("a flat road", AGAINST_THE_WALK, truth={"turns": [1, None], "grade": "flat"}),
+    "wet": MethodSetting(
         "a flat road",
         AGAINST_THE_WALK,
         driver=f"{Path(__file__).resolve().parent / 'assumes_dry.py'}:AssumesDry",
         friction=0.57,
         truth={"turns": [1, None], "grade": "flat"},
     ),
-    "uphill": Setting(
+    "uphill": MethodSetting(
         "an uphill road with 3 turns", truth={"turns": 3, "grade": "up", "sequence": [TURN, TURN, TURN]}
     ),
-    "serpentine": Setting(
+    "serpentine": MethodSetting(
         "a serpentine road", truth={"turns": [4, None], "alternating": True, "turning": [200, None]}
     ),
-    "down_left": Setting(
+    "down_left": MethodSetting(
         "a road going uphill for 2 turns, followed by a straight downhill segment, ending in a left turn",
         truth={
             "turns": 3,
@@ -114,13 +114,15 @@ SETTINGS = {
             ],
         },
     ),
-    "centring": Setting(
+    "centring": MethodSetting(
         "a flat road",
         AGAINST_THE_WALK,
         driver="lane_centring",
         truth={"turns": [1, None], "grade": "flat"},
     ),
-    "slopes": Setting("a road", ("walk", "quality_diversity"), truth={"turns": [1, None]}, borrows="flat"),
+    "slopes": MethodSetting(
+        "a road", ("walk", "quality_diversity"), truth={"turns": [1, None]}, borrows="flat"
+    ),
 }
 
 
@@ -152,7 +154,7 @@ def points_of(bends: Sequence[float], heading: float) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Job:
+class MethodRun:
     """One method, on one setting, with one seed."""
 
     setting: str
@@ -167,14 +169,14 @@ class Job:
         return f"{self.setting}.{self.method}.{self.seed}.{self.tests}.json"
 
 
-class Here:
+class SerialPool:
     """A pool of nobody else: each job is a process of its own."""
 
     def map(self, function: Callable[[Any], Any], items: Sequence[Any]) -> list[Any]:
         return [function(item) for item in items]
 
 
-def found(job: Job) -> dict[str, Any]:
+def found(job: MethodRun) -> dict[str, Any]:
     """What a job found."""
     setting = SETTINGS[job.setting]
     request = Request(
@@ -184,12 +186,12 @@ def found(job: Job) -> dict[str, Any]:
         setup=USUAL.model_copy(update={"driver": setting.driver}),
     )
     brief = brief_of(setting.words, request.world, request.setup)
-    cell = Cell("c01", request, brief, job.method, "failures", budget=Budget(tests=job.tests))
+    cell = Cell("c01", request, brief, job.method, "failures", budget=CellBudget(tests=job.tests))
     tried = walked(cell, job) if job.method == "walk" else searched(cell, job)
     return figures(cell, tried, job.referee, setting.truth)
 
 
-def walked(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
+def walked(cell: Cell, job: MethodRun) -> list[tuple[Result, Road]]:
     """Tests of the field's walk."""
     out = []
     for number, road in enumerate(itertools.islice(walks(job.seed), job.tests), 1):
@@ -198,7 +200,7 @@ def walked(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
     return out
 
 
-def searched(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
+def searched(cell: Cell, job: MethodRun) -> list[tuple[Result, Road]]:
     """Tests of a generator of ours, told of results as in a campaign: one batch later."""
     generator = METHODS[job.method](cell)
     batches: list[list[Result]] = []
@@ -207,7 +209,7 @@ def searched(cell: Cell, job: Job) -> list[tuple[Result, Road]]:
         if len(batches) >= 2:
             generator.tell(batches[-2])
         n = min(generator.batch_size, job.tests - number + 1)
-        proposals = generator.ask(len(batches), number, n, Here())
+        proposals = generator.ask(len(batches), number, n, SerialPool())
         tasks = [Task(at, len(batches), one) for at, one in enumerate(proposals, number)]
         batches.append([execute(task, cell).result for task in tasks])
         number += len(proposals)
@@ -267,7 +269,7 @@ def judge_of(path: str) -> ModuleType:
     return module
 
 
-def done(jobs: Sequence[Job], folder: Path, workers: int) -> dict[Job, dict[str, Any]]:
+def done(jobs: Sequence[MethodRun], folder: Path, workers: int) -> dict[MethodRun, dict[str, Any]]:
     """What all jobs found; what a file knows is not done again."""
     missing = [job for job in jobs if not (folder / job.name).is_file()]
     with ProcessPoolExecutor(workers) as pool:
@@ -279,7 +281,7 @@ def done(jobs: Sequence[Job], folder: Path, workers: int) -> dict[Job, dict[str,
     return {job: json.loads((folder / job.name).read_text(encoding="utf-8")) for job in jobs}
 
 
-def table(setting: str, results: dict[Job, dict[str, Any]]) -> list[str]:
+def table(setting: str, results: dict[MethodRun, dict[str, Any]]) -> list[str]:
     """Rows of Markdown: medians over seeds, with bootstrap intervals of 95 %."""
     what = SETTINGS[setting]
     own = {
@@ -379,7 +381,7 @@ def main() -> None:
     seeds, tests = asked.seeds or (10 if asked.whole else 2), asked.tests or (200 if asked.whole else 60)
     settings = asked.settings or (list(SETTINGS) if asked.whole else ["flat"])
     jobs = {
-        Job(
+        MethodRun(
             (method == "walk" and SETTINGS[setting].borrows) or setting, method, seed, tests, asked.referee
         ): 0
         for setting in settings

@@ -51,7 +51,7 @@ SECONDS = 3.0  # of processor time, for the steps of each environment
 
 
 @dataclass
-class Cell:
+class DriveTally:
     """Drives of one driver on roads of one description at one speed."""
 
     drives: int = 0
@@ -61,8 +61,8 @@ class Cell:
     aside: float = 0.0
     """m, the sum over kept drives of the farthest from the lane's middle."""
 
-    def __add__(self, other: "Cell") -> "Cell":
-        return Cell(
+    def __add__(self, other: "DriveTally") -> "DriveTally":
+        return DriveTally(
             self.drives + other.drives,
             self.kept + other.kept,
             self.slopes + other.slopes,
@@ -78,7 +78,7 @@ def driven(name: str, kmh: int, road: Road) -> tuple[Drive, World]:
     return simulate(road, world, load_driver(str(SEEING[name]))), world
 
 
-def added(cell: Cell, road: Road, drive: Drive, world: World) -> None:
+def added(cell: DriveTally, road: Road, drive: Drive, world: World) -> None:
     cell.drives += 1
     s, t = (np.asarray(drive.columns[name]) for name in ("s", "t"))
     if judge(road, drive, world).kept:
@@ -91,7 +91,7 @@ def added(cell: Cell, road: Road, drive: Drive, world: World) -> None:
     cell.slopes += bool(np.ptp(grades, axis=1).max() > 0.03)
 
 
-def one(index: int, prompt: str) -> tuple[dict[tuple[str, str, int], Cell], float]:
+def one(index: int, prompt: str) -> tuple[dict[tuple[str, str, int], DriveTally], float]:
     """All drives on one road, and the seconds of processor time that they took."""
     begun = time.process_time()
     run = perform(brief_of(prompt, World(), PLAIN), SEED, World(), PLAIN, index)
@@ -100,14 +100,14 @@ def one(index: int, prompt: str) -> tuple[dict[tuple[str, str, int], Cell], floa
     cells = {}
     for name in NAMES:
         for kmh in SPEEDS:
-            cell = cells[prompt, name, kmh] = Cell()
+            cell = cells[prompt, name, kmh] = DriveTally()
             added(cell, run.road, *driven(name, kmh, run.road))
     return cells, time.process_time() - begun
 
 
 def driven_all(roads: int, minutes: float, jobs: int) -> list[str]:
     """The table; it is printed as it grows, for it takes a while."""
-    cells: dict[tuple[str, str, int], Cell] = defaultdict(Cell)
+    cells: dict[tuple[str, str, int], DriveTally] = defaultdict(DriveTally)
     lines: list[str] = []
     used = 0.0
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
@@ -124,7 +124,7 @@ def driven_all(roads: int, minutes: float, jobs: int) -> list[str]:
     return lines
 
 
-def table(cells: dict[tuple[str, str, int], Cell], count: int) -> list[str]:
+def table(cells: dict[tuple[str, str, int], DriveTally], count: int) -> list[str]:
     lines = [
         f"| roads ({count} each) | driver | " + " | ".join(f"{kmh} km/h" for kmh in SPEEDS) + " |",
         "|---|---|" + "---|" * len(SPEEDS),
@@ -136,7 +136,7 @@ def table(cells: dict[tuple[str, str, int], Cell], count: int) -> list[str]:
     return lines
 
 
-def told(cell: Cell) -> str:
+def told(cell: DriveTally) -> str:
     said = f"{cell.kept}"
     if cell.kept:
         said += f" ({cell.aside / cell.kept:.2f} m)"

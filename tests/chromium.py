@@ -29,7 +29,7 @@ FLAGS = (
 PATIENCE = 60.0  # s for one answer; a shared machine without a graphics card is slow
 
 
-class Page:
+class BrowserTab:
     """One tab; ``told`` is what it said on its console or threw, ``asked`` the addresses it wanted."""
 
     def __init__(self, write: int, read: int) -> None:
@@ -157,7 +157,7 @@ class Page:
 
 
 @contextmanager
-def browser() -> Iterator[Page]:
+def browser() -> Iterator[BrowserTab]:
     """A chromium of our own with one tab; it ends with the block."""
     assert FOUND is not None
     their_read, our_write = os.pipe()
@@ -178,7 +178,7 @@ def browser() -> Iterator[Page]:
         for end in (their_read, their_write, *high):
             os.close(end)
         try:
-            yield Page(our_write, our_read)
+            yield BrowserTab(our_write, our_read)
         finally:
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)

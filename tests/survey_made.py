@@ -69,7 +69,7 @@ def served(folder: Path, is_open: bool = False) -> Iterator[Server]:
         server.app.store.close()
 
 
-class Reply(NamedTuple):
+class HttpReply(NamedTuple):
     status: int
     headers: Mapping[str, str]
     body: bytes
@@ -87,19 +87,19 @@ class Client:
 
     def ask(
         self, method: str, path: str, body: bytes | None = None, headers: Mapping[str, str] | None = None
-    ) -> Reply:
+    ) -> HttpReply:
         self._line.request(method, path, body, dict(headers or {}))
         got = self._line.getresponse()
-        return Reply(got.status, {k.lower(): v for k, v in got.getheaders()}, got.read())
+        return HttpReply(got.status, {k.lower(): v for k, v in got.getheaders()}, got.read())
 
-    def get(self, path: str, **headers: str) -> Reply:
+    def get(self, path: str, **headers: str) -> HttpReply:
         return self.ask("GET", path, headers={k.replace("_", "-"): v for k, v in headers.items()})
 
-    def post(self, path: str, fields: Mapping[str, str]) -> Reply:
+    def post(self, path: str, fields: Mapping[str, str]) -> HttpReply:
         kind = {"Content-Type": "application/x-www-form-urlencoded"}
         return self.ask("POST", path, urlencode(fields).encode(), kind)
 
-    def save(self, token: str, question: str, value: str) -> Reply:
+    def save(self, token: str, question: str, value: str) -> HttpReply:
         body = json.dumps({"question": question, "value": value}).encode()
         return self.ask("POST", f"/r/{token}/answer", body, {"Content-Type": "application/json"})
 

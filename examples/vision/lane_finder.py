@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from pace import WHEELBASE, Pace
+from pace import WHEELBASE, SpeedControl
 
 from roadgpt.drive import Camera, Command
 
@@ -26,7 +26,7 @@ GATE = 0.6, 0.05  # m from where a line should be, and more per metre ahead
 INSET = 0.175  # m from the carriageway's edge to the middle of an edge line
 TRUST = 6.0  # m ahead, from where a pixel says less
 BEFORE = np.array([0.3, 5.0, 150.0, 50.0])
-"""How much what was seen before weighs, by the numbers of a Lane, against metres of line."""
+"""How much what was seen before weighs, by the numbers of a LaneArc, against metres of line."""
 DIFFERENCE = np.array([1e-4, 1e-5, 1e-6, 1e-5])  # for derivatives
 ROUNDS = 3
 NEAREST, HEADWAY = 5.0, 0.45  # m and s to the point that is pursued
@@ -37,7 +37,7 @@ Floats = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 
-class Lane(NamedTuple):
+class LaneArc(NamedTuple):
     """The lane's middle as the car sees it: an arc from beside its centre of gravity on."""
 
     aside: float = 0.0
@@ -49,10 +49,10 @@ class Lane(NamedTuple):
     spread: float = 0.0
     """1/m: how much wider the lane seems to be with each metre."""
 
-    def moved(self, way: float, turn: float) -> "Lane":
+    def moved(self, way: float, turn: float) -> "LaneArc":
         """After the car has gone some metres and turned by some radians to the left."""
         aside = self.aside + way * math.sin(self.turned)
-        return Lane(aside, self.turned + way * self.bend - turn, self.bend, self.spread)
+        return LaneArc(aside, self.turned + way * self.bend - turn, self.bend, self.spread)
 
     def at(self, way: float) -> tuple[float, float]:
         """The point of the middle after so many metres: m ahead and to the left of the car."""
@@ -77,9 +77,9 @@ class LaneFinder:
     """The competition's camera, turned downwards: less sky, the same road."""
 
     def __init__(self, speed_kmh: float | None = None) -> None:
-        """At this speed; see `Pace`."""
-        self.pace = Pace(speed_kmh)
-        self._ground = Ground(self.camera)
+        """At this speed; see `SpeedControl`."""
+        self.pace = SpeedControl(speed_kmh)
+        self._ground = FlatGround(self.camera)
 
     def start(self, road, world, seed):
         """Forgets the road before; looks at nothing but the signs with the speed limit."""
@@ -87,7 +87,7 @@ class LaneFinder:
         self._limit, self._image = world.limits.speed_limit, None
         half = world.section.lane_width / 2
         self._lines = (INSET - half, half, 3 * half - INSET)
-        self.lane = Lane()
+        self.lane = LaneArc()
 
     def steer(self, view):
         """Looks at each new picture; in between the lane is moved on by what the car did."""
@@ -101,7 +101,7 @@ class LaneFinder:
         return Command(math.atan(WHEELBASE * bend), *pedals)
 
 
-class Ground:
+class FlatGround:
     """Where each pixel of a camera lies on flat ground."""
 
     def __init__(self, camera: Camera) -> None:
@@ -129,7 +129,7 @@ class Ground:
         brightest = np.maximum(np.maximum(red, green), blue)
         return self.is_near & (darkest > WHITE) & (brightest - darkest < GREY)
 
-    def lane_in(self, image: Image, before: Lane, lines: tuple[float, ...]) -> Lane:
+    def lane_in(self, image: Image, before: LaneArc, lines: tuple[float, ...]) -> LaneArc:
         """The lane in a picture.
 
         Args:
@@ -148,16 +148,16 @@ class Ground:
             kx, ky, error = x[known], y[known], (off - line)[known]
             slopes = np.empty((4, len(kx)))
             for place, step in enumerate(DIFFERENCE):
-                other = Lane(*(np.array(lane) + step * (np.arange(4) == place)))
+                other = LaneArc(*(np.array(lane) + step * (np.arange(4) == place)))
                 slopes[place] = (other.across(kx, ky)[0] - off[known]) / step
             weighed = slopes * weight[known]
             pull = weighed @ error + BEFORE * (np.array(lane) - before * np.array([1, 1, 1, 0]))
-            lane = Lane(*(np.array(lane) - np.linalg.solve(weighed @ slopes.T + np.diag(BEFORE), pull)))
+            lane = LaneArc(*(np.array(lane) - np.linalg.solve(weighed @ slopes.T + np.diag(BEFORE), pull)))
             if abs(lane.bend) < 1e-4:
                 lane = lane._replace(bend=1e-4)
         return lane
 
-    def marked(self, image: Image, lane: Lane) -> Image:
+    def marked(self, image: Image, lane: LaneArc) -> Image:
         """The picture with white pixels in red and the lane's middle in blue: what the driver sees."""
         out = image.copy()
         out[self.white(image)] = (230, 30, 30)

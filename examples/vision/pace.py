@@ -8,7 +8,7 @@ ANSWER = 0.5  # pedal per m/s of error
 WHEELBASE = 2.83  # m
 
 
-class Pace:
+class SpeedControl:
     """Keeps a speed by the pedals.
 
     Args:

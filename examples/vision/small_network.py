@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
-from pace import WHEELBASE, Pace
+from pace import WHEELBASE, SpeedControl
 
 from roadgpt.drive import Camera, Command
 
@@ -37,7 +37,7 @@ class SmallNetwork:
 
     def __init__(self, weights: Path = WEIGHTS, speed_kmh: float | None = None) -> None:
         """With weights from a file of ``train_small_network.py``."""
-        self.pace = Pace(speed_kmh)
+        self.pace = SpeedControl(speed_kmh)
         with np.load(weights, allow_pickle=False) as file:
             self._weights = [file[name].astype(np.float32) for name in sorted(file.files)]
 

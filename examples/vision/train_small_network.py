@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import torch
 from numpy.typing import NDArray
-from pace import Pace
+from pace import SpeedControl
 from small_network import CAMERA, SCALE, STRIDES, WEIGHTS, answer
 from torch import nn
 
@@ -53,7 +53,7 @@ class Watched(Reference):
 
     def __init__(self, rng: np.random.Generator, kmh: float, weights: Weights | None) -> None:
         super().__init__()
-        self.rng, self.pace, self.weights = rng, Pace(kmh), weights
+        self.rng, self.pace, self.weights = rng, SpeedControl(kmh), weights
         self.images: list[NDArray[np.uint8]] = []
         self.wanted: list[float] = []
         self._push, self._until, self._step, self._own = 0.0, 1.0, 0, 0.0

@@ -22,7 +22,7 @@ def between_markings(road: Road) -> Polygon:
     return Polygon(np.concatenate([left, right]))
 
 
-class Lane:
+class ShapelyLane:
     """Shapely's distances from a polygon; its tree of the sides finds the nearest without asking them all."""
 
     def __init__(self, road: Road) -> None:
@@ -45,7 +45,7 @@ class Lane:
 def test_body_and_tyres_reach_as_far_as_shapely_says(radius: float, hand: int) -> None:
     road, world = bent(radius, hand), World()
     drive = random_drive(road, seed=round(radius) + hand)
-    lane = Lane(road)
+    lane = ShapelyLane(road)
     body = MarkingMonitor.for_body(road, world, drive.car).along(drive)
     tyres = MarkingMonitor.for_tyres(road, world, drive.car).along(drive)
     for step in range(len(drive)):
@@ -78,7 +78,7 @@ def test_a_share_outside_and_a_distance_beyond_the_edge_line_go_together(hand: i
 def test_the_farthest_of_a_whole_drive_is_told() -> None:
     road, world = bent(15.0, -1), World(limits=Limits(oob_tolerance=1.0))
     drive = SlipperyBicycle().simulate(road, world, BeamngLike(), 0)
-    lane = Lane(road)
+    lane = ShapelyLane(road)
     every = [lane.farthest(np.asarray(drive.corners(step))) for step in range(drive.lane_steps)]
     told = judge(road, drive, world).beyond
     assert told is not None

@@ -15,7 +15,7 @@ PICTURE = bytes(range(256)) * 4000  # a megabyte, so that many kills fall into t
 REQUEST = Request(words="a road to be interrupted", seed=7, setup=Setup(drives=False))
 
 
-class Drawing:
+class LargeDrawing:
     """Writes something large in place of pictures."""
 
     def of_run(self, run: Run, folder: Path) -> None:
@@ -25,7 +25,7 @@ class Drawing:
         (folder / "overview.png").write_bytes(PICTURE)
 
 
-class Deadly(Drawing):
+class Deadly(LargeDrawing):
     """Ends the process that draws the second road."""
 
     def of_run(self, run: Run, folder: Path) -> None:
@@ -42,7 +42,7 @@ def perform(index: int, earlier: Sequence[Design]) -> Run:
 
 def main() -> None:
     """Say each road as it is done."""
-    campaign = folder_of(REQUEST, int(sys.argv[2]), Path(sys.argv[1]), perform, Drawing())
+    campaign = folder_of(REQUEST, int(sys.argv[2]), Path(sys.argv[1]), perform, LargeDrawing())
     for run in campaign.all_runs() if "--all" in sys.argv else campaign:
         print(run.index, flush=True)
         time.sleep(0.02 * ("--slow" in sys.argv))

@@ -15,7 +15,7 @@ import numpy as np
 from roadgpt import plugins
 from roadgpt.campaign import lifecycle, scheduler
 from roadgpt.campaign.executors import FinishedJob, Job, RunningJob, WorkerConfig
-from roadgpt.campaign.model import Budget, Cell, Pool, Proposal, Result
+from roadgpt.campaign.model import Cell, CellBudget, Pool, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE
 from roadgpt.campaign.single_test import FinishedTest, Task
@@ -137,7 +137,7 @@ def plan(tests: int, cells: int = 1, seconds: float = 0.0, **rest: Any) -> Plan:
         reader="plan",
         generators=("search",),
         seeds=tuple(range(cells)),
-        budget=Budget(tests=tests),
+        budget=CellBudget(tests=tests),
         settings={"seconds": seconds},
         drives=False,
         **rest,

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from campaign.quick import Inline, Search, a_design, plan, put_on_shelves
 from roadgpt.campaign import batch_scheduler
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget, Proposal
+from roadgpt.campaign.model import CellBudget, Proposal
 from roadgpt.campaign.record import Record
 from roadgpt.errors import RoadGPTError, UsageError
 
@@ -123,7 +123,7 @@ def test_a_generator_that_asks_for_too_much_or_without_words_is_told_so(
 
 
 def test_time_closes_a_cell_and_what_is_asked_is_finished(tmp_path: Path) -> None:
-    begin(plan(1).model_copy(update={"budget": Budget(seconds=0.05)}), tmp_path / "c")
+    begin(plan(1).model_copy(update={"budget": CellBudget(seconds=0.05)}), tmp_path / "c")
     steps = [*work(tmp_path / "c", 1, "inline")]
     with Record.opened(tmp_path / "c") as record:
         ((closed, seconds),) = record.query("SELECT closed, seconds FROM cells")

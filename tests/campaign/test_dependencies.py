@@ -19,7 +19,7 @@ class Refused:
 sys.meta_path.insert(0, Refused())
 from pathlib import Path
 import roadgpt.campaign.executors.processes as processes
-from roadgpt.campaign import Budget, Plan, Record, begin, read_trace, work
+from roadgpt.campaign import CellBudget, Plan, Record, begin, read_trace, work
 from roadgpt.campaign.workers.in_process import InProcess
 
 processes.Processes = InProcess  # so that nothing of it runs where they can be imported
@@ -27,7 +27,7 @@ for archive, tests in (("grid", 12), ("cvt", 4)):
     folder = Path(sys.argv[1], archive)
     settings = {{"batch": 1, "candidates": 1, "archive": archive, "cells": 20}}
     plan = Plan(prompts=("| flat turns=1..2 len=50..90",), generators=("quality_diversity",), goal="coverage",
-                settings=settings, budget=Budget(tests=tests), reader="plan")
+                settings=settings, budget=CellBudget(tests=tests), reader="plan")
     begin(plan, folder)
     for progress in work(folder):
         pass

@@ -170,13 +170,13 @@ def test_where_the_most_typical_failure_is_a_fluke_others_are_tried(
     largest = faults_in(folder).them[0]
     first, second = largest.names[:2]
 
-    class Share:
+    class GivenStability:
         def __init__(self, run: Run) -> None:
             self.share = 0.1 if run.index == first.number else 0.9
             self.is_stable = self.share >= 0.5
             self.sentence, self.drives = "", ()
 
-    monkeypatch.setattr(fault_log, "repeated", lambda run, times: Share(run))
+    monkeypatch.setattr(fault_log, "repeated", lambda run, times: GivenStability(run))
     _, found = fault_log.analyse(fault_log.AnalysisTask(folder, 1, largest.names, 1))
     assert found.name == second
     monkeypatch.setattr(fault_log, "repeated", lambda run, times: pytest.fail("no more drives are needed"))

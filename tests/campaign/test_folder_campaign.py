@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from campaign.folder_worker import REQUEST, Deadly, Drawing, perform
+from campaign.folder_worker import REQUEST, Deadly, LargeDrawing, perform
 from roadgpt import children
 from roadgpt.brief.model import Brief, Clause, exactly
 from roadgpt.campaign import campaign
@@ -23,7 +23,7 @@ from roadgpt.campaign.run_folder import RunFolder
 from roadgpt.errors import DesignError, RoadGPTError, UsageError
 from roadgpt.road import Design, Road, World
 from roadgpt.run import Request, Run, Setup, brief_of, read_run, seed_in, seed_of
-from run.doubles import Designer, Unable, a_design, folder_of, put_on_shelf
+from run.doubles import FreshDesigner, Unable, a_design, folder_of, put_on_shelf
 
 TESTS = Path(__file__).resolve().parents[1]
 BRIEF = Brief(words="A road with a turn!")
@@ -46,14 +46,14 @@ def table(folder: Path, name: str) -> dict[str, str]:
 
 
 @pytest.fixture
-def designer(monkeypatch: pytest.MonkeyPatch) -> Designer:
-    double = Designer()
+def designer(monkeypatch: pytest.MonkeyPatch) -> FreshDesigner:
+    double = FreshDesigner()
     put_on_shelf(monkeypatch, double=double)
     return double
 
 
-def test_every_run_is_on_the_disk_when_it_is_handed_out(designer: Designer, tmp_path: Path) -> None:
-    work = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=tmp_path / "c", draw=Drawing())
+def test_every_run_is_on_the_disk_when_it_is_handed_out(designer: FreshDesigner, tmp_path: Path) -> None:
+    work = campaign(BRIEF, 4, 7, setup=NO_DRIVE, out=tmp_path / "c", draw=LargeDrawing())
     assert work.folder == tmp_path / "c"
     for number, run in enumerate(work, 1):
         assert run.index == number
@@ -67,7 +67,7 @@ def test_every_run_is_on_the_disk_when_it_is_handed_out(designer: Designer, tmp_
 
 
 def test_without_a_folder_a_new_one_is_made(
-    designer: Designer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    designer: FreshDesigner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
     names = []
@@ -81,7 +81,7 @@ def test_without_a_folder_a_new_one_is_made(
 def test_the_same_seed_gives_the_same_files_and_another_does_not(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    put_on_shelf(monkeypatch, double=Designer())
+    put_on_shelf(monkeypatch, double=FreshDesigner())
     setup = Setup(designer="double")
     for name, seed in (("a", 3), ("b", 3), ("c", 4)):
         assert len(list(campaign(BRIEF, 2, seed, setup=setup, out=tmp_path / name))) == 2
@@ -91,13 +91,13 @@ def test_the_same_seed_gives_the_same_files_and_another_does_not(
     assert one["runs/0001/road.json"] != third["runs/0001/road.json"]
 
 
-def test_a_campaign_that_was_left_goes_on(designer: Designer, tmp_path: Path) -> None:
+def test_a_campaign_that_was_left_goes_on(designer: FreshDesigner, tmp_path: Path) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
-    list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=whole, draw=Drawing()))
-    for run in campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=Drawing()):
+    list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=whole, draw=LargeDrawing()))
+    for run in campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=LargeDrawing()):
         if run.index == 2:
             break
-    again = campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=Drawing())
+    again = campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=parts, draw=LargeDrawing())
     assert again.kept == (1, 2)
     assert not again.is_complete
     assert seed_in(parts) == 7
@@ -106,7 +106,7 @@ def test_a_campaign_that_was_left_goes_on(designer: Designer, tmp_path: Path) ->
     assert table(parts, "generation_stats.csv")["test_generated"] == "5"
 
 
-def test_a_road_that_was_taken_away_is_made_again(designer: Designer, tmp_path: Path) -> None:
+def test_a_road_that_was_taken_away_is_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     for place, n in ((whole, 4), (parts, 3)):
         list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
@@ -116,7 +116,7 @@ def test_a_road_that_was_taken_away_is_made_again(designer: Designer, tmp_path: 
     assert contents(whole) == contents(parts)
 
 
-def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: Designer, tmp_path: Path) -> None:
+def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: FreshDesigner, tmp_path: Path) -> None:
     list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
     before = {path: path.stat().st_mtime_ns for path in tmp_path.rglob("*") if path.name != "campaign.lock"}
     again = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
@@ -136,7 +136,7 @@ def test_a_finished_campaign_is_not_made_again_but_can_grow(designer: Designer, 
     ],
 )
 def test_another_campaign_is_left_alone(
-    designer: Designer, tmp_path: Path, other: dict[str, object], what: str
+    designer: FreshDesigner, tmp_path: Path, other: dict[str, object], what: str
 ) -> None:
     asked = {"words": BRIEF, "n": 2, "seed": 7, "setup": NO_DRIVE, "out": tmp_path}
     list(campaign(**asked))  # type: ignore[arg-type]
@@ -146,7 +146,7 @@ def test_another_campaign_is_left_alone(
     assert contents(tmp_path) == before
 
 
-def test_a_folder_with_something_else_is_left_alone(designer: Designer, tmp_path: Path) -> None:
+def test_a_folder_with_something_else_is_left_alone(designer: FreshDesigner, tmp_path: Path) -> None:
     (tmp_path / "thesis.docx").write_text("three years of work")
     with pytest.raises(UsageError, match="not empty"):
         campaign(BRIEF, 1, setup=NO_DRIVE, out=tmp_path)
@@ -169,7 +169,7 @@ def test_a_road_that_cannot_be_designed_costs_one_error(
 ) -> None:
     bad = {seed_of(7, 2)}
     put_on_shelf(monkeypatch, double=Unable(lambda seed: seed not in bad))
-    runs = list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, draw=Drawing()))
+    runs = list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path, draw=LargeDrawing()))
     assert [run.outcome for run in runs] == ["VALID", "ERROR", "VALID"]
     assert "9 hairpins" in runs[1].description
     assert table(tmp_path, "generation_stats.csv")["test_in_error"] == "1"
@@ -194,7 +194,7 @@ def test_where_no_road_can_be_designed_nothing_is_left_behind(
     Path("empty").mkdir()
     put_on_shelf(monkeypatch, double=Unable())
     with pytest.raises(DesignError, match="9 hairpins"):
-        list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=out, draw=Drawing()))
+        list(campaign(BRIEF, 5, 7, setup=NO_DRIVE, out=out, draw=LargeDrawing()))
     assert [str(path) for path in Path().rglob("*")] == ["empty"]
 
 
@@ -221,8 +221,8 @@ def test_a_campaign_with_roads_keeps_them_where_no_more_can_be_designed(
     assert table(tmp_path, "generation_stats.csv")["test_generated"] == "6"
 
 
-def test_a_failure_in_the_middle_leaves_whole_runs_only(designer: Designer, tmp_path: Path) -> None:
-    class Breaks(Drawing):
+def test_a_failure_in_the_middle_leaves_whole_runs_only(designer: FreshDesigner, tmp_path: Path) -> None:
+    class Breaks(LargeDrawing):
         def of_run(self, run, folder):  # type: ignore[no-untyped-def]
             if run.index == 3:
                 raise KeyboardInterrupt
@@ -281,7 +281,7 @@ def test_kill_9_at_random_moments_loses_at_most_the_road_in_flight(
         before = there
     roads = before + 2
     for place in (folder, whole):
-        assert list(folder_of(REQUEST, roads, place, perform, Drawing(), monkeypatch.setattr))
+        assert list(folder_of(REQUEST, roads, place, perform, LargeDrawing(), monkeypatch.setattr))
     assert look(folder) == roads
     assert contents(folder) == contents(whole)
 
@@ -305,18 +305,20 @@ def test_two_processes_do_not_work_in_one_folder(tmp_path: Path, monkeypatch: py
     process = start(tmp_path, 500, "--slow")
     assert process.stdout is not None
     process.stdout.readline()
-    second = folder_of(REQUEST, 500, tmp_path, perform, Drawing(), monkeypatch.setattr)
+    second = folder_of(REQUEST, 500, tmp_path, perform, LargeDrawing(), monkeypatch.setattr)
     with pytest.raises(RoadGPTError, match="another process is at work"):
         next(iter(second.all_runs()))  # not even the roads that are finished
     assert process.poll() is None
     process.kill()
     process.communicate()
-    rest = folder_of(REQUEST, look(tmp_path) + 1, tmp_path, perform, Drawing(), monkeypatch.setattr)
+    rest = folder_of(REQUEST, look(tmp_path) + 1, tmp_path, perform, LargeDrawing(), monkeypatch.setattr)
     assert len(list(rest)) == 1
 
 
-def test_a_full_disk_is_told_in_a_sentence_and_leaves_whole_runs(designer: Designer, tmp_path: Path) -> None:
-    class Full(Drawing):
+def test_a_full_disk_is_told_in_a_sentence_and_leaves_whole_runs(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
+    class Full(LargeDrawing):
         def of_run(self, run, folder):  # type: ignore[no-untyped-def]
             if run.index == 2:
                 raise OSError(28, "No space left on device")
@@ -327,7 +329,7 @@ def test_a_full_disk_is_told_in_a_sentence_and_leaves_whole_runs(designer: Desig
     assert len(list(campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path))) == 2
 
 
-def test_a_second_pass_makes_nothing_again(designer: Designer, tmp_path: Path) -> None:
+def test_a_second_pass_makes_nothing_again(designer: FreshDesigner, tmp_path: Path) -> None:
     work = campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)
     assert len(list(work)) == 2
     assert not list(work)
@@ -336,7 +338,7 @@ def test_a_second_pass_makes_nothing_again(designer: Designer, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(("n", "seed"), [(0, 1), (-3, 1), (1, -1)])
-def test_impossible_numbers_are_told(designer: Designer, tmp_path: Path, n: int, seed: int) -> None:
+def test_impossible_numbers_are_told(designer: FreshDesigner, tmp_path: Path, n: int, seed: int) -> None:
     with pytest.raises(UsageError, match=r"ask for 1 or more|no seed"):
         list(campaign(BRIEF, n, seed, setup=NO_DRIVE, out=tmp_path))
 
@@ -358,7 +360,7 @@ def test_leftovers_of_a_killed_process_are_swept_away(
     assert not list(tmp_path.rglob("*.part"))
 
 
-def test_a_road_that_cannot_be_read_is_made_again(designer: Designer, tmp_path: Path) -> None:
+def test_a_road_that_cannot_be_read_is_made_again(designer: FreshDesigner, tmp_path: Path) -> None:
     whole, parts = tmp_path / "whole", tmp_path / "parts"
     for place, n in ((whole, 4), (parts, 3)):
         list(campaign(BRIEF, n, 7, setup=NO_DRIVE, out=place))
@@ -371,14 +373,16 @@ def test_a_road_that_cannot_be_read_is_made_again(designer: Designer, tmp_path: 
 
 
 def test_a_finished_campaign_with_a_road_that_cannot_be_read_is_mended(
-    designer: Designer, tmp_path: Path
+    designer: FreshDesigner, tmp_path: Path
 ) -> None:
     list(campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path))
     (tmp_path / "runs" / "0002" / "run.json").unlink()
     assert [run.index for run in campaign(BRIEF, 2, 7, setup=NO_DRIVE, out=tmp_path)] == [2]
 
 
-def test_a_campaign_cannot_shrink_below_the_roads_that_are_there(designer: Designer, tmp_path: Path) -> None:
+def test_a_campaign_cannot_shrink_below_the_roads_that_are_there(
+    designer: FreshDesigner, tmp_path: Path
+) -> None:
     for run in campaign(BRIEF, 9, 7, setup=NO_DRIVE, out=tmp_path):
         if run.index == 5:
             break
@@ -391,7 +395,9 @@ DAMAGE: dict[str, object] = {"request": [], "roads": "many", "is_finished": 7, "
 
 
 @pytest.mark.parametrize("key", [*DAMAGE, "gone", "list"])
-def test_a_card_that_is_damaged_is_told_in_a_sentence(designer: Designer, tmp_path: Path, key: str) -> None:
+def test_a_card_that_is_damaged_is_told_in_a_sentence(
+    designer: FreshDesigner, tmp_path: Path, key: str
+) -> None:
     list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=tmp_path))
     card = json.loads((tmp_path / "campaign.json").read_text())
     damaged = {"gone": {"format": 1, "request": card["request"]}, "list": [card]}
@@ -403,7 +409,7 @@ def test_a_card_that_is_damaged_is_told_in_a_sentence(designer: Designer, tmp_pa
 
 
 def test_what_another_process_made_since_the_folder_was_opened_is_not_made_again(
-    designer: Designer, tmp_path: Path
+    designer: FreshDesigner, tmp_path: Path
 ) -> None:
     first, second = (campaign(BRIEF, 3, 7, setup=NO_DRIVE, out=tmp_path) for _ in range(2))
     assert len(list(first)) == 3
@@ -413,7 +419,7 @@ def test_what_another_process_made_since_the_folder_was_opened_is_not_made_again
 
 
 def test_another_campaign_that_began_since_the_folder_was_opened_is_left_alone(
-    designer: Designer, tmp_path: Path
+    designer: FreshDesigner, tmp_path: Path
 ) -> None:
     mine = campaign(BRIEF, 1, 8, setup=NO_DRIVE, out=tmp_path)
     list(campaign(BRIEF, 1, 7, setup=NO_DRIVE, out=tmp_path))
@@ -424,7 +430,7 @@ def test_another_campaign_that_began_since_the_folder_was_opened_is_left_alone(
 
 
 def test_a_campaign_that_was_stopped_before_it_had_a_card_can_begin_again(
-    designer: Designer, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    designer: FreshDesigner, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(self: Path, data: bytes) -> int:
         raise OSError(28, "No space left on device")

@@ -14,7 +14,7 @@ import pytest
 from roadgpt import check, plugins
 from roadgpt.brief import read
 from roadgpt.brief.model import Brief
-from roadgpt.campaign import Budget, Cell, Goal, Proposal, Result
+from roadgpt.campaign import Cell, CellBudget, Goal, Proposal, Result
 from roadgpt.campaign.behaviour import behaviour_of, cell_of
 from roadgpt.campaign.boundary_pairs import distance, pairs_of
 from roadgpt.campaign.search import SearchSettings
@@ -56,7 +56,7 @@ def cell_for(
     usual = FEW if generator == "quality_diversity" else SMALL
     request = Request(words=words, seed=seed, world=WORLD, setup=Setup(reader="plan"))
     brief = brief_of(words) if words else None
-    return Cell("c01", request, brief, generator, goal, usual | settings, Budget(tests=100))
+    return Cell("c01", request, brief, generator, goal, usual | settings, CellBudget(tests=100))
 
 
 def driven(cell: Cell, proposal: Proposal, number: int, batch: int) -> Result:

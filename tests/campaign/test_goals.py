@@ -7,11 +7,11 @@ from click.testing import CliRunner, Result
 
 from roadgpt import plugins
 from roadgpt.campaign.cell_status import CellStatus
-from roadgpt.campaign.model import GOALS, Budget
+from roadgpt.campaign.model import GOALS, CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.cli import app
 
-PLAN = Plan(prompts=("hairpin x2",), reader="plan", budget=Budget(tests=3))
+PLAN = Plan(prompts=("hairpin x2",), reader="plan", budget=CellBudget(tests=3))
 
 
 def roadgpt(*words: object) -> Result:

@@ -12,7 +12,7 @@ from click.testing import CliRunner, Result
 from campaign.quick import plan, put_on_shelves
 from roadgpt.brief import Brief, read
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan
 from roadgpt.campaign.record import STORE, Record
@@ -188,7 +188,10 @@ def test_a_plan_that_was_saved_by_a_windows_editor_is_read(tmp_path: Path) -> No
             {"goal": "failures", "drives": True, "generators": ("quality_diversity",)},
             ["--goal failures --out"],
         ),
-        ({"generators": ("words",), "budget": Budget(tests=5, seconds=60)}, ["--seconds 60", "--no-drive"]),
+        (
+            {"generators": ("words",), "budget": CellBudget(tests=5, seconds=60)},
+            ["--seconds 60", "--no-drive"],
+        ),
     ],
 )
 def test_the_command_on_the_card_makes_the_same_campaign(

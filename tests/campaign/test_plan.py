@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from campaign.test_store import BRIEFS
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import PlanTable, WorldTable, read_plan
 from roadgpt.errors import PartError, UsageError
@@ -77,7 +77,7 @@ def test_every_combination_is_a_cell_in_order(tmp_path: Path) -> None:
     assert cells[-1].brief is None
     assert cells[0].request.world.limits.speed_limit == pytest.approx(10.0)
     assert cells[0].settings == {"size": 3}
-    assert plan.budget == Budget(tests=9)
+    assert plan.budget == CellBudget(tests=9)
 
 
 def test_the_plan_in_the_guide_is_one(tmp_path: Path) -> None:
@@ -119,7 +119,7 @@ def test_a_goal_is_searched_for_by_the_usual_generator(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        ({"budget": Budget()}, "there is no limit"),
+        ({"budget": CellBudget()}, "there is no limit"),
         ({"prompts": ("",)}, "needs a description"),
         ({"seeds": tuple(range(100_001))}, "more than 100,000; make several plans"),
     ],
@@ -127,13 +127,13 @@ def test_a_goal_is_searched_for_by_the_usual_generator(tmp_path: Path) -> None:
 def test_a_plan_that_cannot_be_is_told_before_anything_is_made(
     changes: dict[str, object], sentence: str
 ) -> None:
-    plan = Plan(prompts=("two hairpins",), budget=Budget(tests=3)).model_copy(update=changes)
+    plan = Plan(prompts=("two hairpins",), budget=CellBudget(tests=3)).model_copy(update=changes)
     with pytest.raises(UsageError, match=sentence):
         plan.check()
 
 
 @pytest.mark.parametrize("shelf", ["designers", "simulators", "generators"])
 def test_parts_that_are_not_installed_are_told(shelf: str) -> None:
-    plan = Plan(prompts=("two hairpins",), budget=Budget(tests=3)).model_copy(update={shelf: ("nobody",)})
+    plan = Plan(prompts=("two hairpins",), budget=CellBudget(tests=3)).model_copy(update={shelf: ("nobody",)})
     with pytest.raises(PartError, match=f"no {shelf[:-1]} called 'nobody'"):
         plan.check()

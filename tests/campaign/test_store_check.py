@@ -11,7 +11,7 @@ from click.testing import CliRunner, Result
 
 from roadgpt.campaign import store_check
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import Record
 from roadgpt.campaign.workers.in_process import InProcess
@@ -50,7 +50,7 @@ SPOILT = {
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     place = tmp_path_factory.mktemp("made") / "c"
-    begin(Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan"), place)
+    begin(Plan(prompts=("turn x2",), budget=CellBudget(tests=2), reader="plan"), place)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)
         for _ in work(place):

@@ -14,7 +14,7 @@ from click.testing import CliRunner, Result
 
 from roadgpt import provenance
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.rerun import run_again
 from roadgpt.campaign.workers.in_process import InProcess
@@ -47,7 +47,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     run = perform("turn x4 sharp", world=slippery, setup=PLAIN)
     assert run.outcome == "FAIL"
     write_run(run, place / "run")
-    plan = Plan(prompts=("turn x2",), budget=Budget(tests=2), reader="plan")
+    plan = Plan(prompts=("turn x2",), budget=CellBudget(tests=2), reader="plan")
     begin(plan, place / "done")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("roadgpt.campaign.executors.processes.Processes", InProcess)

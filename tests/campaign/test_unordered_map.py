@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt import children
-from roadgpt.campaign.workers.unordered_map import unordered_map
+from roadgpt.campaign.unordered_map import unordered_map
 from roadgpt.cli.progress import watched
 from roadgpt.errors import UsageError
 

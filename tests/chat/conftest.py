@@ -8,7 +8,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from chat.stub_server import Stub, says, serving
+from chat.stub_server import StubServer, says, serving
 from roadgpt import provenance
 from roadgpt.chat import server_quirks
 
@@ -32,7 +32,7 @@ def alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 
 @pytest.fixture
-def stub() -> Iterator[Stub]:
+def stub() -> Iterator[StubServer]:
     with serving(says("{}")) as server:
         yield server
 

@@ -17,7 +17,7 @@ MODEL = "stub-model"
 
 
 @dataclass
-class Request:
+class HeardRequest:
     """What came in."""
 
     path: str
@@ -37,16 +37,16 @@ class Request:
         return str(turns[-1]["content"])
 
 
-Scene = Callable[[Request, BaseHTTPRequestHandler], None]
+Scene = Callable[[HeardRequest, BaseHTTPRequestHandler], None]
 
 
 @dataclass
-class Stub:
+class StubServer:
     """The server, and what it was asked."""
 
     url: str
     scenes: list[Scene]
-    requests: list[Request] = field(default_factory=list)
+    requests: list[HeardRequest] = field(default_factory=list)
     conversations: int = 0
     keeps_conversations: bool = True
     models: list[str] = field(default_factory=lambda: [MODEL])
@@ -109,7 +109,7 @@ def response(text: str) -> dict[str, Any]:
 def says(text: Any, finish: str = "stop", **message: Any) -> Scene:
     """An answer with this text, whatever was asked."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         is_response = request.path.endswith("/responses")
         send(handler, 200, response(text) if is_response else completion(text, finish, **message))
 
@@ -130,7 +130,7 @@ def fails(status: int, message: str = "", headers: dict[str, str] | None = None,
 def only(*formats: str, text: str, message: str = "response_format of this type is not supported") -> Scene:
     """A server that knows some ways of asking for JSON and refuses the others."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         (says(text) if request.response_format in formats else fails(400, message))(request, handler)
 
     return scene
@@ -139,7 +139,7 @@ def only(*formats: str, text: str, message: str = "response_format of this type 
 def refuses(parameter: str, text: str) -> Scene:
     """A server that refuses one parameter by name."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         if parameter in request.body:
             fails(400, f"Unsupported parameter: '{parameter}' is not supported", param=parameter)(
                 request, handler
@@ -153,7 +153,7 @@ def refuses(parameter: str, text: str) -> Scene:
 def drips(seconds: float, text: str = "{}") -> Scene:
     """A byte now and then."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         content = json.dumps(completion(text)).encode()
         handler.send_response(200)
         handler.send_header("Content-Length", str(len(content)))
@@ -169,7 +169,7 @@ def drips(seconds: float, text: str = "{}") -> Scene:
 def drips_headers(seconds: float) -> Scene:
     """Headers without end, slowly."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         handler.wfile.write(b"HTTP/1.1 200 OK\r\n")
         for number in range(10_000):
             handler.wfile.write(f"X-{number}: 1\r\n".encode())
@@ -182,7 +182,7 @@ def drips_headers(seconds: float) -> Scene:
 def drops(sent: bytes = b"", head: bytes = b"HTTP/1.1 200 OK\r\nContent-Length: 5000\r\n\r\n") -> Scene:
     """The connection ends, in the middle of an answer or before it."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         if sent or not head.startswith(b"HTTP"):
             handler.wfile.write(head + sent)
         handler.close_connection = True
@@ -194,7 +194,7 @@ def drops(sent: bytes = b"", head: bytes = b"HTTP/1.1 200 OK\r\nContent-Length: 
 def floods(megabytes: int) -> Scene:
     """Blanks, many more than were asked for."""
 
-    def scene(request: Request, handler: BaseHTTPRequestHandler) -> None:
+    def scene(request: HeardRequest, handler: BaseHTTPRequestHandler) -> None:
         handler.send_response(200)
         handler.send_header("Content-Length", str(megabytes * 1_000_000))
         handler.end_headers()
@@ -205,11 +205,11 @@ def floods(megabytes: int) -> Scene:
 
 
 @contextmanager
-def serving(*scenes: Scene) -> Iterator[Stub]:
+def serving(*scenes: Scene) -> Iterator[StubServer]:
     """A server for the length of a block."""
-    stub = Stub("", list(scenes))
+    stub = StubServer("", list(scenes))
 
-    class Handler(BaseHTTPRequestHandler):
+    class StubHandler(BaseHTTPRequestHandler):
         protocol_version = "HTTP/1.1"
 
         def do_GET(self) -> None:
@@ -226,7 +226,7 @@ def serving(*scenes: Scene) -> Iterator[Stub]:
                 stub.conversations += 1
                 send(self, 200, {"id": f"conv_{stub.conversations}", "object": "conversation"})
                 return
-            request = Request(self.path, {**self.headers}, body)
+            request = HeardRequest(self.path, {**self.headers}, body)
             place = min(len(stub.requests), len(stub.scenes) - 1)
             stub.requests.append(request)
             try:
@@ -237,14 +237,14 @@ def serving(*scenes: Scene) -> Iterator[Stub]:
         def log_message(self, *args: Any) -> None:
             return
 
-    class Server(ThreadingHTTPServer):
+    class StubHttpServer(ThreadingHTTPServer):
         daemon_threads = True
         block_on_close = False
 
         def handle_error(self, request: Any, client_address: Any) -> None:
             return
 
-    server = Server(("127.0.0.1", 0), Handler)
+    server = StubHttpServer(("127.0.0.1", 0), StubHandler)
     stub.url = f"http://127.0.0.1:{server.server_port}/v1"
     thread = threading.Thread(target=server.serve_forever, args=(0.01,), daemon=True)
     thread.start()

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from chat.stub_server import Stub, in_order, says
+from chat.stub_server import StubServer, in_order, says
 from roadgpt.brief import exactly, read
 from roadgpt.brief.plan import plan
 from roadgpt.brief.readers.chat import EXAMPLES, RULES, ChatReader, PlanAnswer
@@ -135,7 +135,7 @@ def test_any_line_is_a_brief_or_a_sentence(line: str) -> None:
     assert "\n" not in told.strip()
 
 
-def test_it_reads_through_a_server(stub: Stub) -> None:
+def test_it_reads_through_a_server(stub: StubServer) -> None:
     stub.play(
         *in_order(
             [f'{{"along": ["turn x2 {side}"], "road": "", "unused": []}}' for side in ("links", "left")]

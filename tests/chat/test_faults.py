@@ -13,9 +13,9 @@ import pytest
 from click.testing import CliRunner, Result
 
 from chat.stub_server import (
-    Request,
+    HeardRequest,
     Scene,
-    Stub,
+    StubServer,
     answers,
     completion,
     drips,
@@ -117,13 +117,13 @@ OF_READERS = (
 
 
 @pytest.fixture(scope="module")
-def server() -> Iterator[Stub]:
+def server() -> Iterator[StubServer]:
     with serving(says("{}")) as found:
         yield found
 
 
 @pytest.fixture
-def stub(server: Stub) -> Stub:
+def stub(server: StubServer) -> StubServer:
     """One server for all faults, so that the campaign of the first road can be copied."""
     server.requests.clear()
     return server
@@ -135,7 +135,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("kept") / "c"
 
 
-def begin(stub: Stub, kept: Path) -> None:
+def begin(stub: StubServer, kept: Path) -> None:
     """The campaign with the first road, in the folder c."""
     if kept.exists():
         shutil.copytree(kept, "c")
@@ -145,7 +145,7 @@ def begin(stub: Stub, kept: Path) -> None:
     shutil.copytree("c", kept)
 
 
-def run(stub: Stub, *more: str, roads: int = 3) -> Result:
+def run(stub: StubServer, *more: str, roads: int = 3) -> Result:
     words = ["run", "turn left", "--reader", "plan", "--designer", "chat", "-n", str(roads)]
     server = [
         "--base-url",
@@ -180,7 +180,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 @pytest.mark.parametrize("fault", FAULTS)
 @pytest.mark.usefixtures("waits")
 def test_a_fault_ends_in_a_road_or_a_sentence_and_costs_no_road_before_it(
-    stub: Stub, kept: Path, fault: str
+    stub: StubServer, kept: Path, fault: str
 ) -> None:
     begin(stub, kept)
     before = contents(Path("c/runs"))
@@ -209,7 +209,7 @@ def test_a_fault_ends_in_a_road_or_a_sentence_and_costs_no_road_before_it(
 
 @pytest.mark.parametrize("fault", OF_READERS)
 @pytest.mark.usefixtures("waits")
-def test_the_reader_gives_a_brief_or_a_sentence(stub: Stub, fault: str) -> None:
+def test_the_reader_gives_a_brief_or_a_sentence(stub: StubServer, fault: str) -> None:
     stub.play(FAULTS[fault][0])
     server = ["--base-url", stub.url, "--model", "m", "--retries", "1", "--timeout", "0.6", "--rounds", "2"]
     result = CliRunner().invoke(
@@ -223,9 +223,9 @@ def test_the_reader_gives_a_brief_or_a_sentence(stub: Stub, fault: str) -> None:
 
 
 def test_a_campaign_whose_server_goes_away_goes_on_with_the_next_server(
-    stub: Stub, waits: list[float]
+    stub: StubServer, waits: list[float]
 ) -> None:
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         (says(other(7 * len(stub.requests))) if len(stub.requests) < 3 else drops())(request, handler)
 
     stub.play(scene)
@@ -242,7 +242,7 @@ def test_a_campaign_whose_server_goes_away_goes_on_with_the_next_server(
 
 @pytest.mark.parametrize("scene", [fails(401, "no"), says("I cannot."), drops()])
 @pytest.mark.usefixtures("waits")
-def test_where_nothing_can_be_made_no_folder_is_left(stub: Stub, scene: Scene) -> None:
+def test_where_nothing_can_be_made_no_folder_is_left(stub: StubServer, scene: Scene) -> None:
     stub.play(scene)
     result = run(stub)
     is_told_well(result)

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from chat.asker import Turn, on_shelf
-from chat.stub_server import Request, Stub, fails, says
+from chat.stub_server import HeardRequest, StubServer, fails, says
 from roadgpt.chat import BudgetError, ChatSettings, Message, Meter, Spent, Usage, counting, open_chat
 from roadgpt.chat.prices import PRICES, price_of
 from roadgpt.cli import app
@@ -17,20 +17,20 @@ from roadgpt.run import read_run
 QUESTION = [Message(role="user", text="How far?")]
 
 
-def varied(stub: Stub) -> Any:
+def varied(stub: StubServer) -> Any:
     """Another angle each time, 150 tokens each."""
 
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         says(f'{{"degrees": {29 + 7 * len(stub.requests)}}}')(request, handler)
 
     return scene
 
 
-def settings(stub: Stub, **more: Any) -> ChatSettings:
+def settings(stub: StubServer, **more: Any) -> ChatSettings:
     return ChatSettings(base_url=stub.url, model="m", **more)
 
 
-def run(stub: Stub, *more: str) -> Result:
+def run(stub: StubServer, *more: str) -> Result:
     words = ("run", "a left turn", "--designer", "asker", "-n", "6", "--seed", "7", "--no-drive", "--no-plot")
     server = ("--base-url", stub.url, "--model", "m", "--out", "c")
     return CliRunner().invoke(app, [*words, *server, *more], prog_name="roadgpt")
@@ -41,7 +41,7 @@ def run(stub: Stub, *more: str) -> Result:
     [(("--max-tokens", "600"), "--max-tokens"), (("--max-cost", "0.0012", "--price", "2/2"), "--max-cost")],
 )
 def test_a_campaign_stops_before_its_limit_and_goes_on_with_a_higher_one(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch, limit: tuple[str, ...], flag: str
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch, limit: tuple[str, ...], flag: str
 ) -> None:
     on_shelf(monkeypatch)
     stub.play(varied(stub))
@@ -66,7 +66,7 @@ def test_a_campaign_stops_before_its_limit_and_goes_on_with_a_higher_one(
 
 
 def test_what_a_road_cost_stands_in_its_run_and_in_the_summaries(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     on_shelf(monkeypatch)
     stub.play(varied(stub))
@@ -88,11 +88,13 @@ def test_what_a_road_cost_stands_in_its_run_and_in_the_summaries(
     assert f"--model m --base-url {stub.url} --price 1/2" in one
 
 
-def test_a_road_that_came_to_nothing_is_counted_too(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_road_that_came_to_nothing_is_counted_too(
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
     on_shelf(monkeypatch)
     good = varied(stub)
 
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         (says("no") if len(stub.requests) in range(2, 6) else good)(request, handler)
 
     stub.play(scene)
@@ -105,7 +107,7 @@ def test_a_road_that_came_to_nothing_is_counted_too(stub: Stub, monkeypatch: pyt
     assert "language model: 9 answers, 1,350 tokens" in result.stdout
 
 
-def test_the_cap_of_an_answer_shrinks_to_what_is_left(stub: Stub) -> None:
+def test_the_cap_of_an_answer_shrinks_to_what_is_left(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     chat = open_chat(settings(stub, max_tokens=400))
     chat.ask(QUESTION, Turn)
@@ -117,21 +119,21 @@ def test_the_cap_of_an_answer_shrinks_to_what_is_left(stub: Stub) -> None:
     assert len(stub.requests) == 2
 
 
-def test_money_without_a_price_is_told_before_anything_is_asked(stub: Stub) -> None:
+def test_money_without_a_price_is_told_before_anything_is_asked(stub: StubServer) -> None:
     chat = open_chat(settings(stub, max_cost=1.0))
     with pytest.raises(BudgetError, match=r"the price of 'm' is not known.*--price 0.15/0.60"):
         chat.ask(QUESTION, Turn)
     assert stub.requests == []
 
 
-def test_failed_requests_count_for_nothing(stub: Stub, waits: list[float]) -> None:
+def test_failed_requests_count_for_nothing(stub: StubServer, waits: list[float]) -> None:
     stub.play(fails(500), says('{"degrees": 5}'))
     chat = open_chat(settings(stub))
     chat.ask(QUESTION, Turn)
     assert chat.spent.calls == 1
 
 
-def test_two_chats_of_one_campaign_share_its_limit(stub: Stub) -> None:
+def test_two_chats_of_one_campaign_share_its_limit(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     one, two = (open_chat(settings(stub, max_tokens=10**6, retries=n)) for n in (0, 1))
     meter = Meter(max_tokens=350)

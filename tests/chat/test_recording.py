@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from chat.asker import Turn, on_shelf
 from chat.conftest import KEY
-from chat.stub_server import Request, Stub, in_order, says
+from chat.stub_server import HeardRequest, StubServer, in_order, says
 from roadgpt.brief import read
 from roadgpt.chat import (
     ChatError,
@@ -48,7 +48,7 @@ def files(folder: str) -> dict[str, bytes]:
 @pytest.mark.usefixtures("key")
 @pytest.mark.parametrize("designer", ["asker", "repeater"])
 def test_a_replayed_campaign_is_the_same_byte_for_byte(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch, designer: str
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch, designer: str
 ) -> None:
     on_shelf(monkeypatch)
     stub.play(*in_order([f'{{"degrees": {degrees}}}' for degrees in (30, 40, 50, 60)]))
@@ -83,11 +83,11 @@ def test_a_replayed_campaign_is_the_same_byte_for_byte(
     assert not any(KEY.encode() in content for content in files(".").values())
 
 
-def settings(stub: Stub, **more: Any) -> ChatSettings:
+def settings(stub: StubServer, **more: Any) -> ChatSettings:
     return ChatSettings(base_url=stub.url, model="m", **more)
 
 
-def test_without_a_model_that_of_the_recording_is_meant(stub: Stub) -> None:
+def test_without_a_model_that_of_the_recording_is_meant(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     reply = open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
     again = open_chat(ChatSettings(replay="tape")).ask(QUESTION, Turn)
@@ -97,7 +97,7 @@ def test_without_a_model_that_of_the_recording_is_meant(stub: Stub) -> None:
     assert by_name == reply
 
 
-def test_failures_are_recorded_too(stub: Stub) -> None:
+def test_failures_are_recorded_too(stub: StubServer) -> None:
     stub.play(says("no"))
     with pytest.raises(UnparsableError) as live:
         open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
@@ -113,7 +113,7 @@ def test_failures_are_recorded_too(stub: Stub) -> None:
         chat.ask([Message(role="user", text="Other")], Turn)
 
 
-def test_a_question_that_was_not_recorded_is_told(stub: Stub) -> None:
+def test_a_question_that_was_not_recorded_is_told(stub: StubServer) -> None:
     stub.play(says('{"degrees": 5}'))
     open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
     for chat, question in (
@@ -127,7 +127,7 @@ def test_a_question_that_was_not_recorded_is_told(stub: Stub) -> None:
         open_chat(ChatSettings(replay="tape")).ask(QUESTION)
 
 
-def test_the_same_question_has_its_answers_in_their_order(stub: Stub) -> None:
+def test_the_same_question_has_its_answers_in_their_order(stub: StubServer) -> None:
     stub.play(*in_order([f'{{"degrees": {degrees}}}' for degrees in (1, 2, 3)]))
     chat = open_chat(settings(stub, record="tape"))
     with counting(Meter(), "road 1"):
@@ -143,7 +143,7 @@ def test_the_same_question_has_its_answers_in_their_order(stub: Stub) -> None:
         assert [again.ask(QUESTION, Turn).data.degrees for _ in range(2)] == [1, 2]
 
 
-def test_a_new_recording_takes_the_place_of_the_old(stub: Stub) -> None:
+def test_a_new_recording_takes_the_place_of_the_old(stub: StubServer) -> None:
     for degrees in (1, 2):
         stub.play(says(f'{{"degrees": {degrees}}}'))
         open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
@@ -152,7 +152,7 @@ def test_a_new_recording_takes_the_place_of_the_old(stub: Stub) -> None:
 
 
 @pytest.mark.parametrize("content", ["", "{", "[]", '{"format": 2}', '{"format": 1, "answers": {"": [{}]}}'])
-def test_a_recording_that_is_damaged_is_told(stub: Stub, content: str) -> None:
+def test_a_recording_that_is_damaged_is_told(stub: StubServer, content: str) -> None:
     stub.play(says('{"degrees": 5}'))
     open_chat(settings(stub, record="tape")).ask(QUESTION, Turn)
     (path,) = Path("tape").rglob("*.json")
@@ -161,7 +161,7 @@ def test_a_recording_that_is_damaged_is_told(stub: Stub, content: str) -> None:
         open_chat(ChatSettings(replay="tape", model="m")).ask(QUESTION, Turn)
 
 
-def test_where_there_is_no_recording_that_is_told(stub: Stub) -> None:
+def test_where_there_is_no_recording_that_is_told(stub: StubServer) -> None:
     Path("empty").mkdir()
     for folder in ("nowhere", "empty"):
         with pytest.raises(UsageError, match=f"there is no recording in {folder}"):
@@ -174,7 +174,7 @@ def test_where_there_is_no_recording_that_is_told(stub: Stub) -> None:
         open_chat(settings(stub, record="file")).ask(QUESTION, Turn)
 
 
-def test_the_name_of_an_exchange_is_the_hash_of_its_content(stub: Stub) -> None:
+def test_the_name_of_an_exchange_is_the_hash_of_its_content(stub: StubServer) -> None:
     import hashlib
 
     stub.play(says('{"degrees": 5}'))
@@ -192,8 +192,8 @@ def test_any_text_has_a_name(question: dict[str, str]) -> None:
     assert len(name_of(question)) == 64
 
 
-def test_a_reading_is_replayed_through_the_reader(stub: Stub) -> None:
-    def scene(request: Request, handler: Any) -> None:
+def test_a_reading_is_replayed_through_the_reader(stub: StubServer) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         says('{"along": ["turn x3 left"], "road": "", "unused": []}')(request, handler)
 
     stub.play(scene)

@@ -7,8 +7,8 @@ import pytest
 from pydantic import BaseModel
 
 from chat.stub_server import (
-    Request,
-    Stub,
+    HeardRequest,
+    StubServer,
     answers,
     completion,
     drips,
@@ -33,7 +33,7 @@ FENCED = f"Sure!\n```json\n{GOOD}\n```"
 QUESTION = [Message(role="system", text="You add."), Message(role="user", text="2 + 2 =")]
 
 
-def chat_with(stub: Stub, **settings: Any) -> Chat:
+def chat_with(stub: StubServer, **settings: Any) -> Chat:
     return open_chat(ChatSettings(**{"base_url": stub.url, "model": "m", "timeout": 5.0, **settings}))
 
 
@@ -43,7 +43,7 @@ def total(chat: Chat) -> int:
     return reply.data.total
 
 
-def test_a_reply_says_what_it_was_and_what_it_cost(stub: Stub) -> None:
+def test_a_reply_says_what_it_was_and_what_it_cost(stub: StubServer) -> None:
     stub.play(says(GOOD))
     chat = chat_with(stub, price="1/10")
     reply = chat.ask(QUESTION, Sum)
@@ -55,7 +55,7 @@ def test_a_reply_says_what_it_was_and_what_it_cost(stub: Stub) -> None:
     assert chat.spent.usage == reply.usage
 
 
-def test_without_a_schema_the_text_is_the_answer(stub: Stub) -> None:
+def test_without_a_schema_the_text_is_the_answer(stub: StubServer) -> None:
     stub.play(says("Four."))
     assert chat_with(stub).ask(QUESTION).text == "Four."
     assert stub.response_formats == ["text"]
@@ -80,7 +80,7 @@ def test_without_a_schema_the_text_is_the_answer(stub: Stub) -> None:
     ],
 )
 def test_the_ladder_is_gone_down_as_far_as_needed_and_remembered(
-    stub: Stub, knows: tuple[str, ...], text: str, response_formats: list[str]
+    stub: StubServer, knows: tuple[str, ...], text: str, response_formats: list[str]
 ) -> None:
     stub.play(only(*knows, text=text, message="'response_format.type' must be 'json_schema' or 'text'"))
     assert total(chat_with(stub)) == 4
@@ -90,15 +90,15 @@ def test_the_ladder_is_gone_down_as_far_as_needed_and_remembered(
     assert stub.response_formats == response_formats[-1:]
 
 
-def test_below_the_first_rung_the_schema_stands_in_the_words(stub: Stub) -> None:
+def test_below_the_first_rung_the_schema_stands_in_the_words(stub: StubServer) -> None:
     stub.play(only("text", text=GOOD))
     total(chat_with(stub))
     assert "total" not in str(stub.requests[0].body["messages"])
     assert '"required":["total"]' in stub.requests[-1].last
 
 
-def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(stub: Stub) -> None:
-    def scene(request: Request, handler: Any) -> None:
+def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(stub: StubServer) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         says(GOOD if request.response_format == "json_object" else "Four, I think.")(request, handler)
 
     for _ in range(UNUSABLE_IN_A_ROW):
@@ -110,7 +110,7 @@ def test_a_server_that_ignores_schemas_is_asked_otherwise_after_some_failures(st
     assert stub.response_formats == ["json_object"]
 
 
-def test_one_bad_answer_is_no_habit(stub: Stub) -> None:
+def test_one_bad_answer_is_no_habit(stub: StubServer) -> None:
     stub.play(says("Four"), says(GOOD))
     assert total(chat_with(stub)) == 4
     stub.play(says(GOOD))
@@ -118,7 +118,7 @@ def test_one_bad_answer_is_no_habit(stub: Stub) -> None:
     assert stub.response_formats == ["json_schema"]
 
 
-def test_a_failed_answer_is_complained_about(stub: Stub) -> None:
+def test_a_failed_answer_is_complained_about(stub: StubServer) -> None:
     stub.play(says('{"total": "many"}'), says(GOOD))
     reply = chat_with(stub).ask(QUESTION, Sum)
     assert "total: Input should be a valid integer" in str(stub.requests[1].body["messages"])
@@ -141,7 +141,7 @@ def test_a_failed_answer_is_complained_about(stub: Stub) -> None:
         (floods(3), "bytes"),
     ],
 )
-def test_after_the_whole_ladder_one_sentence_is_left(stub: Stub, scene: Any, why: str) -> None:
+def test_after_the_whole_ladder_one_sentence_is_left(stub: StubServer, scene: Any, why: str) -> None:
     stub.play(scene)
     with pytest.raises(UnparsableError, match=why) as caught:
         total(chat_with(stub))
@@ -150,7 +150,7 @@ def test_after_the_whole_ladder_one_sentence_is_left(stub: Stub, scene: Any, why
     assert len(caught.value.text) <= 2000
 
 
-def test_the_text_that_failed_is_kept_short(stub: Stub) -> None:
+def test_the_text_that_failed_is_kept_short(stub: StubServer) -> None:
     stub.play(says("blah " * 9999))
     with pytest.raises(UnparsableError) as caught:
         total(chat_with(stub))
@@ -165,7 +165,7 @@ def test_the_text_that_failed_is_kept_short(stub: Stub) -> None:
         (says(None, refusal="No\n\x1b[31mroads\x00" + "!" * 999), r"No \[31mroads"),
     ],
 )
-def test_a_refusal_is_told_and_not_argued_with(stub: Stub, scene: Any, told: str) -> None:
+def test_a_refusal_is_told_and_not_argued_with(stub: StubServer, scene: Any, told: str) -> None:
     stub.play(scene)
     with pytest.raises(RefusedError, match=f"the model declined: .*{told}") as caught:
         total(chat_with(stub))
@@ -175,7 +175,7 @@ def test_a_refusal_is_told_and_not_argued_with(stub: Stub, scene: Any, told: str
 
 
 @pytest.mark.parametrize("parameter", ["temperature", "max_tokens"])
-def test_a_parameter_that_is_refused_is_left_out_from_then_on(stub: Stub, parameter: str) -> None:
+def test_a_parameter_that_is_refused_is_left_out_from_then_on(stub: StubServer, parameter: str) -> None:
     stub.play(refuses(parameter, GOOD))
     assert total(chat_with(stub, temperature=0.5)) == 4
     assert len(stub.requests) == 2
@@ -185,14 +185,14 @@ def test_a_parameter_that_is_refused_is_left_out_from_then_on(stub: Stub, parame
     assert len(stub.requests) == 1
 
 
-def test_the_cap_takes_its_other_name_where_one_is_refused(stub: Stub) -> None:
+def test_the_cap_takes_its_other_name_where_one_is_refused(stub: StubServer) -> None:
     stub.play(refuses("max_tokens", GOOD))
     total(chat_with(stub, max_completion=99))
     assert stub.requests[0].body["max_tokens"] == 99
     assert stub.requests[1].body["max_completion_tokens"] == 99
 
 
-def test_a_temperature_that_nobody_asked_for_is_not_sent(stub: Stub) -> None:
+def test_a_temperature_that_nobody_asked_for_is_not_sent(stub: StubServer) -> None:
     stub.play(says(GOOD))
     total(chat_with(stub))
     assert "temperature" not in stub.requests[0].body
@@ -201,7 +201,9 @@ def test_a_temperature_that_nobody_asked_for_is_not_sent(stub: Stub) -> None:
 @pytest.mark.parametrize(
     "scene", [fails(500), fails(503, "busy"), fails(429, "later"), drops(), drops(b'{"id": ')]
 )
-def test_what_may_pass_is_tried_again_later_and_later(stub: Stub, waits: list[float], scene: Any) -> None:
+def test_what_may_pass_is_tried_again_later_and_later(
+    stub: StubServer, waits: list[float], scene: Any
+) -> None:
     stub.play(scene, scene, scene, says(GOOD))
     assert total(chat_with(stub)) == 4
     assert len(waits) == 3
@@ -212,7 +214,7 @@ def test_what_may_pass_is_tried_again_later_and_later(stub: Stub, waits: list[fl
 @pytest.mark.parametrize(
     "scene", [fails(500, "boom"), answers({"error": "boom"}), drops(), drops(b'{"id": ')]
 )
-def test_patience_ends(stub: Stub, waits: list[float], scene: Any) -> None:
+def test_patience_ends(stub: StubServer, waits: list[float], scene: Any) -> None:
     stub.play(scene)
     with pytest.raises(ChatError, match=r"\(tried 3 times\)$"):
         total(chat_with(stub, retries=2))
@@ -224,14 +226,14 @@ def test_patience_ends(stub: Stub, waits: list[float], scene: Any) -> None:
     [({"retry-after": "7"}, 7.0), ({"retry-after-ms": "1500"}, 1.5), ({"retry-after": "0.25"}, 0.25)],
 )
 def test_a_server_is_given_the_time_that_it_asks_for(
-    stub: Stub, waits: list[float], headers: dict[str, str], wait: float
+    stub: StubServer, waits: list[float], headers: dict[str, str], wait: float
 ) -> None:
     stub.play(fails(429, "slow down", headers), says(GOOD))
     assert total(chat_with(stub)) == 4
     assert waits == [wait]
 
 
-def test_retry_after_may_be_a_date(stub: Stub, waits: list[float]) -> None:
+def test_retry_after_may_be_a_date(stub: StubServer, waits: list[float]) -> None:
     from email.utils import formatdate
 
     stub.play(fails(429, "", {"retry-after": formatdate(time.time() + 30, usegmt=True)}), says(GOOD))
@@ -240,13 +242,15 @@ def test_retry_after_may_be_a_date(stub: Stub, waits: list[float]) -> None:
 
 
 @pytest.mark.parametrize("value", ["soon", "", "nan", "-5"])
-def test_a_retry_after_that_says_nothing_is_passed_over(stub: Stub, waits: list[float], value: str) -> None:
+def test_a_retry_after_that_says_nothing_is_passed_over(
+    stub: StubServer, waits: list[float], value: str
+) -> None:
     stub.play(fails(429, "", {"retry-after": value}), says(GOOD))
     assert total(chat_with(stub)) == 4
     assert 0 <= waits[0] < 1
 
 
-def test_nobody_waits_for_an_hour(stub: Stub, waits: list[float]) -> None:
+def test_nobody_waits_for_an_hour(stub: StubServer, waits: list[float]) -> None:
     stub.play(fails(429, "", {"retry-after": "3600"}))
     with pytest.raises(ChatError, match="asks to wait 3600 s"):
         total(chat_with(stub))
@@ -271,7 +275,9 @@ def test_nobody_waits_for_an_hour(stub: Stub, waits: list[float]) -> None:
         (fails(404, "<!DOCTYPE HTML><html><p>File not found"), "it answered with a web page, .*--base-url"),
     ],
 )
-def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scene: Any, told: str) -> None:
+def test_what_will_not_pass_is_told_at_once(
+    stub: StubServer, waits: list[float], scene: Any, told: str
+) -> None:
     stub.play(scene)
     with pytest.raises(ChatError, match=told):
         total(chat_with(stub))
@@ -280,7 +286,7 @@ def test_what_will_not_pass_is_told_at_once(stub: Stub, waits: list[float], scen
 
 
 @pytest.mark.parametrize("scene", [drips(0.05), drips_headers(0.05)])
-def test_an_answer_that_drips_in_is_given_up_in_time(stub: Stub, scene: Any) -> None:
+def test_an_answer_that_drips_in_is_given_up_in_time(stub: StubServer, scene: Any) -> None:
     stub.play(scene)
     begun = time.perf_counter()
     with pytest.raises(ChatError, match=r"gave no complete answer within 0\.5 s"):
@@ -288,7 +294,7 @@ def test_an_answer_that_drips_in_is_given_up_in_time(stub: Stub, scene: Any) -> 
     assert time.perf_counter() - begun < 2.5
 
 
-def test_a_server_that_is_not_there_is_told(stub: Stub, waits: list[float]) -> None:
+def test_a_server_that_is_not_there_is_told(stub: StubServer, waits: list[float]) -> None:
     chat = open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", model="m", retries=1))
     with pytest.raises(
         ChatError, match=r"http://127\.0\.0\.1:9/v1 cannot be reached .*is the server running\?"
@@ -296,7 +302,7 @@ def test_a_server_that_is_not_there_is_told(stub: Stub, waits: list[float]) -> N
         chat.ask(QUESTION)
 
 
-def test_the_only_model_of_a_server_need_not_be_named(stub: Stub) -> None:
+def test_the_only_model_of_a_server_need_not_be_named(stub: StubServer) -> None:
     stub.play(says(GOOD))
     assert total(chat_with(stub, model=None)) == 4
     assert stub.requests[0].body["model"] == "stub-model"
@@ -307,13 +313,13 @@ def test_the_only_model_of_a_server_need_not_be_named(stub: Stub) -> None:
         open_chat(ChatSettings(base_url="http://127.0.0.1:9/v1", retries=0))
 
 
-def test_a_base_url_may_leave_out_its_path(stub: Stub) -> None:
+def test_a_base_url_may_leave_out_its_path(stub: StubServer) -> None:
     stub.play(says(GOOD))
     assert total(chat_with(stub, base_url=stub.url.removesuffix("/v1"))) == 4
     assert stub.requests[0].path == "/v1/chat/completions"
 
 
-def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: Stub) -> None:
+def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: StubServer) -> None:
     body = completion(GOOD)
     for usage in (None, {}, {"prompt_tokens": -5, "completion_tokens": "many"}, {"prompt_tokens": 1e300}):
         stub.play(answers({**body, "usage": usage}))
@@ -322,6 +328,6 @@ def test_usage_that_is_missing_is_guessed_and_nonsense_is_none(stub: Stub) -> No
         assert 0 < spent.completion < 20
 
 
-def test_content_may_come_in_parts(stub: Stub) -> None:
+def test_content_may_come_in_parts(stub: StubServer) -> None:
     stub.play(says([{"type": "text", "text": '{"total":'}, {"type": "text", "text": " 4}"}]))
     assert total(chat_with(stub)) == 4

@@ -6,7 +6,7 @@ import pytest
 from click.testing import CliRunner
 
 from chat.asker import Turn, on_shelf
-from chat.stub_server import Request, Stub, fails, in_order, only, says, send
+from chat.stub_server import HeardRequest, StubServer, fails, in_order, only, says, send
 from roadgpt.chat import ChatSettings, Message, Meter, RefusedError, UnparsableError, counting, open_chat
 from roadgpt.cli import app
 
@@ -16,11 +16,11 @@ QUESTION = [RULES, Message(role="user", text="How far?")]
 GOOD = '{"degrees": 5}'
 
 
-def settings(stub: Stub, **more: Any) -> ChatSettings:
+def settings(stub: StubServer, **more: Any) -> ChatSettings:
     return ChatSettings(base_url=stub.url, model="m", api="responses", **more)
 
 
-def test_the_server_keeps_the_conversation(stub: Stub) -> None:
+def test_the_server_keeps_the_conversation(stub: StubServer) -> None:
     stub.play(says(GOOD))
     chat = open_chat(settings(stub, max_completion=77, temperature=0.5))
     replies = [chat.ask(QUESTION, Turn) for _ in range(2)]
@@ -37,7 +37,7 @@ def test_the_server_keeps_the_conversation(stub: Stub) -> None:
     assert "seed" not in first
 
 
-def test_each_campaign_has_a_conversation_of_its_own(stub: Stub) -> None:
+def test_each_campaign_has_a_conversation_of_its_own(stub: StubServer) -> None:
     stub.play(says(GOOD))
     chat = open_chat(settings(stub))
     names = []
@@ -48,7 +48,7 @@ def test_each_campaign_has_a_conversation_of_its_own(stub: Stub) -> None:
 
 
 def test_a_server_that_keeps_nothing_is_told_what_was_said(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stub.keeps_conversations = False
     stub.play(*in_order(['{"degrees": 5}', '{"degrees": 6}']))
@@ -65,13 +65,13 @@ def test_a_server_that_keeps_nothing_is_told_what_was_said(
     ]
 
 
-def test_a_conversation_that_is_full_is_followed_by_another(stub: Stub) -> None:
+def test_a_conversation_that_is_full_is_followed_by_another(stub: StubServer) -> None:
     stub.play(says(GOOD), fails(400, "too many tokens", code="context_length_exceeded"), says(GOOD))
     chat = open_chat(settings(stub))
     assert [chat.ask(QUESTION, Turn).conversation for _ in range(2)] == ["conv_1", "conv_2"]
 
 
-def test_the_ladder_holds_here_as_well(stub: Stub) -> None:
+def test_the_ladder_holds_here_as_well(stub: StubServer) -> None:
     stub.play(only("text", text=f"```json\n{GOOD}\n```"))
     assert open_chat(settings(stub)).ask(QUESTION, Turn).data == Turn(degrees=5)
     assert stub.response_formats == ["json_schema", "json_object", "text"]
@@ -106,17 +106,17 @@ def test_the_ladder_holds_here_as_well(stub: Stub) -> None:
     ],
 )
 def test_answers_without_an_answer(
-    stub: Stub, body: dict[str, Any], error: type[Exception], told: str
+    stub: StubServer, body: dict[str, Any], error: type[Exception], told: str
 ) -> None:
     stub.play(lambda request, handler: send(handler, 200, body))
     with pytest.raises(error, match=told):
         open_chat(settings(stub)).ask(QUESTION, Turn)
 
 
-def test_a_campaign_through_responses(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_campaign_through_responses(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
     on_shelf(monkeypatch)
 
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         says(f'{{"degrees": {30 + 10 * len(stub.requests)}}}')(request, handler)
 
     stub.play(scene)

@@ -10,9 +10,9 @@ from click.testing import CliRunner, Result
 from chat.asker import Turn, on_shelf
 from chat.conftest import KEY
 from chat.stub_server import (
-    Request,
+    HeardRequest,
     Scene,
-    Stub,
+    StubServer,
     answers,
     completion,
     drips,
@@ -32,7 +32,7 @@ PIECE = KEY[3:]  # what is left where only the beginning is taken away
 def echoes(status: int) -> Scene:
     """A server that shows whoever asks what they sent, headers included, wherever it can."""
 
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         shown = f"you sent {request.headers}"
         body = {"error": {"message": shown, "code": KEY, "param": KEY, "type": shown}, KEY: [KEY]}
         send(handler, status, body, {"X-Request-Id": KEY, "Retry-After": KEY})
@@ -89,7 +89,7 @@ def loud(monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture) -> p
 @pytest.mark.parametrize("path", PATHS)
 @pytest.mark.parametrize("part", ["--designer=asker", "--reader=chat"])
 def test_no_path_tells_the_key(
-    stub: Stub,
+    stub: StubServer,
     monkeypatch: pytest.MonkeyPatch,
     loud: pytest.LogCaptureFixture,
     waits: list[float],
@@ -121,7 +121,7 @@ def test_no_path_tells_the_key(
 
 
 def test_an_error_of_the_program_itself_tells_no_key(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch, loud: pytest.LogCaptureFixture
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch, loud: pytest.LogCaptureFixture
 ) -> None:
     """A crash writes a traceback to a file; the key is in none of its lines."""
     on_shelf(monkeypatch)
@@ -155,7 +155,7 @@ def test_an_error_of_the_program_itself_tells_no_key(
     ["sk-canary-\n0123456789abcdef", "sk-canary-ü0123456789abcdef", "sk canary 0123456789", "\x00sk-canary"],
 )
 def test_a_key_that_no_header_can_carry_is_told_without_it(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch, key: str
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch, key: str
 ) -> None:
     Path(".env").write_text(f"OPENAI_API_KEY='{key}'\n")
     if "\n" not in key and "\x00" not in key:
@@ -171,7 +171,7 @@ def test_a_key_that_no_header_can_carry_is_told_without_it(
         assert "Traceback" not in result.output
 
 
-def test_a_file_of_settings_that_is_no_toml_is_told_without_its_lines(stub: Stub) -> None:
+def test_a_file_of_settings_that_is_no_toml_is_told_without_its_lines(stub: StubServer) -> None:
     Path("roadgpt.toml").write_text(f'[chat]\napi_key = "{KEY}\nmodel = "x"')
     result = CliRunner().invoke(app, ["config", "show"], prog_name="roadgpt")
     assert result.exit_code == 2
@@ -179,7 +179,7 @@ def test_a_file_of_settings_that_is_no_toml_is_told_without_its_lines(stub: Stub
     assert PIECE not in result.output
 
 
-def test_settings_and_values_show_no_key(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_settings_and_values_show_no_key(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("OPENAI_API_KEY", KEY)
     stub.play(says(f'{{"degrees": 3, "note": "{KEY}"}}'))
     settings = ChatSettings(base_url=stub.url, model="m")
@@ -190,7 +190,7 @@ def test_settings_and_values_show_no_key(stub: Stub, monkeypatch: pytest.MonkeyP
         assert PIECE not in shown
 
 
-def test_an_exception_keeps_no_key_in_its_chain(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exception_keeps_no_key_in_its_chain(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
     import traceback
 
     monkeypatch.setenv("OPENAI_API_KEY", KEY)

@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner, Result
 
 from chat.conftest import KEY
-from chat.stub_server import Stub, says
+from chat.stub_server import StubServer, says
 from roadgpt.chat import ChatError, ChatSettings, configured, open_chat
 from roadgpt.chat.address import address_of
 from roadgpt.chat.config import key_for, settings_with_origin, user_file
@@ -204,7 +204,7 @@ def test_options_for_models_are_refused_where_none_is_asked() -> None:
     assert "--max-cost is for language models; give --designer chat or --reader chat" in result.stderr
 
 
-def test_doctor_looks_for_the_model_that_is_named(stub: Stub, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_doctor_looks_for_the_model_that_is_named(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
     from roadgpt.chat.diagnosis import diagnose
 
     assert "none is needed" in diagnose()

@@ -12,17 +12,16 @@ import pytest
 from click.testing import CliRunner, Result
 
 from chat.conftest import KEY
-from chat.stub_server import Request, Scene, Stub, says, send, serving
+from chat.stub_server import HeardRequest, Scene, StubServer, says, send, serving
 from roadgpt import provenance
 from roadgpt.campaign.lifecycle import begin
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan
 from roadgpt.chat import ChatError, ChatSettings, Message, open_chat
 from roadgpt.chat.config import configured, key_for
 from roadgpt.cli import app
-from roadgpt.run import Request as Asked
-from roadgpt.run import Setup, perform, read_run, write_run
+from roadgpt.run import Request, Setup, perform, read_run, write_run
 
 ELSEWHERE = "https://elsewhere.example/v1"
 GOOD = '{"degrees": 30, "along": ["turn x1 left"], "road": "", "unused": []}'
@@ -55,7 +54,7 @@ def test_a_plan_does_not_get_the_users_key_sent_to_its_server() -> None:
 
 @pytest.mark.parametrize("how", ["the plan alone", "as a flag", "in the environment"])
 def test_a_server_of_a_plan_gets_the_key_only_from_who_names_it(
-    stub: Stub, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest, how: str
+    stub: StubServer, monkeypatch: pytest.MonkeyPatch, request: pytest.FixtureRequest, how: str
 ) -> None:
     """Also on this machine, where any port may be anybody's; the workers are processes of their own."""
     stub.play(says(GOOD))
@@ -71,14 +70,14 @@ def test_a_server_of_a_plan_gets_the_key_only_from_who_names_it(
 
 @pytest.mark.parametrize("how", ["resume", "resume with a flag", "resume another"])
 def test_a_store_does_not_get_the_users_key_sent(
-    stub: Stub, request: pytest.FixtureRequest, how: str
+    stub: StubServer, request: pytest.FixtureRequest, how: str
 ) -> None:
     if how == "resume with a flag":
         request.getfixturevalue("no_workers")
     stub.play(says(GOOD))
     chat = ChatSettings(model="m", base_url=stub.url, retries=0)
     setup = {"designers": ("chat",), "reader": "plan", "drives": False, "chat": chat}
-    begin(Plan(prompts=("turn left",), budget=Budget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
+    begin(Plan(prompts=("turn left",), budget=CellBudget(tests=1), **setup), Path("c"))  # type: ignore[arg-type]
     provenance.SERVERS.forget()
     given = {"resume": [], "resume with a flag": [stub.url], "resume another": [ELSEWHERE]}[how]
     result = invoke("resume", "c", "-q", *(word for url in given for word in ("--base-url", url)))
@@ -94,7 +93,7 @@ def test_a_store_does_not_get_the_users_key_sent(
 def test_a_run_does_not_get_the_users_key_sent() -> None:
     setup = Setup(reader="plan", drives=False, chat=ChatSettings(model="m", base_url=ELSEWHERE))
     run = perform("turn left", setup=Setup(reader="plan", drives=False))
-    asked = Asked(words="turn left", setup=setup)
+    asked = Request(words="turn left", setup=setup)
     folder = write_run(type(run)(**{**vars(run), "request": asked}), Path("c"))
     assert key_for(ELSEWHERE) is not None  # a program that names it itself
     read_run(folder)
@@ -127,19 +126,19 @@ def test_a_key_beside_a_plan_is_not_for_the_plans_server(monkeypatch: pytest.Mon
         key_for(ELSEWHERE)
 
 
-def test_a_server_that_gets_no_key_and_wants_one_is_told_why(stub: Stub) -> None:
+def test_a_server_that_gets_no_key_and_wants_one_is_told_why(stub: StubServer) -> None:
     stub.play(lambda request, handler: send(handler, 401, {"error": {"message": "no key"}}))
     result = invoke("campaign", str(plan_naming(stub.url)), "--out", "c", "-q")
     assert "wants a key but is sent none, because only plan.toml names it" in result.stderr
 
 
-def ask(stub: Stub, **settings: Any) -> str:
+def ask(stub: StubServer, **settings: Any) -> str:
     chat = open_chat(ChatSettings(base_url=stub.url, model="m", retries=0, **settings))
     return chat.ask([Message(role="user", text="a road?")]).text
 
 
 @pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
-def test_a_redirect_to_another_server_is_not_followed(stub: Stub, status: int) -> None:
+def test_a_redirect_to_another_server_is_not_followed(stub: StubServer, status: int) -> None:
     with serving(says("hello")) as elsewhere:
         place = f"{elsewhere.url}/chat/completions"
         stub.play(lambda request, handler: send(handler, status, {}, {"Location": place}))
@@ -149,7 +148,7 @@ def test_a_redirect_to_another_server_is_not_followed(stub: Stub, status: int) -
     assert len(stub.requests) == 1
 
 
-def test_a_redirect_within_a_server_is_followed(stub: Stub) -> None:
+def test_a_redirect_within_a_server_is_followed(stub: StubServer) -> None:
     stub.play(
         lambda request, handler: send(handler, 307, {}, {"Location": "/v2/chat/completions"}), says("x")
     )
@@ -165,7 +164,7 @@ def block_of(packed: bool) -> bytes:
 def gushes(status: int, sent: list[int], packed: bool = False, most: int = 300) -> Scene:
     """Megabytes without end, until whoever asked goes away."""
 
-    def scene(request: Request, handler: Any) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         handler.send_response(status)
         handler.send_header("Content-Type", "application/json")
         if packed:
@@ -183,7 +182,7 @@ def gushes(status: int, sent: list[int], packed: bool = False, most: int = 300) 
 
 @pytest.mark.parametrize("status", [200, 400, 401, 404, 429, 500, 503])
 @pytest.mark.parametrize("packed", [False, True])
-def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: Stub, status: int, packed: bool) -> None:
+def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: StubServer, status: int, packed: bool) -> None:
     sent: list[int] = []
     stub.play(gushes(status, sent, packed))
     with pytest.raises(ChatError):
@@ -191,7 +190,7 @@ def test_a_reply_of_any_status_is_read_up_to_a_limit(stub: Stub, status: int, pa
     assert sum(sent) < 60_000_000  # of 300 MB; what lies in buffers of the system is not ours
 
 
-def test_errors_without_end_take_little_memory(stub: Stub) -> None:
+def test_errors_without_end_take_little_memory(stub: StubServer) -> None:
     """In a process of its own, whose largest memory is measured; 600 MB came to twice as much before."""
     stub.play(gushes(500, [], most=600))
     code = (
@@ -207,8 +206,8 @@ def test_errors_without_end_take_little_memory(stub: Stub) -> None:
     assert int(done.stdout) < 100, "MiB"
 
 
-def test_a_packed_answer_is_read(stub: Stub) -> None:
-    def scene(request: Request, handler: Any) -> None:
+def test_a_packed_answer_is_read(stub: StubServer) -> None:
+    def scene(request: HeardRequest, handler: Any) -> None:
         body = {"choices": [{"message": {"content": "hello"}}], "model": "m"}
         send(handler, 200, gzip.compress(json.dumps(body).encode()), {"Content-Encoding": "gzip"})
 

@@ -39,7 +39,7 @@ def test_a_mini_roundabout_passes_every_rule_but_those_on_its_mouths(rule: str) 
         assert findings(rule, passing("roundabout", 2, radius=8)) == ()
 
 
-class TestFinite:
+class TestFiniteNetwork:
     def test_a_place_that_is_no_number(self) -> None:
         network = passing("crossroads").network
         found = the_finding("finite", with_road(network, 1, lambda each: with_plan(each, x=math.nan)))
@@ -68,7 +68,7 @@ class TestFinite:
         assert "is not a number" in the_finding("finite", damaged).sentence
 
 
-class TestTooShort:
+class TestTooShortRoute:
     def test_a_route_that_is_too_short(self) -> None:
         route = built(design(6.0, {"kind": "t_junction", "take": 1, "kerb": 1}, 9.0, width=2.0))
         assert route.length < 40

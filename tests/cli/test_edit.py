@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner, Result
 
-from chat.stub_server import Stub, says, serving
+from chat.stub_server import StubServer, says, serving
 from edit_truth import roads
 from fake_chat import FakeChat
 from roadgpt.cli import app
@@ -28,7 +28,7 @@ def in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def stub() -> Iterator[Stub]:
+def stub() -> Iterator[StubServer]:
     with serving() as found:
         yield found
 
@@ -151,7 +151,7 @@ def test_words_that_are_not_understood_are_told(monkeypatch: pytest.MonkeyPatch)
     assert "not understood: 'pronto'" in result.stdout
 
 
-def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: Stub) -> None:
+def test_what_a_model_cost_is_told_also_where_nothing_came_of_it(stub: StubServer) -> None:
     stub.play(says("Sure, done!"))
     more = ("--designer", "chat", "--base-url", stub.url, "--model", "m", "--out", "new")
     result = invoke("edit", "design.json", WORDS, *more)

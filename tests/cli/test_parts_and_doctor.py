@@ -35,14 +35,14 @@ def test_a_part_that_cannot_be_loaded_is_listed_with_the_reason(monkeypatch: pyt
 
 
 def test_the_first_sentence_may_span_lines() -> None:
-    class Part:
+    class LongSentence:
         """Drives as a
         person does. And more.
 
         Much more.
         """
 
-    assert installed_plugins._first_sentence(Part) == "Drives as a person does"
+    assert installed_plugins._first_sentence(LongSentence) == "Drives as a person does"
 
 
 def test_what_parts_say_has_no_marks_of_documentation() -> None:

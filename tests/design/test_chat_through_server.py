@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from chat.stub_server import Scene, Stub, drops, fails, floods, says, serving
+from chat.stub_server import Scene, StubServer, drops, fails, floods, says, serving
 from planned import planned
 from roadgpt.campaign import campaign
 from roadgpt.chat import ChatSettings, server_quirks
@@ -67,7 +67,7 @@ ROADS = {
 
 
 @pytest.fixture(scope="module")
-def stub() -> Iterator[Stub]:
+def stub() -> Iterator[StubServer]:
     with serving(says(GOOD)) as server:
         yield server
 
@@ -87,13 +87,13 @@ def _alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     server_quirks.forget()
 
 
-def setup(stub: Stub, designer: str = "chat", **more: object) -> Setup:
+def setup(stub: StubServer, designer: str = "chat", **more: object) -> Setup:
     told = {"model": "stub-model", "base_url": stub.url, "timeout": 5, "retries": 2, "rounds": 2, **more}
     return Setup(reader="plan", designer=designer, drives=False, chat=ChatSettings(**told))
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_every_fault_ends_in_a_road_or_in_one_clear_sentence(stub: Stub, fault: str) -> None:
+def test_every_fault_ends_in_a_road_or_in_one_clear_sentence(stub: StubServer, fault: str) -> None:
     stub.play(*FAULTS[fault])
     try:
         run = perform(BRIEF, seed=3, setup=setup(stub, repair="full"))
@@ -107,7 +107,7 @@ def test_every_fault_ends_in_a_road_or_in_one_clear_sentence(stub: Stub, fault: 
     assert is_road == (fault in ROADS), said
 
 
-def test_the_run_tells_rounds_changes_and_what_was_proposed(stub: Stub) -> None:
+def test_the_run_tells_rounds_changes_and_what_was_proposed(stub: StubServer) -> None:
     short, outside = road(segments=road()["segments"][:4]), road(starting_point=[245, 9, 0])
     stub.play(says(json.dumps(short)), says(json.dumps(outside)))
     run = perform(BRIEF, seed=3, setup=setup(stub))
@@ -121,7 +121,7 @@ def test_the_run_tells_rounds_changes_and_what_was_proposed(stub: Stub) -> None:
     assert run.designing.tokens.prompt == 200
 
 
-def test_the_thesis_method_asks_once_and_its_invalid_road_counts_as_invalid(stub: Stub) -> None:
+def test_the_thesis_method_asks_once_and_its_invalid_road_counts_as_invalid(stub: StubServer) -> None:
     outside = numbered() | {"starting_point": [245, 9, 0]}
     stub.play(says(json.dumps(outside)))
     run = perform(BRIEF, seed=3, setup=setup(stub, "thesis"))
@@ -132,7 +132,9 @@ def test_the_thesis_method_asks_once_and_its_invalid_road_counts_as_invalid(stub
     assert run.rounds == 1
 
 
-def test_a_model_that_fails_costs_one_road_and_nothing_of_those_before(stub: Stub, tmp_path: Path) -> None:
+def test_a_model_that_fails_costs_one_road_and_nothing_of_those_before(
+    stub: StubServer, tmp_path: Path
+) -> None:
     other = json.dumps(road(starting_point=[60, 60, 0], segments=list(reversed(road()["segments"]))))
     stub.play(says(GOOD), *(5 * [says("nothing")]), says(other))
     runs = list(campaign(BRIEF, 3, seed=3, setup=setup(stub, rounds=1), out=tmp_path / "c"))
@@ -143,7 +145,7 @@ def test_a_model_that_fails_costs_one_road_and_nothing_of_those_before(stub: Stu
 
 
 @pytest.mark.parametrize("designer", ["chat", "thesis"])
-def test_both_designers_take_responses_as_well(stub: Stub, designer: str) -> None:
+def test_both_designers_take_responses_as_well(stub: StubServer, designer: str) -> None:
     stub.play(says(GOOD if designer == "chat" else json.dumps(numbered())))
     run = perform(BRIEF, seed=3, setup=setup(stub, designer, api="responses"))
     assert run.design is not None

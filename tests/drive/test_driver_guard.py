@@ -16,7 +16,7 @@ from roadgpt.errors import DriverError
 VIEW = View(1.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, None, None, 0.0, 0.02, 0.0, 0.0)  # type: ignore[arg-type]
 
 
-class Answers:
+class GivesAnswer:
     def __init__(self, answer):
         self.answer = answer
 
@@ -25,7 +25,7 @@ class Answers:
 
 
 def ask(answer, limit=0.5):
-    guard = DriverGuard(Answers(answer), one_answer=limit)
+    guard = DriverGuard(GivesAnswer(answer), one_answer=limit)
     with guard.watched():
         return guard.ask(VIEW)
 
@@ -51,7 +51,7 @@ def test_pedals_are_held_to_their_range_and_the_steering_is_left_to_the_car():
     [None, 0.3, "left", (1, 2), (1, 2, 3, 4), ("a", 0, 0), (math.nan, 0, 0), (0, math.inf, 0), {}, object()],
 )
 def test_an_answer_that_is_no_command_is_told_so(answer):
-    with pytest.raises(DriverError, match=r"driver 'Answers' answered .* at 1.50 s"):
+    with pytest.raises(DriverError, match=r"driver 'GivesAnswer' answered .* at 1.50 s"):
         ask(answer)
 
 
@@ -129,7 +129,7 @@ def test_a_driver_that_hangs_in_another_thread_is_stopped(hang):
 
 
 def test_start_is_watched_too():
-    class Starts(Answers):
+    class Starts(GivesAnswer):
         def start(self, road, world, seed):
             raise ValueError("bad plan")
 
@@ -139,7 +139,7 @@ def test_start_is_watched_too():
 
 
 def test_a_driver_that_never_gets_ready_is_told_to_start_sooner():
-    class Ponders(Answers):
+    class Ponders(GivesAnswer):
         def start(self, road, world, seed):
             endless()
 
@@ -149,7 +149,7 @@ def test_a_driver_that_never_gets_ready_is_told_to_start_sooner():
 
 
 def test_the_error_names_the_drivers_own_line_and_not_that_of_a_library():
-    class Reads(Answers):
+    class Reads(GivesAnswer):
         def steer(self, view):
             return json.loads("no json")
 
@@ -185,7 +185,7 @@ def test_an_alarm_that_rings_at_once_finds_the_seat_ready():
 
 
 def test_many_slow_answers_add_up():
-    guard = DriverGuard(Answers(lambda: time.sleep(0.05) or Command(0.0)), whole_drive=0.2)
+    guard = DriverGuard(GivesAnswer(lambda: time.sleep(0.05) or Command(0.0)), whole_drive=0.2)
 
     def many():
         for _ in range(100):

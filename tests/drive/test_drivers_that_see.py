@@ -58,7 +58,7 @@ def pose(road: Road, s: float, t: float, turned: float) -> dict[str, float]:
 def test_the_ground_lies_where_the_camera_sees_it() -> None:
     module = module_of(DRIVERS[0])
     camera = module.LaneFinder.camera
-    ground = module.Ground(camera)
+    ground = module.FlatGround(camera)
     wide = 2 * math.atan(math.tan(camera.field_of_view / 2) * camera.width / camera.height)
     pinhole = Pinhole(
         camera.width, camera.height, wide, "bonnet", CameraPlacement(camera.ahead, camera.up, -camera.down)
@@ -75,7 +75,7 @@ def test_the_ground_lies_where_the_camera_sees_it() -> None:
 
 @pytest.mark.parametrize("bend", [-0.07, -1e-4, 0.02, 0.06])
 def test_an_arc_is_the_curve_that_it_says(bend: float) -> None:
-    lane = module_of(DRIVERS[0]).Lane(aside=0.7, turned=0.2, bend=bend)
+    lane = module_of(DRIVERS[0]).LaneArc(aside=0.7, turned=0.2, bend=bend)
     # the same curve by small steps
     way, step = 12.0, 1e-3
     heading = 0.2 + bend * (np.arange(int(way / step)) + 0.5) * step
@@ -106,9 +106,9 @@ def test_the_lane_is_found_in_a_picture(
     bend = float(road.curvature(s + 5.0))
     camera = module.LaneFinder.camera
     image = CameraSensor(camera, road, World()).see(pose(road, s, t, turned))
-    ground = module.Ground(camera)
+    ground = module.FlatGround(camera)
     own = bend / (1 + 2 * bend)  # of the lane, whose middle lies 2 m to the right
-    lane = module.Lane(-1.9 - t, 0.03 - turned, 0.85 * own + 0.004)  # about what was seen before
+    lane = module.LaneArc(-1.9 - t, 0.03 - turned, 0.85 * own + 0.004)  # about what was seen before
     for _ in range(6):  # a car that stands looks again
         lane = ground.lane_in(image, lane, (-1.825, 2.0, 5.825))
     assert lane.aside == pytest.approx(-2.0 - t, abs=0.4 * near)

@@ -37,7 +37,7 @@ def test_a_wheel_has_ground_exactly_where_the_polygon_is(seed: int) -> None:
     shapely.prepare(area)
     rims = np.column_stack(WORLD.profile_of(route).rims(stations_of(sampled)))
     rng = np.random.default_rng(seed)
-    low, high = np.array(windows(route)).T
+    low, high = np.array(windows(route.passages, route.length)).T
     at = rng.integers(len(low), size=2000)
     s, t = rng.uniform(low[at], high[at]), rng.uniform(-NEAR, NEAR, 2000)
     s, t = (each[1 - route.curvature(s) * t > FOLD] for each in (s, t))

@@ -18,7 +18,7 @@ from roadgpt.run import Setup, brief_of
 SMALL = Camera(width=48, height=24, every=1)
 
 
-class Replay:
+class RepeatsActions:
     """Says again what an agent has said; each command holds for two control steps."""
 
     def __init__(self, actions: list[Any]) -> None:
@@ -66,7 +66,7 @@ def test_an_episode_is_the_drive_that_simulate_makes_of_its_commands() -> None:
 
     rows = episode(env, shaken, seed=8)
     actions = [action for _, action, _, _ in rows]
-    drive = simulate(env.unwrapped.road, World(), Replay(actions))
+    drive = simulate(env.unwrapped.road, World(), RepeatsActions(actions))
     assert len(rows) > 100
     assert drive.ended == rows[-1][3]["ended"]
     for name in ("s", "t", "speed", "outside"):

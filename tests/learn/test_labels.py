@@ -71,7 +71,7 @@ def test_short_texts_of_the_bare_vocabulary_are_no_twins() -> None:
     assert near_duplicates(["two left bends", "three right turns"]) == []
 
 
-class Parrot:
+class ParrotReader:
     """Reads what it was told, refuses the rest."""
 
     known: ClassVar = {"three turns": "turn x3", "two left": "turn x2 right", "uphill left": "turn left"}
@@ -88,7 +88,7 @@ def test_a_reader_is_scored_whole_and_by_parts() -> None:
         Pair("uphill left", "turn left | up", "f", "en"), Pair("hello", "!nonsense", "f", "en"),
         Pair("four turns", "turn x4", "f", "en"),
     ]  # fmt: skip
-    found = readings(pairs, Parrot().read)
+    found = readings(pairs, ParrotReader().read)
     result = score(found)
     assert result.exact == pytest.approx(2 / 5)
     assert result.turns == pytest.approx(3 / 4)

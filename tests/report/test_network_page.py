@@ -112,7 +112,7 @@ def test_the_page_stays_small(run: Run) -> None:
 
 
 @pytest.fixture(scope="module")
-def page() -> Iterator[chromium.Page]:
+def page() -> Iterator[chromium.BrowserTab]:
     if chromium.FOUND is None:
         pytest.skip("needs chromium")
     with chromium.browser() as page:
@@ -121,7 +121,7 @@ def page() -> Iterator[chromium.Page]:
 
 
 @pytest.mark.parametrize("shoulder", [0.0, 3.0])
-def test_a_browser_draws_the_network(page: chromium.Page, tmp_path: Path, shoulder: float) -> None:
+def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path, shoulder: float) -> None:
     run = run_of(shoulder, lanes=2)
     assert isinstance(run.road, Route)
     path = view.write([run], tmp_path / "page.html")

@@ -54,7 +54,7 @@ def page(*blocks: object) -> Page:
     return Page(NASTY, [NASTY, ["see ", linked("it", "x.png")]], [Section(NASTY, blocks)], {"command": NASTY})  # type: ignore[arg-type]
 
 
-class Reader(HTMLParser):
+class PageParser(HTMLParser):
     """Text and tags of a page; complains where tags do not close."""
 
     EMPTY = ("meta", "br", "rect", "line", "circle", "path", "polyline")
@@ -81,7 +81,7 @@ class Reader(HTMLParser):
 
 
 def test_nothing_in_the_words_becomes_markup() -> None:
-    reader = Reader()
+    reader = PageParser()
     reader.feed(html_of(page(NASTY, TABLE, Details(NASTY, [TABLE, NASTY]))))
     assert reader.open == []
     assert "script" not in reader.tags
@@ -282,7 +282,7 @@ def test_cards_stand_beside_each_other_with_what_can_be_typed() -> None:
     whole = page(Cards([card, card]))
     text = html_of(whole)
     assert text.count("<article><svg><rect/></svg><h3>2 · <a") == 2
-    reader = Reader()
+    reader = PageParser()
     reader.feed(text)
     assert reader.text.count(NASTY) >= 4
     assert "<script" not in text

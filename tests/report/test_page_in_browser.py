@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from chromium import FOUND, Page, browser
-from roadgpt.report.page import Figure, Section, Table, cell, write
-from roadgpt.report.page import Page as Report
+from chromium import FOUND, BrowserTab, browser
+from roadgpt.report.page import Figure, Page, Section, Table, cell, write
 from roadgpt.report.page.forest import Share, forest
 from roadgpt.report.page.heat import AxisRange, heat
 
@@ -25,12 +24,12 @@ def report(tmp_path_factory: pytest.TempPathFactory) -> Path:
     table = Table("wide", "A wide table", ["prompt", *(f"number {n}" for n in range(9))], rows)
     sections = [Section("One", [table, Figure("f", "A figure.", chart), Figure("h", "Another.", matrix)])]
     return write(
-        Report("A report", ["The first line.", "word" * 60], sections, {"seed": "1"}),
+        Page("A report", ["The first line.", "word" * 60], sections, {"seed": "1"}),
         tmp_path_factory.mktemp("r"),
     )
 
 
-def opened(page: Page, path: Path) -> None:
+def opened(page: BrowserTab, path: Path) -> None:
     page.send("Page.navigate", url=path.resolve().as_uri())
     while page.run("document.readyState + location.protocol") != "completefile:":
         time.sleep(0.02)

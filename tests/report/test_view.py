@@ -52,7 +52,7 @@ def alone() -> Run:
     return replace(prove(design(), setup=Setup(drives=False)), source="alone.json")
 
 
-class Reader(HTMLParser):
+class ViewParser(HTMLParser):
     """What a browser would see: elements, what scripts hold, and addresses."""
 
     def __init__(self) -> None:
@@ -82,8 +82,8 @@ class Reader(HTMLParser):
             self.title += data
 
 
-def seen(page: str) -> Reader:
-    reader = Reader()
+def seen(page: str) -> ViewParser:
+    reader = ViewParser()
     reader.feed(page)
     return reader
 

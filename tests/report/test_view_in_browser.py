@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from chromium import FOUND, Page, browser
+from chromium import FOUND, BrowserTab, browser
 from roadgpt.report import view
 from roadgpt.report.canvas import SEVERE
 from roadgpt.road import CrossSection, Design, Segment, Site, World
@@ -47,7 +47,7 @@ def driven() -> Run:
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Page]:
+def tab() -> Iterator[BrowserTab]:
     with browser() as page:
         yield page
 
@@ -64,7 +64,7 @@ def pages(driven: Run, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Pa
 
 
 @pytest.fixture
-def page(tab: Page, pages: dict[str, Path]) -> Iterator[Page]:
+def page(tab: BrowserTab, pages: dict[str, Path]) -> Iterator[BrowserTab]:
     """The page of one drive, as a person finds it; whatever a test does, it must not complain or fetch."""
     tab.size(820, 580)
     if tab.run("location.href") == pages["driven"].as_uri():
@@ -77,7 +77,7 @@ def page(tab: Page, pages: dict[str, Path]) -> Iterator[Page]:
     assert_quiet(tab, pages["driven"])
 
 
-def assert_quiet(tab: Page, path: Path) -> None:
+def assert_quiet(tab: BrowserTab, path: Path) -> None:
     assert tab.told == []
     assert {address.partition("#")[0] for address in tab.asked} == {path.resolve().as_uri()}
 
@@ -99,24 +99,24 @@ def most_of(picture: np.ndarray, much: int, little: int) -> float:
     return float(np.mean((picture[..., much] > 0.35) & (picture[..., much] > 2 * picture[..., little])))
 
 
-def slide(tab: Page, time: float) -> None:
+def slide(tab: BrowserTab, time: float) -> None:
     tab.run(f"slider.value = {time}; slider.dispatchEvent(new Event('input')); 0")
     tab.settle()
 
 
-def pose(tab: Page, number: int = 0) -> dict[str, float]:
+def pose(tab: BrowserTab, number: int = 0) -> dict[str, float]:
     found: dict[str, float] = tab.run(f"roadgpt.poses[{number}]")
     return found
 
 
-def middle_of(tab: Page, name: str, across: float = 0.5, down: float = 0.5) -> tuple[float, float]:
+def middle_of(tab: BrowserTab, name: str, across: float = 0.5, down: float = 0.5) -> tuple[float, float]:
     box = tab.run(
         f"(r => [r.x, r.y, r.width, r.height])(document.querySelector('{name}').getBoundingClientRect())"
     )
     return box[0] + across * box[2], box[1] + down * box[3]
 
 
-def test_the_picture_and_every_strip_are_drawn(page: Page) -> None:
+def test_the_picture_and_every_strip_are_drawn(page: BrowserTab) -> None:
     for name in (".stage .scene", ".plan canvas", ".height canvas", ".second canvas"):
         picture = page.picture(name)
         assert picture.shape[0] > 60
@@ -124,7 +124,7 @@ def test_the_picture_and_every_strip_are_drawn(page: Page) -> None:
     assert is_drawn(page.picture(".stage .scene"))
 
 
-def test_texts_are_texts(page: Page) -> None:
+def test_texts_are_texts(page: BrowserTab) -> None:
     assert page.run("document.querySelector('.title').textContent") == EVIL
     assert page.run("document.title").startswith("</script>")
     assert page.run("document.querySelectorAll('.title *, .said *, img').length") == 0
@@ -135,7 +135,7 @@ def test_texts_are_texts(page: Page) -> None:
     assert "metre road" in page.run("document.querySelector('.words p').textContent")
 
 
-def test_the_slider_moves_the_car_to_where_it_was(page: Page, driven: Run) -> None:
+def test_the_slider_moves_the_car_to_where_it_was(page: BrowserTab, driven: Run) -> None:
     drive = driven.drive
     assert drive is not None
     pictures = []
@@ -153,7 +153,7 @@ def test_the_slider_moves_the_car_to_where_it_was(page: Page, driven: Run) -> No
     assert page.run("clock.textContent") == f"6.5 / {drive.duration:.1f} s"
 
 
-def test_cameras_switch_and_stand_where_they_should(page: Page) -> None:
+def test_cameras_switch_and_stand_where_they_should(page: BrowserTab) -> None:
     slide(page, 5)
     eyes, pictures = {}, {}
     for name in ("behind", "bonnet", "free"):
@@ -171,7 +171,7 @@ def test_cameras_switch_and_stand_where_they_should(page: Page) -> None:
     assert eyes["free"][2] > eyes["behind"][2] + 20
 
 
-def test_dragging_the_picture_sets_the_camera_free(page: Page) -> None:
+def test_dragging_the_picture_sets_the_camera_free(page: BrowserTab) -> None:
     before = np.array(page.run("roadgpt.eyes[0]"))
     x, y = middle_of(page, ".stage .scene")
     page.mouse("mousePressed", x, y)
@@ -186,7 +186,7 @@ def test_dragging_the_picture_sets_the_camera_free(page: Page) -> None:
     assert page.run("roadgpt.eyes[0]") == pytest.approx(after)
 
 
-def test_a_click_on_a_strip_moves_the_car_there(page: Page, driven: Run) -> None:
+def test_a_click_on_a_strip_moves_the_car_there(page: BrowserTab, driven: Run) -> None:
     assert driven.road is not None
     for name in (".height canvas", ".second canvas"):
         wide = page.run(f"document.querySelector('{name}').clientWidth")
@@ -199,7 +199,7 @@ def test_a_click_on_a_strip_moves_the_car_there(page: Page, driven: Run) -> None
     page.wait_for("roadgpt.poses[0].s < 30")  # the road starts in the lower left corner of its map
 
 
-def test_it_plays_and_pauses_and_ends(page: Page) -> None:
+def test_it_plays_and_pauses_and_ends(page: BrowserTab) -> None:
     page.click(*middle_of(page, "#play"))
     page.wait_for("roadgpt.player.time > 0.3")
     page.key(" ")
@@ -216,7 +216,7 @@ def test_it_plays_and_pauses_and_ends(page: Page) -> None:
     page.wait_for("roadgpt.player.time < roadgpt.player.duration / 2")
 
 
-def test_keys(page: Page) -> None:
+def test_keys(page: BrowserTab) -> None:
     page.key("ArrowRight")
     page.key("ArrowRight", modifiers=8)
     assert page.run("roadgpt.player.time") == pytest.approx(1.1)
@@ -237,14 +237,14 @@ def test_keys(page: Page) -> None:
     assert page.run("keys.open")
 
 
-def test_lines_on_the_land_are_for_who_looks_from_above(page: Page) -> None:
+def test_lines_on_the_land_are_for_who_looks_from_above(page: BrowserTab) -> None:
     assert page.run("roadgpt.grids") == [False]
     page.key("3")
     page.settle()
     assert page.run("roadgpt.grids") == [True]
 
 
-def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: Page) -> None:
+def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: BrowserTab) -> None:
     picture = page.picture(".stage .scene")[..., :3]
     high, wide = picture.shape[:2]
     asphalt = picture[int(0.62 * high) : int(0.66 * high), int(0.16 * wide) : int(0.22 * wide)].mean(axis=-1)
@@ -255,7 +255,7 @@ def test_asphalt_has_grain_and_the_road_begins_on_the_ground(page: Page) -> None
     assert rows.min() > 0.25, "the black side of a slab that floats"
 
 
-def test_nothing_is_drawn_while_nothing_changes(page: Page) -> None:
+def test_nothing_is_drawn_while_nothing_changes(page: BrowserTab) -> None:
     page.settle()
     before = page.run("roadgpt.frames")
     for _ in range(5):
@@ -263,7 +263,7 @@ def test_nothing_is_drawn_while_nothing_changes(page: Page) -> None:
     assert page.run("roadgpt.frames") == before
 
 
-def test_the_page_would_be_stopped_from_fetching(page: Page) -> None:
+def test_the_page_would_be_stopped_from_fetching(page: BrowserTab) -> None:
     refused = page.run("fetch('https://example.org/').then(() => 'came', () => 'refused')")
     assert refused == "refused"
     assert any("Content Security Policy" in line for line in page.told)
@@ -272,7 +272,7 @@ def test_the_page_would_be_stopped_from_fetching(page: Page) -> None:
 
 
 def test_plates_that_stand_close_together_do_not_cover_each_other(
-    tab: Page, driven: Run, tmp_path: Path
+    tab: BrowserTab, driven: Run, tmp_path: Path
 ) -> None:
     assert driven.road is not None
     made = view.scene(driven)
@@ -302,7 +302,7 @@ def test_plates_that_stand_close_together_do_not_cover_each_other(
 
 
 def test_the_address_names_time_and_camera_and_a_road_without_a_verge_floats_above_the_ground(
-    tab: Page, pages: dict[str, Path]
+    tab: BrowserTab, pages: dict[str, Path]
 ) -> None:
     tab.size(820, 580)
     tab.open(pages["driven"], "#t=4.5&camera=bonnet")
@@ -315,7 +315,7 @@ def test_the_address_names_time_and_camera_and_a_road_without_a_verge_floats_abo
     assert_quiet(tab, pages["floats"])
 
 
-def test_two_roads_share_one_clock(tab: Page, pages: dict[str, Path]) -> None:
+def test_two_roads_share_one_clock(tab: BrowserTab, pages: dict[str, Path]) -> None:
     tab.size(1000, 600)  # sentences of two and three lines stand over the stages
     tab.open(pages["two"])
     assert tab.run("[...document.querySelectorAll('.badge')].map(b => b.textContent)") == [
@@ -348,7 +348,7 @@ def test_two_roads_share_one_clock(tab: Page, pages: dict[str, Path]) -> None:
     assert_quiet(tab, pages["two"])
 
 
-def test_a_road_that_nobody_drove_is_shown_alone(tab: Page, pages: dict[str, Path]) -> None:
+def test_a_road_that_nobody_drove_is_shown_alone(tab: BrowserTab, pages: dict[str, Path]) -> None:
     tab.size(820, 580)
     tab.open(pages["alone"])
     assert is_drawn(tab.picture(".stage .scene"))
@@ -360,7 +360,7 @@ def test_a_road_that_nobody_drove_is_shown_alone(tab: Page, pages: dict[str, Pat
 
 
 @pytest.fixture
-def night(tab: Page) -> Iterator[Page]:
+def night(tab: BrowserTab) -> Iterator[BrowserTab]:
     """A browser that asks for dark pages."""
     scheme = "prefers-color-scheme"
     tab.send("Emulation.setEmulatedMedia", features=[{"name": scheme, "value": "dark"}])
@@ -368,7 +368,7 @@ def night(tab: Page) -> Iterator[Page]:
     tab.send("Emulation.setEmulatedMedia", features=[{"name": scheme, "value": "light"}])
 
 
-def test_it_is_dark_by_night(night: Page, pages: dict[str, Path]) -> None:
+def test_it_is_dark_by_night(night: BrowserTab, pages: dict[str, Path]) -> None:
     """Paper is dark and writing light, on the drawings too, and day comes without loading the page again."""
     night.size(820, 580)
     night.open(pages["driven"])
@@ -384,7 +384,7 @@ def test_it_is_dark_by_night(night: Page, pages: dict[str, Path]) -> None:
 
 
 @pytest.mark.parametrize("name", ["driven", "two"])
-def test_it_fits_a_phone(tab: Page, pages: dict[str, Path], name: str) -> None:
+def test_it_fits_a_phone(tab: BrowserTab, pages: dict[str, Path], name: str) -> None:
     tab.size(390, 844, is_phone=True)
     tab.open(pages[name], "#t=3")
     assert tab.run("document.documentElement.scrollWidth") <= 390
@@ -397,7 +397,7 @@ def test_it_fits_a_phone(tab: Page, pages: dict[str, Path], name: str) -> None:
     assert_quiet(tab, pages[name])
 
 
-def test_without_webgl_the_strips_still_work(tab: Page, pages: dict[str, Path]) -> None:
+def test_without_webgl_the_strips_still_work(tab: BrowserTab, pages: dict[str, Path]) -> None:
     tab.size(820, 580)
     plain = """const ask = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind) {

@@ -28,7 +28,7 @@ def a_design(seed: int = 0, segments: Sequence[Segment] = ()) -> Design:
 TOO_STEEP = Segment(distance=60, direction="straight", incline=22)
 
 
-class Designer:
+class FreshDesigner:
     """Drafts a fresh valid road each time, and keeps what it was told."""
 
     def __init__(self) -> None:
@@ -41,7 +41,7 @@ class Designer:
         return a_design(seed)
 
 
-class Learner(Designer):
+class Learner(FreshDesigner):
     """Builds too steeply until it is told so."""
 
     def draft(self, brief: Any, world: Any, notes: tuple[str, ...], earlier: Any, seed: int) -> Design:
@@ -49,7 +49,7 @@ class Learner(Designer):
         return a_design(seed, () if any("steep" in note for note in notes) else (TOO_STEEP,))
 
 
-class Stubborn(Designer):
+class Stubborn(FreshDesigner):
     """Builds too steeply, whatever it is told."""
 
     def draft(self, brief: Any, world: Any, notes: tuple[str, ...], earlier: Any, seed: int) -> Design:
@@ -57,7 +57,7 @@ class Stubborn(Designer):
         return a_design(seed, (TOO_STEEP,))
 
 
-class Unable(Designer):
+class Unable(FreshDesigner):
     """Can design nothing, or nothing but some roads."""
 
     def __init__(self, able: Callable[[int], bool] = lambda seed: False) -> None:

@@ -6,12 +6,11 @@ import pytest
 
 from roadgpt.brief.model import Brief
 from roadgpt.campaign import campaign
-from roadgpt.drive.isolation import IsolatedDriver
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import IsolatedDriver, driver_of
 from roadgpt.errors import BriefError, DesignError, DriverError, PartError, UsageError
 from roadgpt.road import CrossSection, Limits, Road, World
 from roadgpt.run import MOST_ROUNDS, Run, Setup, brief_of, perform, prove, read_run, seed_of
-from run.doubles import TOO_STEEP, Designer, Learner, Stubborn, Unable, a_design, put_on_shelf
+from run.doubles import TOO_STEEP, FreshDesigner, Learner, Stubborn, Unable, a_design, put_on_shelf
 
 BRIEF = Brief(words="two straights and a turn")
 NO_DRIVE = Setup(designer="double", drives=False)
@@ -23,7 +22,7 @@ class Crashes:
 
 
 def test_a_valid_draft_is_taken_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    designer = Designer()
+    designer = FreshDesigner()
     put_on_shelf(monkeypatch, double=designer)
     run = perform(BRIEF, 7, setup=NO_DRIVE, index=3, earlier=[a_design(1)])
     assert (run.outcome, run.is_valid, run.rounds, run.findings) == ("VALID", True, 1, ())
@@ -176,7 +175,7 @@ def test_a_driver_that_cannot_be_made_for_the_second_road_costs_that_road_only(
 ) -> None:
     file = tmp_path / "moody.py"
     file.write_text(MOODY)
-    put_on_shelf(monkeypatch, double=Designer())
+    put_on_shelf(monkeypatch, double=FreshDesigner())
     setup = Setup(designer="double", driver=f"{file}:Moody", keep_driving=True)
     # the first one is made for the roll call
     runs = list(campaign(BRIEF, 4, 7, setup=setup, out=tmp_path / "c"))

@@ -15,7 +15,7 @@ from click.testing import CliRunner, Result
 from roadgpt.brief import Brief, exactly, read, remarks, sentence
 from roadgpt.campaign.folder_campaign import campaign
 from roadgpt.campaign.lifecycle import begin, work
-from roadgpt.campaign.model import Budget
+from roadgpt.campaign.model import CellBudget
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.plan_file import read_plan
 from roadgpt.campaign.record import Record
@@ -207,7 +207,7 @@ def test_a_campaign_of_one_description_says_it_and_its_report_repeats_it() -> No
 def test_campaigns_from_python_take_it(tmp_path: Path) -> None:
     (run,) = campaign(WET, 1, 3, setup=PLANS, out=tmp_path / "a")
     assert run.world.site.friction == 0.6
-    plan = Plan(prompts=(WET,), reader="plan", drives=False, budget=Budget(tests=1))
+    plan = Plan(prompts=(WET,), reader="plan", drives=False, budget=CellBudget(tests=1))
     begin(plan, tmp_path / "b")
     assert sum(1 for _ in work(tmp_path / "b"))  # by a worker of its own
     with Record.opened(tmp_path / "b") as record:
@@ -237,7 +237,7 @@ def test_a_simulator_that_cannot_apply_it_is_refused_with_what_to_give(
         perform(WET, 1, World(), setup)
     with pytest.raises(UsageError, match=said):
         campaign(WET, 1, 1, World(), setup, tmp_path / "a")
-    plan = Plan(prompts=(DRY, WET), reader="plan", simulators=("beamng",), budget=Budget(tests=1))
+    plan = Plan(prompts=(DRY, WET), reader="plan", simulators=("beamng",), budget=CellBudget(tests=1))
     with pytest.raises(UsageError, match=said):
         begin(plan, tmp_path / "b")
     assert not (tmp_path / "b").exists()

@@ -29,7 +29,7 @@ FLAT = "| flat turns=1.."
 JUDGED = range(5, 10)  # roads that the slow validator judges: the first that were chosen by outcomes
 
 
-class Record(NamedTuple):
+class SteeringRecord(NamedTuple):
     """What is read of one record of the competition's execution data."""
 
     steering: float
@@ -44,12 +44,12 @@ def tight_right(points: np.ndarray) -> float:
     return float(max(-turned.min() / 10, 0.0)) if len(turned) else 0.0
 
 
-def driven(points: np.ndarray) -> tuple[str, list[Record]]:
+def driven(points: np.ndarray) -> tuple[str, list[SteeringRecord]]:
     """A car that runs off where right bends are tighter than 17 m over 10 m."""
     tight = tight_right(points)
     steering = np.degrees(np.arctan(2.8 / np.maximum(radii(points), 1.0))) * 15
     nearest = 2.0 - 34 * tight
-    return ("FAIL" if nearest < 0 else "PASS"), [Record(float(one), nearest) for one in steering[:40]]
+    return ("FAIL" if nearest < 0 else "PASS"), [SteeringRecord(float(one), nearest) for one in steering[:40]]
 
 
 @pytest.fixture
@@ -143,5 +143,5 @@ def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
     roads = []
     for points in islice(generator.roads(), 7):
         roads.append([[x, y] for x, y in points])
-        generator.tell("FAIL", [Record(30.0 * (i % 7), -1.0) for i in range(30)])
+        generator.tell("FAIL", [SteeringRecord(30.0 * (i % 7), -1.0) for i in range(30)])
     assert json.loads(done.stdout) == roads

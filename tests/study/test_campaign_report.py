@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from roadgpt.campaign.model import Budget, Cell, Proposal, Result
+from roadgpt.campaign.model import Cell, CellBudget, Proposal, Result
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.single_test import FinishedTest
 from roadgpt.campaign.store import Store
@@ -57,13 +57,13 @@ def campaign(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def written(folder: Path, goes_on: bool = False) -> Path:
     """A campaign of such results."""
-    plan = Plan(prompts=("a winding road",), drivers=DRIVERS, budget=Budget(tests=TESTS))
+    plan = Plan(prompts=("a winding road",), drivers=DRIVERS, budget=CellBudget(tests=TESTS))
     cells = []
     for name, driver in zip(CELLS, DRIVERS, strict=True):
         request = Request(words="a winding road")
         setup = request.setup.model_copy(update={"driver": driver, "keep_driving": goes_on})
         request = request.model_copy(update={"setup": setup})
-        cells.append(Cell(name, request, None, "words", None, budget=Budget(tests=TESTS)))
+        cells.append(Cell(name, request, None, "words", None, budget=CellBudget(tests=TESTS)))
     store = Store.new(folder, plan.model_dump_json(), cells, {"roadgpt": "1"})
     with store:
         store.begin_session(1)
@@ -194,9 +194,9 @@ def test_the_nearest_pairs_of_a_search_for_the_boundary_are_listed(tmp_path: Pat
         4: ("FAIL", straight_turn_straight(50, 2)),
         5: ("INVALID", straight_turn_straight(50)),
     }
-    plan = Plan(prompts=("a road with a turn",), goal="boundary", budget=Budget(tests=5))
+    plan = Plan(prompts=("a road with a turn",), goal="boundary", budget=CellBudget(tests=5))
     request = Request(words="a road with a turn")
-    cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=Budget(tests=5))
+    cell = Cell("c01", request, None, "quality_diversity", "boundary", budget=CellBudget(tests=5))
     with Store.new(tmp_path, plan.model_dump_json(), [cell], {"roadgpt": "1"}) as store:
         store.begin_session(1)
         proposals = {number: Proposal(design, number, "draft") for number, (_, design) in roads.items()}

@@ -22,6 +22,7 @@ _MODULES = {
     "Budget": "model",
     "Campaign": "folder_campaign",
     "Cell": "model",
+    "CellBudget": "model",
     "Generator": "model",
     "Goal": "model",
     "Pool": "model",

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.executors import Executor, WorkerConfig
 from roadgpt.campaign.folder_store import FolderStore
+from roadgpt.campaign.jobs import Executor, WorkerConfig
 from roadgpt.campaign.model import PATIENCE
 from roadgpt.campaign.run_folder import FinishedRun, RunFolder, RunWriter
 from roadgpt.campaign.scheduler import Scheduler

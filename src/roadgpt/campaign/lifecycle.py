@@ -12,9 +12,9 @@ from pathlib import Path
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.executors import Executor, WorkerConfig
 from roadgpt.campaign.folder_campaign import campaign
 from roadgpt.campaign.folder_record import has_tests, is_store
+from roadgpt.campaign.jobs import Executor, WorkerConfig
 from roadgpt.campaign.plan import Plan
 from roadgpt.campaign.record import STORE, no_tests
 from roadgpt.campaign.scheduler import Progress, Scheduler
@@ -27,7 +27,7 @@ from roadgpt.chat import ChatSettings, Meter, Spent
 from roadgpt.chat.config import key_for
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import UsageError
 from roadgpt.road import World

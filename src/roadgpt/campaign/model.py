@@ -27,7 +27,7 @@ T = TypeVar("T")
 U = TypeVar("U")
 
 
-class Budget(Frozen):
+class CellBudget(Frozen):
     """The limits of a cell; the cell ends as soon as it reaches one of them."""
 
     tests: Annotated[int, Field(ge=1, le=MOST_TESTS)] | None = None
@@ -43,7 +43,8 @@ class Budget(Frozen):
         return self.tests or MOST_TESTS
 
 
-UNLIMITED = Budget()
+Budget = CellBudget  # the former name; users' programs may import it
+UNLIMITED = CellBudget()
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,7 @@ class Cell:
     goal: Goal | None
     settings: Mapping[str, Any] = field(default_factory=dict)
     """The generator's settings; the documentation of each generator describes them."""
-    budget: Budget = UNLIMITED
+    budget: CellBudget = UNLIMITED
     in_sequence: bool = False
     """True if each test is proposed only after the one before has ended, so that every draft differs from all
     earlier ones, as in ``roadgpt run``.

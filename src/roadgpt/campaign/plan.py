@@ -13,7 +13,7 @@ from pydantic import Field
 
 from roadgpt import plugins
 from roadgpt.brief.model import Brief, Frozen
-from roadgpt.campaign.model import PATIENCE, UNLIMITED, WITH_GOAL, WITHOUT_GOAL, Budget, Cell, Goal
+from roadgpt.campaign.model import PATIENCE, UNLIMITED, WITH_GOAL, WITHOUT_GOAL, Cell, CellBudget, Goal
 from roadgpt.chat import ChatSettings, asks_a_model
 from roadgpt.design.room import world_for
 from roadgpt.drive import permission
@@ -41,7 +41,7 @@ class Plan(Frozen):
     goal: Goal | None = None
     settings: Mapping[str, Any] = Field(default_factory=dict)
     """Settings of the generators: the value of each setting, by its name."""
-    budget: Budget = UNLIMITED
+    budget: CellBudget = UNLIMITED
     """The limits of each cell."""
     reader: str = "model"
     rules: Literal["strict", "sbft"] = "strict"

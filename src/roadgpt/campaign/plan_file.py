@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 
-from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, Budget, Goal
+from roadgpt.campaign.model import MOST_TESTS, PATIENCE, WITH_GOAL, WITHOUT_GOAL, CellBudget, Goal
 from roadgpt.campaign.plan import Plan, Seed
 from roadgpt.chat import ChatSettings
 from roadgpt.drive.loading import absolute_spec
@@ -148,7 +148,7 @@ def _plan(table: PlanTable, folder: Path) -> Plan:
         "prompts": table.prompts or ("",),
         "drivers": tuple(absolute_spec(driver, folder) for driver in table.drivers),
         "generators": table.generators or (WITH_GOAL if table.goal else WITHOUT_GOAL,),
-        "budget": Budget(tests=table.tests, seconds=table.seconds),
+        "budget": CellBudget(tests=table.tests, seconds=table.seconds),
         "reader": f"{reader}:{folder / weights}" if colon else reader,
         "drives": table.drive,
         "world": table.world.world(),

@@ -11,8 +11,12 @@ from roadgpt.campaign.numbered_test import NumberedTest
 from roadgpt.campaign.rows import RESULT, cell_of_text, design_of, result_of_row
 from roadgpt.campaign.single_test import seed_of_driver
 from roadgpt.campaign.store_check import LATER, check_store, reading_store
+from roadgpt.campaign.stored_run import no_road, stored_run
+from roadgpt.campaign.traces import TRACES, read_traces
+from roadgpt.drive import Drive
 from roadgpt.errors import UsageError
 from roadgpt.network import made_from
+from roadgpt.reading import json_of
 from roadgpt.road import Road
 from roadgpt.run import Run
 
@@ -239,9 +243,19 @@ class Record:
 
     def run(self, cell: str, number: int, has_drive: bool = True) -> Run:
         """Returns the stored Run of a test; see ``rerun.kept_run``."""
-        from roadgpt.campaign.rerun import kept_in
+        own, result = self.cell(cell), self.result(cell, number)
+        road = self.road(own, result)
+        if road is None:
+            raise no_road(self.folder, cell, result)
+        drive = self.drive(cell, number) if has_drive else None
+        with reading_store(self.path):
+            versions = {str(name): str(value) for name, value in json_of(self.meta("versions")).items()}
+        return stored_run(own, result, road, drive, versions)
 
-        return kept_in(self, self.cell(cell), self.result(cell, number), has_drive)
+    def drive(self, cell: str, number: int) -> Drive | None:
+        """Returns the stored drive of a test; None if the test was not driven."""
+        name = self.trace_file(cell, number)
+        return None if name is None else read_traces(self.folder / TRACES / name, cell, number)
 
     def road(self, cell: Cell, result: Result) -> Road | None:
         """Returns the road of a test that has ended; None if the test has no road."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Self
 
 from roadgpt.brief.model import Brief
-from roadgpt.campaign.model import WITHOUT_GOAL, Budget, Cell, Proposal
+from roadgpt.campaign.model import WITHOUT_GOAL, Cell, CellBudget, Proposal
 from roadgpt.campaign.single_test import FinishedTest, Task, result_of, run_test
 from roadgpt.chat import Meter, Spent
 from roadgpt.errors import RoadGPTError, UsageError, explained
@@ -171,7 +171,7 @@ class RunFolder:
     def cell(self, name: str) -> Cell:
         """Returns the cell whose tests this folder holds."""
         generator = WITHOUT_GOAL if self.request.words or self.brief else GIVEN
-        budget = Budget(tests=self.roads)
+        budget = CellBudget(tests=self.roads)
         return Cell(name, self.request, self.brief, generator, None, {}, budget, in_sequence=True)
 
     def begin(self) -> bool:

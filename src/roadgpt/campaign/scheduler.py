@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from roadgpt.campaign.batch_scheduler import BatchScheduler
 from roadgpt.campaign.budget_allocator import BudgetAllocator
-from roadgpt.campaign.executors import Executor, FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.jobs import Executor, FinishedJob, Job, RunningJob, WorkerConfig
 from roadgpt.campaign.model import Cell
 from roadgpt.campaign.single_test import (
     Allowance,

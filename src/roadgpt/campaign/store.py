@@ -30,7 +30,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Self
 
-from roadgpt.campaign.executors import RunningJob
+from roadgpt.campaign.jobs import RunningJob
 from roadgpt.campaign.model import Cell, Proposal
 from roadgpt.campaign.record import FORMAT, STORE, Record
 from roadgpt.campaign.rows import MEASURED, SPENT, cell_text, detail_values, proposal_rows, result_values

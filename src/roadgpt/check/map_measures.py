@@ -6,7 +6,6 @@ from itertools import pairwise
 
 from roadgpt.brief.junctions import Control, JunctionKind
 from roadgpt.check.junction_measures import direction_of, kinds_of
-from roadgpt.check.network_places import roads_outside_junctions
 from roadgpt.network import Junction, Network, RoadEnd
 
 STRAIGHT = math.radians(5.0)  # largest change of heading of a road that counts as straight
@@ -50,7 +49,7 @@ def measured_map(network: Network) -> MeasuredMap:
     """Measures a network; a roundabout counts as one junction."""
     found = [_node(network, junctions) for _, junctions in network.nodes]
     number_of = {junction.id: n for n, (_, group) in enumerate(network.nodes) for junction in group}
-    roads = roads_outside_junctions(network)
+    roads = network.roads_outside
     joined, distances, ends = list[tuple[int, int]](), list[float](), 0
     for member in roads:
         met = []

@@ -86,8 +86,3 @@ def owner_of(network: Network, member: NetworkRoad) -> str:
 def is_ring(network: Network, member: NetworkRoad) -> bool:
     """Returns whether a road outside junctions is a piece of the ring of a roundabout."""
     return member.junction is None and member.id in network.roundabout_of
-
-
-def roads_outside_junctions(network: Network) -> tuple[NetworkRoad, ...]:
-    """Returns the roads outside junctions and roundabouts."""
-    return tuple(each for each in network.plain_roads if each.id not in network.roundabout_of)

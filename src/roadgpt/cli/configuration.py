@@ -10,7 +10,7 @@ server or a plug-in that uses a language model: such a value is refused, and the
 option.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
@@ -22,13 +22,12 @@ from roadgpt.errors import UsageError
 
 if TYPE_CHECKING:
     from roadgpt.chat.config import Layer
-    from roadgpt.cli.option import Option
 
 TABLES = ("run", "world", "beamng")
 CHAT_TABLE = "chat"
 EARLIER_KEYS = {"verge": "shoulder"}
 """Maps the keys of campaign plans that have another name in configuration files to that name."""
-LAYERS = "roadgpt.layers"  # key of click's Context.meta
+KEYS, LAYERS = "roadgpt.keys", "roadgpt.layers"  # keys of click's Context.meta
 
 OF_FOLDER, OF_USER, OF_ENVIRONMENT = "folder", "user", "environment"
 YOURSELF = "a file of this folder cannot decide that; say it yourself with the option"
@@ -39,51 +38,32 @@ the value is refused, or an empty text if the value is accepted.
 """
 
 
-def layers_of(ctx: click.Context | None = None) -> "Sequence[Layer]":
+def layers_of(ctx: click.Context) -> "Sequence[Layer]":
     """Returns all sources of settings, highest precedence first; they are read once per command.
+
+    The command has put the known keys of each table into ``ctx.meta[KEYS]``.
 
     Raises:
         UsageError: A file cannot be read, or has an unknown table or key.
     """
-    from roadgpt.chat.config import layers
-
-    if ctx is None:
-        return _known(layers())
     if LAYERS not in ctx.meta:
-        ctx.meta[LAYERS] = _known(layers())
+        ctx.meta[LAYERS] = read_layers(ctx.meta[KEYS])
     found: Sequence[Layer] = ctx.meta[LAYERS]
     return found
 
 
-def settable_options() -> "list[Option]":
-    """Returns the options that configuration files can set, in the order that ``roadgpt run`` declares."""
-    from roadgpt.cli.commands import run
-    from roadgpt.cli.option import Option
+def read_layers(keys: Mapping[str, Sequence[str]]) -> "Sequence[Layer]":
+    """Reads all sources of settings, and returns them, highest precedence first.
 
-    return [each for each in run.command.params if isinstance(each, Option) and each.table]
-
-
-def keys_set() -> set[str]:
-    """Returns the keys of all options that the environment or a file sets.
+    Args:
+        keys: The known keys of each table.
 
     Raises:
-        UsageError: A configuration file cannot be used.
+        UsageError: A file cannot be read, or has an unknown table or key.
     """
-    layers = layers_of()
-    return {each.key for each in settable_options() if each.found(layers) is not None}
+    from roadgpt.chat.config import layers as all_layers
 
-
-def _known(layers: "Sequence[Layer]") -> "Sequence[Layer]":
-    """Returns the layers unchanged.
-
-    Raises:
-        UsageError: A table or a key in a layer is unknown.
-    """
-    if not any(layer.tables for layer in layers):
-        return layers
-    keys: dict[str, list[str]] = {table: [] for table in TABLES}
-    for option in settable_options():
-        keys[option.table].append(option.key)
+    layers = all_layers()
     for layer in layers:
         for name, table in layer.tables.items():
             if name == CHAT_TABLE:

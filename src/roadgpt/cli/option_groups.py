@@ -7,7 +7,9 @@ from typing import Any
 
 import click
 
+from roadgpt.cli import options
 from roadgpt.cli.command_table import renamed_options
+from roadgpt.cli.configuration import KEYS
 from roadgpt.cli.option import FROM_FILES, Heading, Option
 from roadgpt.cli.streams import warn
 
@@ -84,6 +86,7 @@ class GroupedCommand(click.Command):
             click.UsageError: An argument is wrong; for a description that begins with a dash, the message
                 says where to put it.
         """
+        ctx.meta[KEYS] = options.settable_keys()
         known = [name for parameter in self.params for name in parameter.opts]
         words, told = renamed_options(args, known)
         for sentence in () if ctx.resilient_parsing else told:
@@ -115,13 +118,11 @@ class GroupedCommand(click.Command):
 
     def _shown(self, ctx: click.Context) -> Iterator[tuple[str, tuple[str, str]]]:
         """Yields the heading and the two columns of each option that this help lists."""
-        options = [
-            each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden
-        ]
-        rare = {each for each in options if isinstance(each, Option) and each.is_rare}
+        listed = [each for each in self.get_params(ctx) if isinstance(each, click.Option) and not each.hidden]
+        rare = {each for each in listed if isinstance(each, Option) and each.is_rare}
         is_all = bool(ctx.meta.get(ALL))
-        left_out = {HELP_ALL} if not rare or len(options) <= WHOLE else rare
-        for option in options:
+        left_out = {HELP_ALL} if not rare or len(listed) <= WHOLE else rare
+        for option in listed:
             record = option.get_help_record(ctx)
             if record is not None and (is_all or option not in left_out):
                 names = record[0] if is_all else record[0].partition(" / ")[0]

@@ -11,8 +11,15 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from roadgpt.cli.configuration import designer_guard, driver_guard, path_guard, place_guard, reader_guard
-from roadgpt.cli.option import Argument, Heading, Option
+from roadgpt.cli.configuration import (
+    TABLES,
+    designer_guard,
+    driver_guard,
+    path_guard,
+    place_guard,
+    reader_guard,
+)
+from roadgpt.cli.option import Argument, Heading, Option, named
 from roadgpt.cli.option_types import (
     SEED,
     bank,
@@ -228,6 +235,26 @@ def formats_option(names: str, sentence: str, **more: Any) -> Option:
         callback=lambda ctx, param, given: tuple(dict.fromkeys(name for some in given for name in some)),
         **more,
     )  # fmt: skip
+
+
+EXPORT = formats_option(
+    "--export formats", "Also write road files: opendrive, csv, ...", heading=Heading.FILES, table="run"
+)
+MAKING = (
+    *named(SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
+    *WORLD,
+    *named(SETUP, "geometry", "rules"),
+    *(NO_DRIVE, NO_PLOT, AXES, FORMAT, EXPORT),
+)
+"""The options of ``roadgpt run`` that say how roads are made, driven, drawn and exported."""
+
+SETTABLE = tuple(each for each in (*MAKING, *BEAMNG) if each.table)
+"""The options that configuration files can set, in the order of ``roadgpt run``."""
+
+
+def settable_keys() -> dict[str, list[str]]:
+    """Returns the keys that each table of a configuration file may have."""
+    return {table: [each.key for each in SETTABLE if each.table == table] for table in TABLES}
 
 
 def world_of(values: dict[str, Any]) -> "World":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from roadgpt.brief.model import Brief
 from roadgpt.cli import options
-from roadgpt.cli.configuration import keys_set
+from roadgpt.cli.configuration import read_layers
 from roadgpt.cli.option import Option, named, words_of
 from roadgpt.road import World
 from roadgpt.run.model import Request, Run, Setup
@@ -61,8 +61,12 @@ def option_words(
         of_setup: The options of the command that set fields of the Setup.
         asks: Whether the command has options for language models.
         also: Keys of options that are returned in any case.
+
+    Raises:
+        UsageError: A configuration file cannot be used.
     """
-    told = keys_set() | also
+    layers = read_layers(options.settable_keys())
+    told = {each.key for each in options.SETTABLE if each.found(layers) is not None} | also
     words = words_of(of_setup, dict(setup), told=told)
     words += words_of(options.WORLD, world.values(), World().values(), told)
     if asks and setup.chat:

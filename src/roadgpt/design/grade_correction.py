@@ -27,7 +27,7 @@ from roadgpt.design.layout import PlanLine
 from roadgpt.design.vertical import Pace, joined, too_abrupt
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Segment
-from roadgpt.road.elevation import elevation_of
+from roadgpt.road.builder import elevation_of
 
 CORRECTIONS = 8
 SHORTEST = 4.0  # m that a correction leaves of a straight

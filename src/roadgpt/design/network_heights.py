@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from roadgpt.network.stretch import level_ends
 from roadgpt.road import Segment
-from roadgpt.road.elevation import vertical_curves_of
+from roadgpt.road.design import vertical_curves_of
 
 STEADY = 1.0  # percent; a road whose mean grade is less remains unchanged
 ROUNDS = 4  # of steepening, since each round also makes the level ends a little longer

@@ -24,7 +24,8 @@ from roadgpt.check.rules.too_abrupt import MOST
 from roadgpt.design.layout import bends_of
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Segment, World, build
-from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve, vertical_curves_of
+from roadgpt.road.design import vertical_curves_of
+from roadgpt.road.elevation import MOST_OF_SLOPE, VerticalCurve
 from roadgpt.road.speed_profile import GRAVITY, expected_speed
 
 COMFORT = 0.5  # m/s^2

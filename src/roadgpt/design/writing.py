@@ -13,8 +13,8 @@ from roadgpt.design.heights import rounded
 from roadgpt.design.layout import MapPose
 from roadgpt.design.vertical import SHORTEST_SLOPE, Pace, joined, made_to_fit, too_abrupt, widened
 from roadgpt.road import Design, Segment, World
+from roadgpt.road.builder import elevation_of
 from roadgpt.road.design import MAX_INCLINE
-from roadgpt.road.elevation import elevation_of
 
 ABOVE_GROUND = 1.0  # m from the ground to the lowest place of a road
 CENTIMETRE = 100.0  # per metre: heights are written in centimetres

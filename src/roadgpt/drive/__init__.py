@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 from roadgpt import plugins
 from roadgpt.drive.continuity import check_motion
 from roadgpt.drive.drive import COLUMNS, Box, Columns, Drive, Ended
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.outlook import route_of
 from roadgpt.drive.view import CameraSpec, Command, JunctionAhead, View
 from roadgpt.errors import UsageError

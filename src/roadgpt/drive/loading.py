@@ -14,40 +14,13 @@ from roadgpt import plugins
 from roadgpt.drive.permission import require_permission, split_spec
 from roadgpt.errors import UsageError
 
-OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
-
-
-def driver_of(spec: str) -> Any:
-    """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
-    separate process.
-
-    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
-    user agrees (see ``drive.permission``).
-
-    Args:
-        spec: the name of a driver plug-in, or PATH.py:CLASS.
-
-    Raises:
-        PartError: there is no driver plug-in of that name.
-        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
-            the user did not permit RoadGPT to run the file.
-        DriverError: the driver hung while it was created.
-    """
-    require_permission(spec)
-    path, _ = split_spec(spec)
-    module = "" if path else plugins.module_of("drivers", spec)
-    if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
-        return load_driver(spec)
-    from roadgpt.drive.isolation import IsolatedDriver
-
-    return IsolatedDriver(spec)
-
 
 def load_driver(spec: str) -> Any:
     """Creates the driver that a user named, in this process, and returns it.
 
     If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
-    user agrees (see ``drive.permission``). Use ``driver_of`` to get a user's driver in a process of its own.
+    user agrees (see ``drive.permission``). Use ``isolation.driver_of`` to get a user's driver in a
+    process of its own.
 
     Args:
         spec: the name of a driver plug-in, or PATH.py:CLASS.

@@ -49,6 +49,17 @@ class ElevationProfile(Protocol):
         ...
 
 
+def placed(s: ArrayLike, starts: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Returns, for each station, the distance from the start of its interval, and that interval's index.
+
+    ``starts`` are the stations at which the intervals begin. The first interval is extended backwards and the
+    last one forwards.
+    """
+    s = np.asarray(s, float)
+    index = np.maximum(starts.searchsorted(s, side="right") - 1, 0)
+    return s - starts[index], index
+
+
 def wrap_angle(angle: ArrayLike) -> Array:
     """Returns angles in radians, wrapped to (-pi, pi], as an array of the same shape."""
     return np.asarray(wrapped(np.asarray(angle, float)))

@@ -11,7 +11,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.geometry.curve import Array
+from roadgpt.geometry.curve import Array, placed
 
 Cubic = tuple[float, float, float, float]
 """The coefficients (a, b, c, d) of a + b u + c u^2 + d u^3."""
@@ -52,27 +52,21 @@ class GradeProfile:
         z = self.z0 + np.r_[0.0, np.cumsum(rise)]
         return s[:-1], z[:-1], g[:-1], np.diff(g) / np.diff(s)
 
-    def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
-        s = np.asarray(s, float)
-        start = self._table[0]
-        index = np.maximum(start.searchsorted(s, side="right") - 1, 0)
-        return s - start[index], index
-
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""
-        u, i = self._place(s)
+        u, i = placed(s, self._table[0])
         _, z, g, dg = self._table
         return np.asarray(z[i] + u * (g[i] + u * dg[i] / 2))
 
     def grade(self, s: ArrayLike) -> Array:
         """Returns grades as ratios."""
-        u, i = self._place(s)
+        u, i = placed(s, self._table[0])
         _, _, g, dg = self._table
         return np.asarray(g[i] + u * dg[i])
 
     def vertical_curvature(self, s: ArrayLike) -> Array:
         """Returns the change of grade in 1/m, negative on a crest."""
-        _, i = self._place(s)
+        _, i = placed(s, self._table[0])
         return np.asarray(self._table[3][i])
 
 
@@ -134,10 +128,9 @@ class CubicProfile:
         """Returns, for each ``s``, the distance from the start of the cubic that applies there, and the
         coefficients ``(4, ...)`` of that cubic.
         """
-        s = np.asarray(s, float)
-        start, table = self._table
-        index = np.maximum(start.searchsorted(s, side="right") - 1, 0)
-        return s - start[index], table[:, index]
+        starts, table = self._table
+        u, index = placed(s, starts)
+        return u, table[:, index]
 
     @cached_property
     def negative(self) -> "CubicProfile":

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
-from roadgpt.geometry.curve import Array
+from roadgpt.geometry.curve import Array, placed
 
 SAME = 1e-9  # 1/m; curvatures closer than this are treated as equal
 ALMOST_ARC = 1e-3  # rad; below this change of curvature times squared length, Fresnel arguments lose digits
@@ -76,27 +76,16 @@ class PieceCurve:
     def _lengths(self) -> Array:
         return np.array([piece.length for piece in self.pieces])
 
-    def _place(self, s: ArrayLike) -> tuple[Array, np.ndarray]:
-        """Returns, for each station, the distance in metres from the start of its piece, and that piece's
-        index.
-
-        The first piece is extended backwards and the last piece forwards, for stations outside the curve.
-        """
-        s = np.asarray(s, float)
-        start = self._table[0]
-        index = np.maximum(start.searchsorted(s, side="right") - 1, 0)
-        return s - start[index], index
-
     def at(self, s: ArrayLike) -> Array:
         """Returns points of shape ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
-        u, i = self._place(s)
+        u, i = placed(s, self._table[0])
         _, x, y, heading, k0, dk = self._table
         dx, dy = advance(u, heading[i], k0[i], dk[i], self._lengths[i])
         return np.stack([x[i] + dx, y[i] + dy], axis=-1)
 
     def heading(self, s: ArrayLike) -> Array:
         """Returns headings in radians at stations ``s``, continuous along the curve."""
-        u, i = self._place(s)
+        u, i = placed(s, self._table[0])
         _, _, _, heading, k0, dk = self._table
         return np.asarray(heading[i] + u * (k0[i] + u * dk[i] / 2))
 
@@ -105,7 +94,7 @@ class PieceCurve:
 
         At a station where the curvature jumps, the result is the value after the jump.
         """
-        u, i = self._place(s)
+        u, i = placed(s, self._table[0])
         _, _, _, _, k0, dk = self._table
         return np.asarray(k0[i] + u * dk[i])
 

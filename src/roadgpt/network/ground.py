@@ -6,33 +6,31 @@ The height of the ground is that of the route at the same station.
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from roadgpt.geometry import CubicProfile
 from roadgpt.geometry.curve import Array
+from roadgpt.network.network import Network
+from roadgpt.network.passages import Passage
 from roadgpt.network.polygon import Area
-from roadgpt.road import Edges
-
-if TYPE_CHECKING:
-    from roadgpt.network.route import Route
+from roadgpt.network.surface import ROUND
+from roadgpt.road import Edges, Road
 
 FARTHEST = 40.0  # m, from the reference line; ground farther away is left out
 STEP = 0.5  # m, between the stations at which edges are computed
 JUST = 1e-6  # m, before or behind a station, so that a jump of widths at the station does not matter
 AROUND = 20.0  # m, before and after a junction, where kerbs may still curve
-ROUND = 8  # segments in a quarter of a circle, where a shoulder rounds a corner
 
 
-def ground_of(route: "Route") -> Area:
-    """Returns the paved area of the route's network, widened by the widest shoulder of its roads."""
-    shoulder = max(each.shoulder for each in route.network.roads)
-    area = route.network.paved
+def ground_of(network: Network) -> Area:
+    """Returns the paved area of a network, widened by the widest shoulder of its roads."""
+    shoulder = max(each.shoulder for each in network.roads)
+    area = network.paved
     return area.buffer(shoulder, quad_segs=ROUND) if shoulder > 0 else area
 
 
-def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
+def edges_of_ground(route: Road, ground: Area, s: Array) -> Edges:
     """Returns the offsets in metres of the left and the right edge of the ground at stations ``s`` ``(n,)``.
 
     Where there is no edge within ``FARTHEST``, the offset is ``FARTHEST``, negative on the right.
@@ -50,15 +48,16 @@ def edges_of_ground(route: "Route", ground: Area, s: Array) -> Edges:
     return Edges(*found)
 
 
-def windows(route: "Route") -> list[tuple[float, float]]:
-    """Returns the first and the last station in metres of each stretch of a route around its junctions.
+def windows(passages: Sequence[Passage], length: float) -> list[tuple[float, float]]:
+    """Returns the first and the last station in metres of each stretch of a route around its junctions,
+    which are given as passages; ``length`` is that of the route in metres.
 
     A stretch begins ``AROUND`` metres before a junction and ends as far behind it, or where the route ends;
     stretches that overlap are returned as one.
     """
     found: list[tuple[float, float]] = []
-    for each in route.passages:
-        low, high = max(0.0, each.start - AROUND), min(route.length, each.end + AROUND)
+    for each in passages:
+        low, high = max(0.0, each.start - AROUND), min(length, each.end + AROUND)
         if found and low <= found[-1][1]:
             found[-1] = (found[-1][0], high)
         else:
@@ -66,19 +65,22 @@ def windows(route: "Route") -> list[tuple[float, float]]:
     return found
 
 
-def shoulders_on_ground(route: "Route") -> tuple[CubicProfile, CubicProfile]:
+def shoulders_on_ground(
+    route: Road, network: Network, passages: Sequence[Passage], starts: Sequence[float]
+) -> tuple[CubicProfile, CubicProfile]:
     """Returns the widths in metres of the left and the right shoulder of a route, along its stations.
 
+    The route leads through the passages of a network; ``starts`` are the stations at which its legs begin.
     Outside the stretches that ``windows`` returns, the shoulders are as wide as those of the roads; inside,
     they reach to the edge of the ground.
     """
     assert route.profile is not None
-    ground, profile = ground_of(route), route.profile
+    ground, profile = ground_of(network), route.profile
     rows: tuple[list[_Row], list[_Row]] = ([], [])
     last = 0.0
-    for low, high in windows(route):
+    for low, high in windows(passages, route.length):
         s = np.linspace(low, high, max(2, round((high - low) / STEP) + 1))
-        s = np.union1d(s, [each for each in route.starts if low < each < high])
+        s = np.union1d(s, [each for each in starts if low < each < high])
         ends = edges_of_ground(route, ground, s)
         # lanes begin and end where a junction does, so the shoulder beside them jumps there
         after, before = profile.edges(s[:-1] + JUST), profile.edges(s[1:] - JUST)

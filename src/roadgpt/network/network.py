@@ -280,6 +280,11 @@ class Network:
         """The roads that are not connecting roads; the pieces of rings are among them."""
         return tuple(each for each in self.roads if each.junction is None)
 
+    @property
+    def roads_outside(self) -> tuple[NetworkRoad, ...]:
+        """The roads outside junctions and roundabouts."""
+        return tuple(each for each in self.plain_roads if each.id not in self.roundabout_of)
+
     @cached_property
     def junction_at(self) -> dict[RoadEnd, int]:
         """Maps each end of a road at a junction to the id of the junction."""

@@ -2,14 +2,12 @@
 though a roundabout has several junctions.
 """
 
+from collections.abc import Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from roadgpt.brief.junctions import Control
-from roadgpt.network.network import Arm, Junction, Leg, RoadEnd
-
-if TYPE_CHECKING:
-    from roadgpt.network.route import Route
+from roadgpt.network.network import Arm, Junction, Leg, Network, RoadEnd
 
 CROSSWALK = (1.0, 3.0)  # m, from a junction to a crosswalk, and length of the stripes (Germany, R-FGUe)
 GAP = 1.0  # m, between a stop line and a crosswalk
@@ -62,26 +60,31 @@ def line_before(arm: Arm) -> float:
     return CROSSED if arm.crosswalk else 0.0
 
 
-def passages_of(route: "Route") -> tuple[Passage, ...]:
-    """Returns the passages of a route through its junctions and roundabouts, in driving order."""
-    groups = groupby(range(len(route.legs)), key=lambda n: _place(route, route.legs[n]))
-    return tuple(_passage(route, list(group)) for place, group in groups if place is not None)
+def passages_of(network: Network, legs: Sequence[Leg], starts: Sequence[float]) -> tuple[Passage, ...]:
+    """Returns the passages of a route through its junctions and roundabouts, in driving order.
+
+    ``starts`` are the stations in metres of the start of each leg and, as the last one, of the route's end.
+    """
+    groups = groupby(range(len(legs)), key=lambda n: _place(network, legs[n]))
+    return tuple(
+        _passage(network, legs[own[0]], legs[own[-1]], starts[own[0]], starts[own[-1] + 1])
+        for own in (list(group) for place, group in groups if place is not None)
+    )
 
 
-def _place(route: "Route", leg: Leg) -> tuple[str, int] | None:
+def _place(network: Network, leg: Leg) -> tuple[str, int] | None:
     """Returns a key for the junction or roundabout in which a leg lies; None outside junctions."""
-    ring = route.network.roundabout_of.get(leg.road)
+    ring = network.roundabout_of.get(leg.road)
     if ring is not None:
         return "roundabout", ring.junctions[0]
-    junction = route.network.road(leg.road).junction
+    junction = network.road(leg.road).junction
     return None if junction is None else ("junction", junction)
 
 
-def _passage(route: "Route", inside: list[int]) -> Passage:
-    """Returns the way through a junction or roundabout; ``inside`` are the indices of its legs."""
-    network = route.network
-    entered, first = network.connection_of[route.legs[inside[0]].road]
-    last = network.connection_of[route.legs[inside[-1]].road][1]
+def _passage(network: Network, one: Leg, other: Leg, start: float, end: float) -> Passage:
+    """Returns the way through a junction or roundabout; ``one`` and ``other`` are its first and last leg."""
+    entered, first = network.connection_of[one.road]
+    last = network.connection_of[other.road][1]
     ring = network.roundabout_of.get(entered.id)
     # the first arm of each junction of a roundabout is the one that is no part of the ring
     arms = entered.arms if ring is None else [network.junction(each).arms[0] for each in ring.junctions]
@@ -89,11 +92,4 @@ def _passage(route: "Route", inside: list[int]) -> Passage:
         arms = arms[::-1]
     ends = [arm.end for arm in arms]
     at = ends.index(first.incoming)
-    return Passage(
-        route.starts[inside[0]],
-        route.starts[inside[-1] + 1],
-        entered,
-        first.incoming,
-        last.outgoing,
-        (*ends[at:], *ends[:at]),
-    )
+    return Passage(start, end, entered, first.incoming, last.outgoing, (*ends[at:], *ends[:at]))

@@ -102,7 +102,7 @@ class Route(Road):
     @cached_property
     def passages(self) -> tuple[Passage, ...]:
         """The passages through junctions in driving order; a way through a roundabout is one passage."""
-        return passages_of(self)
+        return passages_of(self.network, self.legs, self.starts)
 
     @property
     def mirrored(self) -> Self:
@@ -115,7 +115,7 @@ class Route(Road):
         The ground is the paved area of the network, widened by the widest shoulder of its roads.
         """
         assert self.profile is not None
-        left, right = shoulders_on_ground(self)
+        left, right = shoulders_on_ground(self, self.network, self.passages, self.starts)
         profile = replace(
             self.profile,
             left=(*self.profile.left[:-1], Lane("shoulder", left)),

@@ -8,7 +8,8 @@ from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.pieces import joined
 from roadgpt.road import Profile, Road, Segment
 from roadgpt.road.alignment import pieces_of
-from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT, elevation_of
+from roadgpt.road.builder import elevation_of
+from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
 LANDING = 4.0  # m of level road before a junction: about the length of a car that waits there

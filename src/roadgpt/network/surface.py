@@ -56,7 +56,7 @@ class NetworkSurface:
     @classmethod
     def of(cls, network: Network) -> "NetworkSurface":
         """Returns the surface of a network, divided into its parts."""
-        roads = roads_outside(network)
+        roads = network.roads_outside
         width = max((each.shoulder for each in network.roads), default=0.0)
         beside = paved_by([_with_shoulders(each) for each in roads]) if width > 0 else network.paved
         areas = tuple(
@@ -74,11 +74,6 @@ class NetworkSurface:
             ValueError: There are no roads.
         """
         return self.shoulder + max(each.profile.paved_reach for each in self.roads)
-
-
-def roads_outside(network: Network) -> tuple[NetworkRoad, ...]:
-    """Returns the roads that belong to no junction and to no roundabout."""
-    return tuple(each for each in network.plain_roads if each.id not in network.roundabout_of)
 
 
 def free_ends(network: Network, road: NetworkRoad) -> tuple[bool, bool]:

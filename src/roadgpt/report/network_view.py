@@ -45,7 +45,7 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
     network = route.network
     surface = NetworkSurface.of(network)
     if surface.shoulder > 0:
-        _fill(axes, ground_of(route), VERGE, 1)
+        _fill(axes, ground_of(network), VERGE, 1)
     _fill(axes, network.paved, ASPHALT, 2)
     for area in surface.areas:
         for island in area.kerbed:

@@ -16,7 +16,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from roadgpt.errors import UsageError
-from roadgpt.road.elevation import vertical_curves_of
+from roadgpt.road.elevation import VerticalCurve, vertical_curves
 from roadgpt.road.profile_json import ONLY_NETWORKS
 
 MAX_INCLINE = 15.0  # percent, RoadGPT's system prompt
@@ -92,6 +92,15 @@ class Design(FrozenFields):
                 key: as_written(value) for key, value in segment.model_dump(exclude_none=True).items()
             }
         return out
+
+
+def vertical_curves_of(segments: Sequence[Segment]) -> list[VerticalCurve]:
+    """Returns the vertical curves between the segments of a Design, in order."""
+    return vertical_curves(
+        [segment.distance for segment in segments],
+        [segment.incline / 100 for segment in segments],
+        [segment.vertical_radius for segment in segments],
+    )
 
 
 def as_written(value: Any) -> Any:

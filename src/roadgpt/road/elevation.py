@@ -1,16 +1,11 @@
-"""Computes the vertical alignment of a Design: the grades of its segments, joined by parabolas.
+"""Computes the vertical curves of a road: the parabolas that join the grades of its segments.
 
 Each parabola is centred on the point where two segments meet.
 """
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING, NamedTuple
-
-from roadgpt.geometry import GradeProfile
-
-if TYPE_CHECKING:
-    from roadgpt.road.design import Segment
+from typing import NamedTuple
 
 CREST_RADIUS = 250.0  # m, radius of a parabola where the design gives none
 MOST_OF_SEGMENT = 0.9  # share of a segment that its two parabolas may take, where no radius is given
@@ -82,31 +77,3 @@ def _share(wants: Sequence[float], own: Sequence[bool], room: float, n: int, oth
     if not own[other]:  # a curve without a given radius keeps its length
         return room - wants[other]
     return room * wants[n] / max(wants[n] + wants[other], 1e-9)
-
-
-def vertical_curves_of(segments: "Sequence[Segment]") -> list[VerticalCurve]:
-    """Returns the vertical curves between the segments of a Design, in order."""
-    return vertical_curves(
-        [segment.distance for segment in segments],
-        [segment.incline / 100 for segment in segments],
-        [segment.vertical_radius for segment in segments],
-    )
-
-
-def elevation_of(segments: "Sequence[Segment]", z0: float) -> GradeProfile:
-    """Returns the elevation profile of the segments of a Design, starting at height ``z0`` in metres.
-
-    A vertical curve changes heights only within its own length. Elsewhere, heights are as if the grade
-    changed abruptly between segments.
-    """
-    grades = [segment.incline / 100 for segment in segments]
-    stations, values = [0.0], [grades[0]]
-    for i, at, half, _ in vertical_curves_of(segments):
-        stations += [at - half, at + half]
-        values += [grades[i - 1], grades[i]]
-    at = 0.0
-    for segment in segments[:-1]:
-        at += segment.distance
-    stations.append(at + segments[-1].distance)
-    values.append(grades[-1])
-    return GradeProfile(z0, tuple(stations), tuple(values))

@@ -25,7 +25,7 @@ from roadgpt.design.report import DesignReport
 from roadgpt.design.road_search import fits
 from roadgpt.design.room import world_for
 from roadgpt.drive import refuse_ignored, simulate
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.errors import BriefError, DesignError, PartError, RoadGPTError, SimulatorError
 from roadgpt.network import AnyDesign, Blueprint, made_from
 from roadgpt.road import Design, Geometry, Road, World, in_short_segments

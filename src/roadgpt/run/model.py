@@ -39,6 +39,10 @@ class Setup(Frozen):
     settings.
     """
 
+    def essence(self) -> Self:
+        """Returns the Setup without the fields that may change when interrupted work is continued."""
+        return self.model_copy(update={"chat": self.chat and self.chat.essence()})
+
     def came_with(self, file: object) -> Self:
         """Returns a copy that is marked as coming from a file of unknown origin. A driver in a Python
         file and the language model's server are then used only with the user's permission.
@@ -66,8 +70,7 @@ class Request(Frozen):
     def essence(self) -> "Request":
         """Returns the Request without the fields that may change when an interrupted campaign is
         continued."""
-        chat = self.setup.chat and self.setup.chat.essence()
-        return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
+        return self.model_copy(update={"setup": self.setup.essence()})
 
     def came_with(self, file: object) -> Self:
         """Returns a copy that is marked as coming from a file of unknown origin.

@@ -74,8 +74,7 @@ class StudyPlan(Frozen):
 
     def essence(self) -> "StudyPlan":
         """Returns the plan without the settings that may change when an interrupted study is resumed."""
-        chat = self.setup.chat and self.setup.chat.essence()
-        return self.model_copy(update={"setup": self.setup.model_copy(update={"chat": chat})})
+        return self.model_copy(update={"setup": self.setup.essence()})
 
 
 def open_folder(plan: StudyPlan, folder: Path) -> None:

@@ -16,8 +16,8 @@ from pathlib import Path
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[2]))
-from drive.beamng.fake_car import World, objects_of
-from drive.beamng.fake_server import LEVELS, BeamngSettings, FakeServer, Fault, RefusedError
+from drive.beamng.fake_car import FakeWorld, objects_of
+from drive.beamng.fake_server import LEVELS, FakeFault, FakeRefusedError, FakeServer, FakeSettings
 
 VEHICLES = ("etk800", "pickup")
 VERSIONS = {"v1.24": "0.37", "v1.26": "0.38", "v1.27": "0.39"}  # folders of the user
@@ -31,7 +31,7 @@ class FakeBeamNG(FakeServer):
         self.world = self.loaded = self.fps = None
         self.is_running = self.is_paused = self.is_even = False
         self.user = user
-        super().__init__(BeamngSettings(**settings), port)
+        super().__init__(FakeSettings(**settings), port)
 
     # --- the game engine ---------------------------------------------------------------------------------
 
@@ -64,9 +64,9 @@ class FakeBeamNG(FakeServer):
         self._remember()
         level, name = message["level"], message["name"]
         if level not in self._levels():
-            raise RefusedError(f"level {level} not found")
+            raise FakeRefusedError(f"level {level} not found")
         if not name or "/" in name or " " in name:
-            raise RefusedError(f"'{name}' is no name of a scenario")
+            raise FakeRefusedError(f"'{name}' is no name of a scenario")
         path = f"/levels/{level}/scenarios/{name}/{name}.json"
         self.scenarios[path] = (level, objects_of(message["prefab"]), message["info"])
         return {"type": "CreateScenario", "result": path}
@@ -77,13 +77,13 @@ class FakeBeamNG(FakeServer):
 
     def ge_LoadScenario(self, message):
         if message["path"] not in self.scenarios:
-            raise RefusedError(f"scenario {message['path']} not found")
+            raise FakeRefusedError(f"scenario {message['path']} not found")
         level, objects, _ = self.scenarios[message["path"]]
         objects = objects + self._levels()[level]
         for each in objects:
             if each["class"] == "BeamNGVehicle" and each["jBeam"] not in VEHICLES:
-                raise RefusedError(f"vehicle {each['jBeam']} not found")
-        self.world = World(
+                raise FakeRefusedError(f"vehicle {each['jBeam']} not found")
+        self.world = FakeWorld(
             objects, LEVELS.get(level, -28.0), self.settings.steer_sign, self.settings.is_blind
         )
         self.loaded, self.is_running = message["path"], False
@@ -102,7 +102,7 @@ class FakeBeamNG(FakeServer):
 
     def ge_GetPlayerVehicleID(self, message):
         if self.world is None or not self.world.cars:
-            raise RefusedError("no player vehicle")
+            raise FakeRefusedError("no player vehicle")
         return {"type": "getPlayerVehicleID", "id": 1, "vid": next(iter(self.world.cars))}
 
     def ge_StartVehicleConnection(self, message):
@@ -114,7 +114,7 @@ class FakeBeamNG(FakeServer):
 
     def ge_StartScenario(self, message):
         if self.loaded is None:
-            raise RefusedError("no scenario is loaded")
+            raise FakeRefusedError("no scenario is loaded")
         self.is_running = True
         return {"type": "ScenarioStarted"}
 
@@ -191,7 +191,7 @@ class FakeBeamNG(FakeServer):
 
     def ge_PollCamera(self, message):
         if message["name"] not in self.cameras:
-            raise RefusedError(f"no camera {message['name']}")
+            raise FakeRefusedError(f"no camera {message['name']}")
         width, height = (int(side) for side in self.cameras[message["name"]]["size"])
         shade = int(self.world.time * 50) % 256
         return {"type": "PollCamera", "data": {"colour": bytes([shade, 20, 30, 255]) * (width * height)}}
@@ -207,7 +207,7 @@ class FakeBeamNG(FakeServer):
 
     def _car(self, name):
         if self.world is None or name not in self.world.cars:
-            raise RefusedError(f"vehicle {name} not found")
+            raise FakeRefusedError(f"vehicle {name} not found")
         return self.world.cars[name]
 
     def veh_SensorRequest(self, car, message):
@@ -219,7 +219,7 @@ class FakeBeamNG(FakeServer):
         data = {}
         for name, wish in message["sensors"].items():
             if wish["type"] not in known:
-                raise RefusedError(f"no sensor {wish['type']}")
+                raise FakeRefusedError(f"no sensor {wish['type']}")
             data[name] = known[wish["type"]]()
         return {"type": "SensorData", "data": data}
 
@@ -255,7 +255,7 @@ class FakeBeamNG(FakeServer):
 
     def veh_SetAiWaypoint(self, car, message):
         if message["target"] not in self.world.waypoints:
-            raise RefusedError(f"no waypoint {message['target']}")
+            raise FakeRefusedError(f"no waypoint {message['target']}")
         car.ai.target = message["target"]
         return {"type": "AiWaypointSet"}
 
@@ -290,7 +290,7 @@ def main():
     with (given.home / "started.jsonl").open("a") as log:
         log.write(json.dumps({"pid": os.getpid(), "words": sys.argv[2:]}) + "\n")
     settings = json.loads((given.home / "settings.json").read_text())
-    settings["faults"] = tuple(Fault(**each) for each in settings["faults"])
+    settings["faults"] = tuple(FakeFault(**each) for each in settings["faults"])
     time.sleep(settings.get("slow_start", 0.0))
     FakeBeamNG(given.tport, given.userpath, **settings).quit.wait()
 

@@ -9,7 +9,7 @@ import math
 import re
 from dataclasses import dataclass, field
 
-from drive.beamng.fake_server import RefusedError
+from drive.beamng.fake_server import FakeRefusedError
 
 G = 9.81
 GRIP = 0.9  # g, sideways
@@ -31,24 +31,24 @@ def objects_of(prefab):
             try:
                 found.append(json.loads(re.sub(r",\s*([}\]])", r"\1", line)))
             except ValueError as error:
-                raise RefusedError(f"prefab line cannot be read: {error}") from error
+                raise FakeRefusedError(f"prefab line cannot be read: {error}") from error
     names = [each.get("name") for each in found]
     for name in names:
         if not name or names.count(name) > 1:
-            raise RefusedError(f"object name missing or not unique: {name}")
+            raise FakeRefusedError(f"object name missing or not unique: {name}")
     for each in found:
         if each["class"] in ("DecalRoad", "MeshRoad"):
             columns = 4 if each["class"] == "DecalRoad" else 8
             nodes = each.get("nodes", [])
             if len(nodes) < 2 or any(len(node) != columns for node in nodes):
-                raise RefusedError(f"road {each['name']} needs two nodes or more of {columns} numbers")
+                raise FakeRefusedError(f"road {each['name']} needs two nodes or more of {columns} numbers")
             if not all(math.isfinite(value) for node in nodes for value in node):
-                raise RefusedError(f"road {each['name']} has a node that is not finite")
+                raise FakeRefusedError(f"road {each['name']} has a node that is not finite")
     return found
 
 
 @dataclass
-class Line:
+class FakePolyline:
     """A polyline with widths; asked by distance along it."""
 
     nodes: list
@@ -120,7 +120,7 @@ class Ai:
     aggression: float = 0.3
 
 
-class Car:
+class FakeCar:
     """One vehicle. ``steer_sign`` is what a positive steering input does: -1 turns right, as in BeamNG."""
 
     def __init__(self, world, spec, steer_sign=-1.0):
@@ -247,16 +247,18 @@ class Car:
         return [self.point(ahead, side, up) for ahead in (front, rear) for side, up in order]
 
 
-class World:
+class FakeWorld:
     """What a loaded scenario holds."""
 
     def __init__(self, objects, level_ground, steer_sign=-1.0, is_blind=False):
         self.level_ground, self.time, self.is_blind = level_ground, 0.0, is_blind
-        self.meshes = [Line(each["nodes"]) for each in objects if each["class"] == "MeshRoad"]
+        self.meshes = [FakePolyline(each["nodes"]) for each in objects if each["class"] == "MeshRoad"]
         self.decals = {each["name"]: each for each in objects if each["class"] == "DecalRoad"}
         self.waypoints = {each["name"]: each for each in objects if each["class"] == "BeamNGWaypoint"}
         self.cars = {
-            each["name"]: Car(self, each, steer_sign) for each in objects if each["class"] == "BeamNGVehicle"
+            each["name"]: FakeCar(self, each, steer_sign)
+            for each in objects
+            if each["class"] == "BeamNGVehicle"
         }
 
     def step(self, dt):
@@ -294,6 +296,6 @@ class World:
             x, y, _ = waypoint["position"]
             if road["drivability"] > 0 and math.hypot(end[0] - x, end[1] - y) < 10:
                 if "_line" not in road:
-                    road["_line"] = Line(road["nodes"])
+                    road["_line"] = FakePolyline(road["nodes"])
                 return road["_line"]
         return None

@@ -21,12 +21,12 @@ import msgpack
 LEVELS = {"tech_ground": 0.0, "smallgrid": 0.0}  # and the heights of their ground
 
 
-class RefusedError(Exception):
+class FakeRefusedError(Exception):
     """What the simulator would not take; its text is the error that the client is told."""
 
 
 @dataclass
-class Fault:
+class FakeFault:
     """Something that goes wrong once: at the nth message of a type within the nth scenario."""
 
     kind: str
@@ -37,7 +37,7 @@ class Fault:
 
 
 @dataclass
-class BeamngSettings:
+class FakeSettings:
     """How this fake is set up."""
 
     protocol: str = "v1.27"
@@ -169,7 +169,7 @@ class FakeServer(ABC):
                 return {"bngValueError": f"the fake knows no message {kind}"}
             try:
                 return handler(self._car(vehicle), message) if vehicle else handler(message)
-            except RefusedError as error:
+            except FakeRefusedError as error:
                 return {"bngError": str(error)}
             except Exception as error:
                 self.broken.append(f"{kind}: {error!r}")

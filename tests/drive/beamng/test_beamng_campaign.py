@@ -10,9 +10,9 @@ import pytest
 from beamngpy.connection import Connection
 from click.testing import CliRunner
 
-from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
+from drive.beamng.fake_beamng import FakeBeamNG, FakeFault, fake_home
 from misbehaving import write
-from roadgpt.campaign import Budget, Plan, begin, campaign, status_of, work
+from roadgpt.campaign import CellBudget, Plan, begin, campaign, status_of, work
 from roadgpt.campaign.faults.stability import once
 from roadgpt.cli import app
 from roadgpt.drive.simulators.beamng.session import leave_all
@@ -26,16 +26,16 @@ ROADS = 20
 SHORTEST = "straight | turns=0 len=22"  # messages are what such a test costs: 90 or so for this road
 # Every kind, in the middle of driving and while a road is laid; what is made anew counts as a scenario too.
 FAULTS = [
-    Fault("hang", "SensorRequest", 2, 20),
-    Fault("drop", "Step", 5, 15),
-    Fault("die", "SensorRequest", 8, 28),
-    Fault("error", "LoadScenario", 11, 1),
-    Fault("half", "SensorRequest", 14, 20),
-    Fault("garbage", "Step", 17, 12),
-    Fault("die", "CreateScenario", 19, 1),
-    Fault("wrong_ack", "Step", 22, 22),
-    Fault("hang", "LoadScenario", 24, 1),
-    Fault("value_error", "SetAiWaypoint", 27, 1),
+    FakeFault("hang", "SensorRequest", 2, 20),
+    FakeFault("drop", "Step", 5, 15),
+    FakeFault("die", "SensorRequest", 8, 28),
+    FakeFault("error", "LoadScenario", 11, 1),
+    FakeFault("half", "SensorRequest", 14, 20),
+    FakeFault("garbage", "Step", 17, 12),
+    FakeFault("die", "CreateScenario", 19, 1),
+    FakeFault("wrong_ack", "Step", 22, 22),
+    FakeFault("hang", "LoadScenario", 24, 1),
+    FakeFault("value_error", "SetAiWaypoint", 27, 1),
 ]
 
 
@@ -71,7 +71,7 @@ def test_twenty_roads_and_ten_faults_lose_nothing(
 def test_a_road_that_fails_twice_is_one_error_and_the_campaign_goes_on(
     tmp_path: Path, port: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    faults = [Fault("die", "Step", 2, 9), Fault("drop", "SensorRequest", 3, 9)]
+    faults = [FakeFault("die", "Step", 2, 9), FakeFault("drop", "SensorRequest", 3, 9)]
     settings(monkeypatch, fake_home(tmp_path / "home", protocol=OURS, faults=faults), port)
     setup = Setup(reader="plan", simulator="beamng")
     runs = list(campaign(SHORTEST, 4, 5, World(), setup, tmp_path / "out"))
@@ -182,7 +182,7 @@ def test_a_campaign_of_many_workers_gives_up_and_resumes(
 ) -> None:
     monkeypatch.setenv("ROADGPT_BEAMNG_PORT", str(port))
     monkeypatch.setenv("ROADGPT_BEAMNG_RATE", "20")
-    budget = Budget(tests=5)
+    budget = CellBudget(tests=5)
     plan = Plan(prompts=(SHORTEST,), reader="plan", simulators=("beamng",), budget=budget, seeds=(5,))
     begin(plan, tmp_path / "c")
     with pytest.raises(GivenUpError, match=r"nobody listens on .*continue with: roadgpt resume .*c"):

@@ -13,7 +13,7 @@ from beamngpy.connection import Connection
 from beamngpy.logging import BNGDisconnectedError, BNGError, BNGValueError
 from beamngpy.sensors import Electrics
 
-from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, Fault, fake_home
+from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, FakeFault, fake_home
 
 OURS = Connection.PROTOCOL_VERSION
 NODES = [(float(x), 0.0, 0.5, 8.0) for x in range(0, 101, 5)]
@@ -192,7 +192,7 @@ def test_an_unknown_message_is_told_of(fake: FakeBeamNG) -> None:
     ],
 )
 def test_faults_come_once_at_their_message(kind: str, error: type[Exception]) -> None:
-    with FakeBeamNG(protocol=OURS, faults=(Fault(kind, "Step", nth=2),)) as fake:
+    with FakeBeamNG(protocol=OURS, faults=(FakeFault(kind, "Step", nth=2),)) as fake:
         bng = opened(fake)
         loaded(bng)
         bng.control.step(1)

@@ -16,7 +16,7 @@ import pytest
 from beamngpy.connection import Connection
 from click.testing import CliRunner
 
-from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, Fault, fake_home
+from drive.beamng.fake_beamng import VERSIONS, FakeBeamNG, FakeFault, fake_home
 from roadgpt.cli.app import app
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
@@ -115,7 +115,7 @@ def test_a_slow_start_is_waited_for(tmp_path: Path, port: int) -> None:
 
 
 def test_a_beamng_that_hangs_while_it_starts_costs_one_more_try(tmp_path: Path, port: int) -> None:
-    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault("hang", "GetLevels", 0, 1)])
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[FakeFault("hang", "GetLevels", 0, 1)])
     assert drive(BeamngSettings(port=port, home=home, rate=20, start_timeout=1.5)) == "goal"
     assert len((home / "started.jsonl").read_text().splitlines()) == 2
 

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from beamngpy.connection import Connection
 
-from drive.beamng.fake_beamng import FakeBeamNG, Fault, fake_home
+from drive.beamng.fake_beamng import FakeBeamNG, FakeFault, fake_home
 from exported import HILLY
-from roadgpt.campaign import Budget, Plan, begin, campaign
+from roadgpt.campaign import CellBudget, Plan, begin, campaign
 from roadgpt.drive import Camera, Command, Drive, View, simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.drive.drivers.reference import Reference
@@ -240,12 +240,12 @@ def test_a_driver_that_asks_for_a_camera_sees(fake: FakeBeamNG) -> None:
 
 
 def test_a_driver_that_fails_costs_its_drive_and_not_the_session(fake: FakeBeamNG) -> None:
-    class Broken:
+    class RaisesError:
         def steer(self, view: View) -> Command:
             raise ValueError("no idea")
 
     with pytest.raises(DriverError, match="no idea"):
-        simulator(fake, rate=20).simulate(SHORT, WORLD, Broken(), 7)
+        simulator(fake, rate=20).simulate(SHORT, WORLD, RaisesError(), 7)
     assert simulator(fake, rate=20).simulate(SHORT, WORLD, Reference(), 7).ended == "goal"
     assert [kind for _, kind in fake.transcript].count("GetSystemInfo") == 1
 
@@ -263,7 +263,7 @@ PLACES = [("LoadScenario", 1), ("CreateScenario", 1), ("SetAiWaypoint", 1)]
     ],
 )
 def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: str, nth: int) -> None:
-    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[FakeFault(kind, on, 1, nth)])
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6, load_timeout=5))
     drive = made.simulate(SHORT, WORLD, BeamngLike(), 7)
     assert drive.ended == "goal"
@@ -276,14 +276,14 @@ def test_a_fault_costs_one_more_try(tmp_path: Path, port: int, kind: str, on: st
 def test_a_fault_while_loading_costs_one_more_try(
     tmp_path: Path, port: int, kind: str, on: str, nth: int
 ) -> None:
-    home = fake_home(tmp_path / "home", protocol=OURS, faults=[Fault(kind, on, 1, nth)])
+    home = fake_home(tmp_path / "home", protocol=OURS, faults=[FakeFault(kind, on, 1, nth)])
     short = {"poll_timeout": 0.6, "load_timeout": 0.6, "first_load_timeout": 0.6}
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, **short))
     assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
 
 
 def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path: Path, port: int) -> None:
-    faults = [Fault("die", "Step", 1, 9), Fault("hang", "SensorRequest", 2, 9)]
+    faults = [FakeFault("die", "Step", 1, 9), FakeFault("hang", "SensorRequest", 2, 9)]
     home = fake_home(tmp_path / "home", protocol=OURS, faults=faults)
     made = BeamngSimulator(BeamngSettings(home=home, port=port, rate=20, poll_timeout=0.6))
     with pytest.raises(
@@ -294,7 +294,7 @@ def test_a_second_fault_is_an_error_of_this_road_and_the_next_is_driven(tmp_path
 
 
 def test_somebody_elses_beamng_that_hangs_is_left_and_found_again(port: int) -> None:
-    with FakeBeamNG(port=port, protocol=OURS, faults=(Fault("hang", "Step", 1, 20),)) as fake:
+    with FakeBeamNG(port=port, protocol=OURS, faults=(FakeFault("hang", "Step", 1, 20),)) as fake:
         made = simulator(fake, poll_timeout=1.5, rate=20)
         assert made.simulate(SHORT, WORLD, BeamngLike(), 7).ended == "goal"
         leave_all()
@@ -359,13 +359,13 @@ def test_steps_are_even_after_each_level_that_is_loaded(fake: FakeBeamNG) -> Non
 def test_lines_lie_on_the_asphalt_in_the_game_as_in_our_level(fake: FakeBeamNG) -> None:
     laid: list[dict[str, Any]] = []
 
-    class Looks(Reference):
+    class LooksAtDecals(Reference):
         def start(self, road: Road, world: World, seed: int) -> None:
             super().start(road, world, seed)
             ((_, objects, _),) = fake.scenarios.values()
             laid.extend(each for each in objects if each["class"] == "DecalRoad")
 
-    simulator(fake, rate=20).simulate(SHORT, WORLD, Looks(), 7)
+    simulator(fake, rate=20).simulate(SHORT, WORLD, LooksAtDecals(), 7)
     level = items("level", level_road(SHORT, WORLD, 7), WORLD)["MissionGroup/roads"]
     decals = [each for each in level if each["class"] == "DecalRoad"]
     ours = {each["name"].partition("_")[0]: each["renderPriority"] for each in decals}  # of dashes, one
@@ -400,7 +400,7 @@ def test_a_friction_that_the_game_does_not_heed_is_refused_before_anything_is_dr
         campaign("| turns=1..", 3, 0, slippery, setup, tmp_path / "runs")
     with pytest.raises(UsageError, match=said):
         prove(SHORT, 0, slippery, setup)
-    plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=Budget(tests=3))
+    plan = Plan(prompts=("a road",), world=slippery, simulators=("beamng",), budget=CellBudget(tests=3))
     with pytest.raises(UsageError, match=said):
         begin(plan, tmp_path / "campaign")
     assert not [*tmp_path.iterdir()]

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 
-from chromium import FOUND, Page, browser
+from chromium import FOUND, BrowserTab, browser
 from roadgpt.road import Design, Segment
 from roadgpt.run import Setup, prove
 from roadgpt.study.survey.media import write_view
@@ -20,7 +20,7 @@ NARROW = "document.documentElement.scrollWidth <= innerWidth"
 
 
 @pytest.fixture(scope="module")
-def tab() -> Iterator[Page]:
+def tab() -> Iterator[BrowserTab]:
     with browser() as page:
         yield page
 
@@ -41,7 +41,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
         yield its
 
 
-def went(tab: Page, do: str) -> None:
+def went(tab: BrowserTab, do: str) -> None:
     """Do what leads to another page, and wait for it."""
     loads = tab.loads
     tab.run(f"setTimeout(() => {{ {do} }}, 0); 0")
@@ -49,11 +49,11 @@ def went(tab: Page, do: str) -> None:
         tab._next()
 
 
-def visit(tab: Page, address: str) -> None:
+def visit(tab: BrowserTab, address: str) -> None:
     went(tab, f"location.href = {address!r}")
 
 
-def middle(tab: Page, of: str) -> tuple[float, float]:
+def middle(tab: BrowserTab, of: str) -> tuple[float, float]:
     """Of an element, once it is scrolled into the window."""
     tab.run(f"document.querySelector({of!r}).scrollIntoView({{block: 'center', behavior: 'instant'}}); 0")
     tab.settle()
@@ -70,7 +70,7 @@ def given(server: Server, token: str) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
+def test_a_whole_rating(tab: BrowserTab, server: Server, size: str) -> None:
     tab.size(*SIZES[size])
     token = server.app.store.add_rater()
     base = f"http://127.0.0.1:{port_of(server)}/r/{token}"
@@ -117,7 +117,9 @@ def test_a_whole_rating(tab: Page, server: Server, size: str) -> None:
     }
 
 
-def test_it_can_be_done_with_the_keyboard_and_each_answer_has_its_words(tab: Page, server: Server) -> None:
+def test_it_can_be_done_with_the_keyboard_and_each_answer_has_its_words(
+    tab: BrowserTab, server: Server
+) -> None:
     tab.size(*SIZES["desktop"])
     token = server.app.store.add_rater()
     rater = server.app.store.rater_of(token)
@@ -140,7 +142,7 @@ def test_it_can_be_done_with_the_keyboard_and_each_answer_has_its_words(tab: Pag
     assert all(name for role, name in named if role in {"radio", "group", "button", "textbox", "link"})
 
 
-def test_an_answer_waits_for_a_server_that_is_away(tab: Page, server: Server) -> None:
+def test_an_answer_waits_for_a_server_that_is_away(tab: BrowserTab, server: Server) -> None:
     token = server.app.store.add_rater()
     rater = server.app.store.rater_of(token)
     assert rater is not None
@@ -168,7 +170,9 @@ def test_an_answer_waits_for_a_server_that_is_away(tab: Page, server: Server) ->
     tab.told.clear()
 
 
-def test_pictures_and_the_view_are_seen_and_the_view_can_reach_nothing(tab: Page, server: Server) -> None:
+def test_pictures_and_the_view_are_seen_and_the_view_can_reach_nothing(
+    tab: BrowserTab, server: Server
+) -> None:
     tab.size(*SIZES["desktop"])
     token = server.app.store.add_rater()
     rater = server.app.store.rater_of(token)

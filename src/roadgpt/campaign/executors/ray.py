@@ -18,7 +18,7 @@ from collections import deque
 from dataclasses import dataclass, field
 from typing import Any
 
-from roadgpt.campaign.executors import MOST_DEATHS, RunningJob, WorkerConfig
+from roadgpt.campaign.jobs import MOST_DEATHS, RunningJob, WorkerConfig
 from roadgpt.campaign.workers.job_queue import JobQueue, QueuedJob
 from roadgpt.campaign.workers.messages import pickled, unpickled
 from roadgpt.campaign.workers.process_loop import READY, JobMessage

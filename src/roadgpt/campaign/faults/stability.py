@@ -13,7 +13,7 @@ from scipy.stats import beta
 from roadgpt import plugins
 from roadgpt.campaign.faults.disturbed import Disturbance, LateDriver, disturbance_of
 from roadgpt.drive import Simulator, simulate
-from roadgpt.drive.loading import driver_of
+from roadgpt.drive.isolation import driver_of
 from roadgpt.drive.permission import require_permission
 from roadgpt.errors import DriverError, SimulationError, SimulatorError
 from roadgpt.run import Run

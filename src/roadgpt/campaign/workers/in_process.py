@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
-from roadgpt.campaign.executors import FinishedJob, Job, RunningJob, WorkerConfig
+from roadgpt.campaign.jobs import FinishedJob, Job, RunningJob, WorkerConfig
 
 T = TypeVar("T")
 U = TypeVar("U")

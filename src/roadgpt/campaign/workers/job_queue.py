@@ -12,7 +12,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
-from roadgpt.campaign.executors import MOST_DEATHS, FinishedJob, Job
+from roadgpt.campaign.jobs import MOST_DEATHS, FinishedJob, Job
 from roadgpt.campaign.workers.messages import pickled, unpickled
 from roadgpt.campaign.workers.process_loop import VALUE, apply_each
 from roadgpt.errors import RoadGPTError

@@ -6,7 +6,7 @@ limit for the whole route is that of the SBFT competition.
 """
 
 from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding, roads_outside_junctions
+from roadgpt.check.network_places import road_finding
 from roadgpt.check.rules.too_short import shorter_than_allowed, without_room
 from roadgpt.network import Network, Route
 from roadgpt.road import World
@@ -26,7 +26,7 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
             found.append(shorter_than_allowed(route.length, world))
         least[route.legs[0].road] = START + CAR / 2
         least[route.legs[-1].road] = max(least.get(route.legs[-1].road, 0.0), GOAL)
-    for member in roads_outside_junctions(network):
+    for member in network.roads_outside:
         length, wanted = member.road.length, least.get(member.id, CAR)
         if length < wanted:
             what = f"the road is {length:.1f} m long, too short for a car; give it {wanted:.3g} m or more"

@@ -5,7 +5,7 @@ see ``connection_too_tight``.
 """
 
 from roadgpt.check.finding import Finding
-from roadgpt.check.network_places import road_finding, roads_outside_junctions
+from roadgpt.check.network_places import road_finding
 from roadgpt.check.rules.too_tight import tight_place
 from roadgpt.network import Network, Route
 from roadgpt.road import World
@@ -14,7 +14,7 @@ from roadgpt.road import World
 def inspect(network: Network, route: Route | None, world: World) -> tuple[Finding, ...]:
     """Reports the tightest place of each road whose radius is below the limit."""
     found = []
-    for member in roads_outside_junctions(network):
+    for member in network.roads_outside:
         if (tight := tight_place(member.road, world)) is not None:
             found.append(road_finding("too_tight", route, member, *tight))
     return tuple(found)

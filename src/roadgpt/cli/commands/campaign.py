@@ -144,7 +144,7 @@ def _filed(ctx: click.Context, path: Path, rest: dict[str, Any]) -> "Plan":
 
 
 def _described(text: str, rest: dict[str, Any]) -> "Plan":
-    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, Budget
+    from roadgpt.campaign.model import WITH_GOAL, WITHOUT_GOAL, CellBudget
     from roadgpt.campaign.plan import Plan
     from roadgpt.drive.loading import absolute_spec
 
@@ -159,7 +159,7 @@ def _described(text: str, rest: dict[str, Any]) -> "Plan":
         generators=(rest["generator"] or (WITH_GOAL if goal else WITHOUT_GOAL),),
         seeds=(rest["seed"],),
         goal=goal,
-        budget=Budget(tests=tests, seconds=seconds),
+        budget=CellBudget(tests=tests, seconds=seconds),
         reader=rest["reader"],
         rules=rest["rules"],
         geometry=rest["geometry"],

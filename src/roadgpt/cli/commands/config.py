@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import click
 
 from roadgpt.cli import options
-from roadgpt.cli.configuration import TABLES, layers_of, settable_options
+from roadgpt.cli.configuration import TABLES, read_layers
 from roadgpt.cli.installed_plugins import plugins_command
 from roadgpt.cli.option import Option
 from roadgpt.cli.option_groups import CommandGroup
@@ -67,7 +67,7 @@ def show(with_origin: bool, as_json: bool, **values: Any) -> None:
         for each in shown:
             if each.table == table:
                 click.echo(f"{each.name:<{wide}}  {_text(each.value):<{far}}  {each.origin}")
-    for name in unknown_variables({option.variable for option in settable_options()}):
+    for name in unknown_variables({option.variable for option in options.SETTABLE}):
         warn(f"{name} is not a setting; the settings are listed above")
 
 
@@ -81,8 +81,9 @@ def _of_options() -> Iterator[ShownSetting]:
     Raises:
         UsageError: A setting cannot be used, or must not be set by the source that sets it.
     """
-    context, layers = click.Context(click.Command(None), resilient_parsing=True), layers_of()
-    for option in settable_options():
+    context = click.Context(click.Command(None), resilient_parsing=True)
+    layers = read_layers(options.settable_keys())
+    for option in options.SETTABLE:
         setting = option.found(layers)
         value = option.converted(context, setting) if setting else option.get_default(context)
         origin = setting.origin if setting else DEFAULT

@@ -122,7 +122,7 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
     """
     from roadgpt.campaign.faults.fault import faults_in
     from roadgpt.campaign.faults.remedy_log import task_of, try_remedies
-    from roadgpt.campaign.workers.unordered_map import unordered_map
+    from roadgpt.campaign.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
     while found.to_test and look.tests_groups:
@@ -138,7 +138,7 @@ def _tested(place: Path, found: "Faults", look: AnalysisOptions) -> "Faults":
 def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int, FailureAnalysis]":
     """Analyses a typical failure of each fault or group; returns the analyses by number."""
     from roadgpt.campaign.faults.fault_log import AnalysisTask, analyse
-    from roadgpt.campaign.workers.unordered_map import unordered_map
+    from roadgpt.campaign.unordered_map import unordered_map
     from roadgpt.campaign.workers.worker_log import LOG
 
     draw: FailureDrawing | None = None

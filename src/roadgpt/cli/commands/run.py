@@ -14,7 +14,7 @@ import click
 from roadgpt.cli import options
 from roadgpt.cli.crash import crashes_go_to
 from roadgpt.cli.next_steps import lines, of_rows
-from roadgpt.cli.option import Heading, Option, named
+from roadgpt.cli.option import Heading, Option
 from roadgpt.cli.option_groups import GroupedCommand
 from roadgpt.cli.option_types import ROADS
 from roadgpt.cli.result_row import spending
@@ -69,13 +69,7 @@ OPTIONS = (
         heading=Heading.DESIGN,
         is_rare=True,
     ),
-    *named(options.SETUP, "reader", "designer", "driver", "simulator", "keep_driving"),
-    *options.WORLD,
-    *named(options.SETUP, "geometry", "rules"),
-    *(options.NO_DRIVE, options.NO_PLOT, options.AXES, options.FORMAT),
-    options.formats_option(
-        "--export formats", "Also write road files: opendrive, csv, ...", heading=Heading.FILES, table="run"
-    ),
+    *options.MAKING,
     *(*options.CHAT, *options.BEAMNG, options.JUNIT, *options.SCREEN),
 )
 

@@ -41,7 +41,7 @@ from roadgpt.design.vertical import (
 from roadgpt.errors import DesignError
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, World, build
-from roadgpt.road.elevation import elevation_of
+from roadgpt.road.builder import elevation_of
 
 ROUNDS = 24  # of changing inclines
 ROOMIER = (1.0, 1.5, 2.5)  # factors on the room for parabolas of a proposal

@@ -7,6 +7,37 @@ If a driver hangs (in Python or in compiled code), ends its process, or takes mo
 its own drive fails. One process serves many drives, one after another; the driver is created anew for each.
 """
 
-from roadgpt.drive.isolation.proxy import IsolatedDriver
+from typing import Any
 
-__all__ = ["IsolatedDriver"]
+from roadgpt import plugins
+from roadgpt.drive.isolation.proxy import IsolatedDriver
+from roadgpt.drive.loading import load_driver
+from roadgpt.drive.permission import require_permission, split_spec
+
+__all__ = ["IsolatedDriver", "driver_of"]
+
+OURS = "roadgpt."  # prefix of the modules whose drivers run in this process, beside the simulator
+
+
+def driver_of(spec: str) -> Any:
+    """Returns the driver that a user named: RoadGPT's own drivers run in this process, any other in a
+    separate process.
+
+    If a driver's file is named only in a stored file (of a run, a campaign or a plan), it is run only if the
+    user agrees (see ``drive.permission``).
+
+    Args:
+        spec: the name of a driver plug-in, or PATH.py:CLASS.
+
+    Raises:
+        PartError: there is no driver plug-in of that name.
+        UsageError: the file or the class is missing, the file cannot be run, the class is not a driver, or
+            the user did not permit RoadGPT to run the file.
+        DriverError: the driver hung while it was created.
+    """
+    require_permission(spec)
+    path, _ = split_spec(spec)
+    module = "" if path else plugins.module_of("drivers", spec)
+    if not path and (not module or module.startswith(OURS)):  # load_driver reports an unknown plug-in
+        return load_driver(spec)
+    return IsolatedDriver(spec)

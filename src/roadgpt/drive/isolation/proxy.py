@@ -34,7 +34,7 @@ class IsolatedDriver:
         """Creates the driver in another process.
 
         Raises:
-            PartError, UsageError, DriverError: as for ``loading.driver_of``.
+            PartError, UsageError, DriverError: as for ``isolation.driver_of``.
         """
         self._road: Road | None = None
         self._world: World | None = None

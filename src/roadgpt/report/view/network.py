@@ -63,7 +63,7 @@ def network_values(route: Route) -> dict[str, Any]:
             for face in faces_of(sign)
         ],
         "plan": {
-            "ground": _rings(ground_of(route)) if parts.shoulder > 0 else [],
+            "ground": _rings(ground_of(network)) if parts.shoulder > 0 else [],
             "paved": _rings(network.paved),
             "kerbed": [ring for area in parts.areas for island in area.kerbed for ring in _rings(island)],
             "green": [ring for area in parts.areas for island in area.green for ring in _rings(island)]

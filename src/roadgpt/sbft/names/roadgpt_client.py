@@ -43,7 +43,7 @@ Message = Dict[str, Any]
 Points = List[Tuple[float, float]]
 
 
-class RoadGPTError(RuntimeError):
+class ClientError(RuntimeError):
     """Raised if RoadGPT cannot be started or cannot do what was requested; the message is one sentence."""
 
 
@@ -81,7 +81,7 @@ class RoadGPT:
                 else the one that runs this code.
 
         Raises:
-            RoadGPTError: RoadGPT does not start.
+            ClientError: RoadGPT does not start.
         """
         self.python = python or os.environ.get(PYTHON) or _own()
         self._lock = threading.Lock()
@@ -94,7 +94,7 @@ class RoadGPT:
                 env={name: value for name, value in os.environ.items() if name != "PYTHONHOME"},
             )
         except OSError as error:
-            raise RoadGPTError(
+            raise ClientError(
                 f"{self.python} cannot be started ({error.strerror}); set {PYTHON} to the Python that "
                 "RoadGPT is installed in"
             ) from error
@@ -104,7 +104,7 @@ class RoadGPT:
         """Sends a request for the operation ``op`` and returns the answer.
 
         Raises:
-            RoadGPTError: RoadGPT reports an error, or its process has ended.
+            ClientError: RoadGPT reports an error, or its process has ended.
         """
         stdin, stdout = self._process.stdin, self._process.stdout
         assert stdin is not None
@@ -116,12 +116,12 @@ class RoadGPT:
             except (OSError, ValueError):
                 answer = None
         if answer is None:
-            raise RoadGPTError(
+            raise ClientError(
                 f"RoadGPT ended without an answer{self._status()}; check that it is installed in "
                 f"{self.python}, or set {PYTHON} to the Python that it is installed in"
             )
         if "error" in answer:
-            raise RoadGPTError(answer["error"])
+            raise ClientError(answer["error"])
         return answer["answer"]
 
     def _status(self) -> str:
@@ -150,13 +150,13 @@ class RoadGPT:
 def _own() -> str:
     if sys.version_info >= (3, 11) and find_spec("roadgpt") is not None:
         return sys.executable
-    raise RoadGPTError(
+    raise ClientError(
         f"RoadGPT is not installed in this Python ({sys.version.split()[0]}); set {PYTHON} to the Python "
         "that it is installed in"
     )
 
 
-class RoadGPTTestGenerator:
+class ClientTestGenerator:
     """Submits roads that meet a description, one after another, until the budget is used up."""
 
     description: Optional[str] = None
@@ -181,7 +181,7 @@ class RoadGPTTestGenerator:
         """Submits tests to the executor, one after another, until the budget is used up.
 
         Raises:
-            RoadGPTError: RoadGPT does not start, the description cannot be read, or no road can be designed.
+            ClientError: RoadGPT does not start, the description cannot be read, or no road can be designed.
         """
         factory = import_module("code_pipeline.tests_generation").RoadTestFactory
         for points in self.roads():
@@ -203,7 +203,7 @@ class RoadGPTTestGenerator:
         there are at most 500 per road, and every road is valid in the competition.
 
         Raises:
-            RoadGPTError: as for ``start``.
+            ClientError: as for ``start``.
         """
         asked = {
             name: getattr(self, name)
@@ -218,3 +218,7 @@ class RoadGPTTestGenerator:
         finally:
             self._roadgpt = None
             roadgpt.close()
+
+
+# The names under which it competes and is imported by users; those of RoadGPT itself are the same.
+RoadGPTTestGenerator, RoadGPTError = ClientTestGenerator, ClientError

@@ -8,8 +8,8 @@ even while the main thread is busy. One more thread watches for workers that han
 import threading
 import time
 
-from roadgpt.campaign.executors import MOST_DEATHS, RunningJob, WorkerConfig
 from roadgpt.campaign.executors.processes.worker import FAREWELL, Worker
+from roadgpt.campaign.jobs import MOST_DEATHS, RunningJob, WorkerConfig
 from roadgpt.campaign.workers.job_queue import JobQueue
 from roadgpt.campaign.workers.messages import pickled, unpickled
 from roadgpt.campaign.workers.process_loop import READY, JobMessage

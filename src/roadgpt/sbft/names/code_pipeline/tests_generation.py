@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import count
 from typing import Any, Dict, Iterator, List, Optional, Sequence, Tuple
 
-from roadgpt_client import RoadGPTError, plain
+from roadgpt_client import ClientError, plain
 from roadgpt_inside.asking import ask
 from self_driving.road_polygon import RoadPolygon
 
@@ -126,7 +126,7 @@ def nodes_of(road_points: Sequence[Sequence[float]]) -> List[Tuple[float, float]
     points = [[float(point[0]), float(point[1])] for point in road_points]
     try:
         return [(x, y) for x, y in ask("nodes", points=points)]
-    except RoadGPTError as error:
+    except ClientError as error:
         raise ValueError(str(error)) from error
 
 

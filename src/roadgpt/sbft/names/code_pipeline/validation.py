@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any, Sequence, Tuple
 
 from code_pipeline.tests_generation import RoadTestFactory
-from roadgpt_client import RoadGPTError
+from roadgpt_client import ClientError
 from roadgpt_inside.asking import ask
 from self_driving.bbox import RoadBoundingBox
 
@@ -132,7 +132,7 @@ class TestValidator:
         try:
             points = [[float(x), float(y)] for x, y in the_test.road_points]
             is_valid, message = ask("verdict", points=points, map_size=self.map_size)
-        except (RoadGPTError, TypeError, ValueError) as error:
+        except (ClientError, TypeError, ValueError) as error:
             return False, str(error)
         return is_valid, message
 

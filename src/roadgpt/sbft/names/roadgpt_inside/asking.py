@@ -20,7 +20,7 @@ def ask(op: str, **values: Any) -> Any:
     """Returns RoadGPT's answer to a request for the operation ``op``.
 
     Raises:
-        RoadGPTError: RoadGPT reports an error, or cannot be started.
+        ClientError: RoadGPT reports an error, or cannot be started.
     """
     if not os.environ.get(roadgpt_client.PYTHON):
         try:
@@ -30,7 +30,7 @@ def ask(op: str, **values: Any) -> Any:
         else:
             answer = answers.answer({"op": op, **values})
             if "error" in answer:
-                raise roadgpt_client.RoadGPTError(answer["error"])
+                raise roadgpt_client.ClientError(answer["error"])
             return answer["answer"]
     if not _ASKED or not _ASKED[0].is_ours:
         _ASKED[:] = [roadgpt_client.RoadGPT()]

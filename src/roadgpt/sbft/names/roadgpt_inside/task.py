@@ -17,7 +17,7 @@ import traceback
 from pathlib import Path
 from typing import IO, Any, Dict
 
-from roadgpt_client import Message, RoadGPTError, received, send
+from roadgpt_client import ClientError, Message, received, send
 from roadgpt_inside.asking import ask
 
 NAMES = Path(__file__).parent.parent  # packages of the competition's names, and this one
@@ -78,7 +78,7 @@ def main() -> None:
     sys.path += [task["module_path"]] if task["module_path"] else []
     try:
         ask("hello")  # loads all that answers need before the clock starts
-    except RoadGPTError as error:
+    except ClientError as error:
         connection.tell({"op": "end", "how": "unasked", "said": str(error)})
         _leave()
     try:

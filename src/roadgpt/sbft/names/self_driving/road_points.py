@@ -91,8 +91,6 @@ class RoadPoints:
 
     def new_imagery(self) -> Any:
         """Returns an object that draws the road; nothing is drawn yet."""
-        from self_driving.beamng_road_imagery import BeamNGRoadImagery
-
         return BeamNGRoadImagery(self)
 
     def plot_on_ax(self, ax: Any) -> None:
@@ -101,3 +99,30 @@ class RoadPoints:
         for points, colour in ((self.middle, "#FEA952"), (self.left, "white"), (self.right, "white")):
             ax.plot([p[0] for p in points], [p[1] for p in points], color=colour, linewidth=1)
         ax.axis("equal")
+
+
+class BeamNGRoadImagery:
+    """Draws and saves the picture of one road."""
+
+    def __init__(self, road_points: RoadPoints) -> None:
+        """Takes a road; nothing is drawn yet."""
+        self.road_points = road_points
+        self._figure: Any = None
+
+    @classmethod
+    def from_sample_nodes(cls, sample_nodes: Any) -> BeamNGRoadImagery:
+        """Returns an object that can draw the road with these nodes, each [x, y, height, width] in metres."""
+        return cls(RoadPoints().add_middle_nodes(sample_nodes))
+
+    def plot(self) -> None:
+        """Draws the road in a new figure, which ``save`` writes to a file."""
+        from matplotlib.figure import Figure
+
+        self._figure = Figure()
+        self.road_points.plot_on_ax(self._figure.subplots())
+
+    def save(self, image_path: Any) -> None:
+        """Saves the picture; the suffix of the file name, such as ".svg", sets the format."""
+        if self._figure is None:
+            self.plot()
+        self._figure.savefig(image_path)

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from roadgpt.campaign.executors import Executor, Job, WorkerConfig
 from roadgpt.campaign.executors.processes import Processes
+from roadgpt.campaign.jobs import Executor, Job, WorkerConfig
 from roadgpt.campaign.single_test import WorkerSetup
 from roadgpt.campaign.workers.in_process import InProcess
 from roadgpt.errors import RoadGPTError
