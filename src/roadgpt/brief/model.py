@@ -11,7 +11,7 @@ from roadgpt.brief.amount import Amount, Frozen, at_least, at_most, between, exa
 from roadgpt.brief.beside import BESIDE, friction_of
 from roadgpt.brief.junctions import JunctionClause, Side
 from roadgpt.brief.map_clause import MapClause
-from roadgpt.brief.words import MOST_LANES, Range, nearest
+from roadgpt.brief.words import MOST_LANES, Kind, Range, Sharpness, Size, Slope, nearest
 
 __all__ = [
     "OTHER_SIDE",
@@ -35,25 +35,7 @@ __all__ = [
 ]
 
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
-Sharpness = Literal["gentle", "sweeping", "sharp"]
-Size = Literal["long", "short"]
 CentreLine = Literal["solid", "broken", "double", "none"]
-Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
-Kind = Literal[
-    "straight",
-    "crest",  # a straight that climbs, then falls
-    "dip",  # a straight that falls, then climbs
-    "turn",
-    "hairpin",
-    "switchback",
-    "u_turn",
-    "s_bend",
-    "chicane",
-    "slalom",
-    "serpentine",
-    "zigzag",
-    "winding",
-]
 
 
 def _known(name: str) -> str:

@@ -14,10 +14,26 @@ import unicodedata
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Literal, NamedTuple
 
-if TYPE_CHECKING:
-    from roadgpt.brief.model import Kind, Sharpness, Size, Slope
+Sharpness = Literal["gentle", "sweeping", "sharp"]
+Size = Literal["long", "short"]
+Slope = Literal["up", "down", "flat", "nearly_flat", "gently_up", "gently_down", "steeply_up", "steeply_down"]
+Kind = Literal[
+    "straight",
+    "crest",  # a straight that climbs, then falls
+    "dip",  # a straight that falls, then climbs
+    "turn",
+    "hairpin",
+    "switchback",
+    "u_turn",
+    "s_bend",
+    "chicane",
+    "slalom",
+    "serpentine",
+    "zigzag",
+    "winding",
+]
 
 
 @dataclass(frozen=True, slots=True)
