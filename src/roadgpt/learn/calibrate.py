@@ -18,7 +18,7 @@ from roadgpt.learn.generator import Pair
 Floats = npt.NDArray[np.float64]
 MOST_WRONGLY = 0.012  # share of valid held-back descriptions that may be refused; higher for new descriptions
 STEPS = 30
-CAUTION = 2.5
+CAUTION = 2.0
 """Weight of a wrong reading of a route, relative to a right one: a confident wrong reading does more harm
 than an unnecessary doubt.
 """

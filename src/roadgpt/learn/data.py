@@ -36,15 +36,15 @@ SHARES: Mapping[str, float] = {
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
-    "networks": 0.42,
-    "generated routes": 0.20,
-    "routes": 0.13,
-    "hand": 0.10,
-    "free": 0.07,
+    "networks": 0.43,
+    "generated routes": 0.27,
+    "routes": 0.08,
+    "hand": 0.09,
+    "free": 0.06,
     "contrasts": 0.03,
     "generated": 0.01,
-    "generated contrasts": 0.02,
-    "generated specs": 0.02,
+    "generated contrasts": 0.015,
+    "generated specs": 0.015,
 }
 """The share of each series of pairs in the training of the network for routes and maps. ``networks`` are
 hand-written routes with junctions, ``routes`` join these to hand-written roads, and ``generated routes`` come
