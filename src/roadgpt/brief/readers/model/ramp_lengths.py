@@ -34,12 +34,13 @@ LINK = (
 OF = r"(?: (?:of|de|di|long|lange[nr]?|d '))"
 AFTER = r"(?:\b(after|in|nach|hinter|apres|dans|tras|en|despues de|dopo|fra|tra|until|bis|hasta|fino a) )?"
 """A word before a length with which it is the distance to the lane."""
-BOUND = re.compile(
-    r"\b(?:at least|at most|up to|no (?:more|less|longer|shorter) than|minimum|maximum|min|max|mindestens|"
+INEXACT = (
+    r"at least|at most|up to|no (?:more|less|longer|shorter) than|minimum|maximum|min|max|mindestens|"
     r"hochstens|bis zu|au moins|au plus|al menos|como (?:mucho|maximo|minimo)|almeno|al massimo|"
-    r"or (?:more|less|longer)|oder (?:mehr|langer)|o (?:mas|piu)|ou plus|between|zwischen|entre|tra)\b|"
-    r"(?:(?:to|bis)|metres a) \[unused"
+    r"or (?:more|less|longer)|oder (?:mehr|langer)|o (?:mas|piu)|ou plus"
 )
+"""Words with which a number is no exact one."""
+BOUND = re.compile(rf"\b(?:{INEXACT}|between|zwischen|entre|tra)\b|(?:(?:to|bis)|metres a) \[unused")
 """Words with which some length is no exact one."""
 
 

@@ -15,6 +15,7 @@ from roadgpt.brief.readers.model.map_words import (
     TAKEN_BACK,
     one_number,
 )
+from roadgpt.brief.readers.model.ramp_lengths import INEXACT
 from roadgpt.brief.readers.model.slots import SlottedText
 
 SIDE_ROAD = re.compile(
@@ -52,11 +53,7 @@ LISTED = re.compile(rf"^\W*(?:\w+ )?(\d+) (?:{PLURAL}|{ANY_KIND}) (?:in all |in 
 """The number of junctions before the list of all of them."""
 
 
-BOUND = re.compile(
-    r"\b(?:at least|at most|up to|or more|mindestens|hochstens|bis zu|au moins|au plus|al menos|como mucho|"
-    r"almeno|al massimo)\b"
-)
-"""Words with which a number of junctions is no exact one."""
+IS_BOUND = re.compile(rf"\b(?:{INEXACT})\b")
 
 
 def number_of_listed(text: SlottedText) -> int | None:
@@ -123,7 +120,8 @@ def with_told_total(brief: Brief, text: SlottedText) -> Brief:
     bare = [n for n in bare if brief.junctions[n].kind == "junction"] or _too_many(brief, bare, text)
     surplus = len(counted) - number
     if one_number(ALL_KINDS.findall(text.text)) == len(brief.junctions) and IS_TOTAL.search(text.text):
-        return _as_any_kind(brief, _too_many(brief, counted, text)) if not BOUND.search(text.text) else brief
+        surely_too_many = [] if IS_BOUND.search(text.text) else _too_many(brief, counted, text)
+        return _as_any_kind(brief, surely_too_many)
     if number and 0 < -surplus < number and len(counted) == len(brief.junctions):
         more = (JunctionClause(kind="junction"),) * -surplus
         roads = (*brief.stretches, *(Brief() for _ in more))
