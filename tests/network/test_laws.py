@@ -52,6 +52,25 @@ def test_junctions_are_level(seed: int) -> None:
             assert np.ptp(road.at(np.linspace(0, road.length, 50))[:, 2]) == 0
 
 
+@pytest.mark.parametrize(("length", "incline"), [(30, 8), (30, -10), (35, 5), (60, 10), (60, -3)])
+def test_the_last_six_metres_before_a_junction_are_level(length: float, incline: float) -> None:
+    steep = {"distance": length, "incline": incline}
+    route = built(
+        design(
+            60.0,
+            {"kind": "crossroads", "take": "straight"},
+            steep,
+            {"kind": "t_junction", "take": "left"},
+            60.0,
+        )
+    )
+    road = route.roads[1][1].road
+    heights = road.at(np.linspace(0, road.length, round(10 * road.length) + 1))[:, 2]
+    assert (heights[-1] - heights[0]) * incline > 0
+    assert np.ptp(heights[:60]) < 1e-9
+    assert np.ptp(heights[-60:]) < 1e-9
+
+
 @given(seeds)
 @settled
 def test_lanes_are_as_wide_on_both_sides_of_a_contact(seed: int) -> None:

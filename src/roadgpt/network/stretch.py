@@ -12,8 +12,8 @@ from roadgpt.road.builder import elevation_of
 from roadgpt.road.elevation import CREST_RADIUS, MOST_OF_SEGMENT
 
 LEVEL = 1e-9  # ratio; a smaller grade is level
-LANDING = 4.0  # m of level road before a junction: about the length of a car that waits there
-MOST_OF_LANDING = 0.2  # largest share of a segment that the level road may take
+LANDING = 6.0  # m of level road before a junction: a little more than the length of a car that waits there
+MOST_OF_LANDING = 0.4  # largest share of a segment that the level road may take
 
 
 def road_of(
@@ -43,11 +43,12 @@ def level_ends(segments: Sequence[Segment], z: float, is_level: tuple[bool, bool
     """Returns the heights along segments, from a height of ``z`` metres; for ``is_level`` see ``road_of``."""
     found = elevation_of(segments, z)
     knots = list(zip(found.stations, found.grades, strict=True))
+    share = 0.5 if all(is_level) and len(segments) == 1 else 1.0
     if is_level[0]:
-        knots = _from_level(knots, segments[0].distance)
+        knots = _from_level(knots, share * segments[0].distance)
     if is_level[1]:
         end = knots[-1][0]
-        knots = _from_level([(end - s, g) for s, g in reversed(knots)], segments[-1].distance)
+        knots = _from_level([(end - s, g) for s, g in reversed(knots)], share * segments[-1].distance)
         knots = [(end - s, g) for s, g in reversed(knots)]
     return GradeProfile(z, tuple(s for s, _ in knots), tuple(g for _, g in knots))
 
@@ -57,7 +58,7 @@ def _from_level(knots: list[tuple[float, float]], distance: float) -> list[tuple
 
     Args:
         knots: The knots; the first one is at station 0, and the grade is constant up to the second one.
-        distance: Length in metres of the first segment.
+        distance: Length in metres of the first segment, or of the half of it that may be used.
     """
     (_, grade), *rest = knots
     if abs(grade) < LEVEL:
