@@ -12,7 +12,7 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.design import draft
 from roadgpt.design.room import world_for
 from roadgpt.errors import BriefError, DesignError
-from roadgpt.learn.generated_routes import draw_route
+from roadgpt.learn.routes import draw_route
 from roadgpt.network import Route, made_from
 from roadgpt.road import World
 

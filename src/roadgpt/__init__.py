@@ -80,7 +80,7 @@ _PICTURES = (
 
 
 def _picture(value: Any) -> bytes | None:
-    made: bytes | None = import_module("roadgpt.report.notebook").png_of(value)
+    made: bytes | None = import_module("roadgpt.report.plotting").png_of(value)
     return made
 
 

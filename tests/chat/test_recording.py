@@ -23,7 +23,7 @@ from roadgpt.chat import (
     counting,
     open_chat,
 )
-from roadgpt.chat.store import name_of
+from roadgpt.chat.recording import name_of
 from roadgpt.cli import app
 from roadgpt.errors import UsageError
 

@@ -205,7 +205,7 @@ def test_options_for_models_are_refused_where_none_is_asked() -> None:
 
 
 def test_doctor_looks_for_the_model_that_is_named(stub: StubServer, monkeypatch: pytest.MonkeyPatch) -> None:
-    from roadgpt.chat.diagnosis import diagnose
+    from roadgpt.chat.client import diagnose
 
     assert "none is needed" in diagnose()
     monkeypatch.setenv("OPENAI_API_KEY", KEY)

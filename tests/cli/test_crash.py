@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from roadgpt.cli import app, crash, installed_plugins
+from roadgpt.cli import app, crash
+from roadgpt.cli.commands import config
 
 
 def broken() -> None:
@@ -13,7 +14,7 @@ def broken() -> None:
 
 
 def test_the_traceback_goes_to_a_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(installed_plugins, "installed", broken)
+    monkeypatch.setattr(config, "installed", broken)
     monkeypatch.setattr(crash, "_folder", [tmp_path])
     result = CliRunner().invoke(app, ["config", "plugins"])
     assert result.exit_code == 70
@@ -28,7 +29,7 @@ def test_where_no_file_can_be_written_the_traceback_is_shown(monkeypatch: pytest
     def full(text: str) -> Path:
         raise OSError("the disk is full")
 
-    monkeypatch.setattr(installed_plugins, "installed", broken)
+    monkeypatch.setattr(config, "installed", broken)
     monkeypatch.setattr(crash, "_write", full)
     result = CliRunner().invoke(app, ["config", "plugins"])
     assert result.exit_code == 70
@@ -45,7 +46,7 @@ def test_a_folder_that_cannot_be_written_to_is_passed_over(
             raise PermissionError(13, "Permission denied")
         return whole(*args, **more)
 
-    monkeypatch.setattr(installed_plugins, "installed", broken)
+    monkeypatch.setattr(config, "installed", broken)
     monkeypatch.setattr(crash, "_folder", [tmp_path.parent])
     monkeypatch.setattr(crash.tempfile, "gettempdir", lambda: str(tmp_path))
     monkeypatch.setattr(crash.tempfile, "NamedTemporaryFile", only_here)

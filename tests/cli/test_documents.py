@@ -138,7 +138,8 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
 
     from roadgpt.brief.refusal import MOST_CHARACTERS
     from roadgpt.campaign.batch_scheduler import GIVE_UP
-    from roadgpt.chat import conversation, response_limits, strict_json
+    from roadgpt.chat import response_limits, strict_json
+    from roadgpt.chat.providers import openai
     from roadgpt.chat.providers.openai import MOST_REQUESTS
     from roadgpt.drive.drive import UNPACKED
     from roadgpt.drive.driver_guard import BEFORE_START, ONE_ANSWER, WHOLE_DRIVE
@@ -168,7 +169,7 @@ def test_the_limits_in_the_docs_are_those_of_the_code() -> None:
     assert found == [
         *map(str, counts),
         said,
-        *(f"{limit:.0f}" for limit in [*asked, conversation.MOST_TURNS]),
+        *(f"{limit:.0f}" for limit in [*asked, openai.MOST_TURNS]),
     ]
     guide = (ROOT / "docs" / "how-to" / "own-driver.md").read_text(encoding="utf-8")
     assert re.findall(r"\| (\d+) \|$", guide, re.MULTILINE) == said.split("; ")

@@ -7,8 +7,8 @@ import pytest
 from click.testing import CliRunner
 
 from roadgpt import plugins
-from roadgpt.cli import app, installed_plugins
-from roadgpt.cli.commands import doctor
+from roadgpt.cli import app
+from roadgpt.cli.commands import config, doctor
 from roadgpt.errors import PartError
 
 
@@ -26,7 +26,7 @@ def test_a_part_that_cannot_be_loaded_is_listed_with_the_reason(monkeypatch: pyt
         raise PartError(f"the {name} lacks a library")
 
     monkeypatch.setattr(plugins, "find", find)
-    found = installed_plugins.installed()
+    found = config.installed()
     assert not any(part.works for part in found)
     assert found[0].about.endswith("lacks a library")
     result = CliRunner().invoke(app, ["doctor"])
@@ -42,14 +42,12 @@ def test_the_first_sentence_may_span_lines() -> None:
         Much more.
         """
 
-    assert installed_plugins._first_sentence(LongSentence) == "Drives as a person does"
+    assert config._first_sentence(LongSentence) == "Drives as a person does"
 
 
 def test_what_parts_say_has_no_marks_of_documentation() -> None:
     """Nor a formula: the line is for people who choose a part by it."""
-    assert [
-        part.name for part in installed_plugins.installed() if "`" in part.about or "*" in part.about
-    ] == []
+    assert [part.name for part in config.installed() if "`" in part.about or "*" in part.about] == []
 
 
 def test_doctor_finds_this_installation_well() -> None:

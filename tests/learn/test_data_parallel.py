@@ -8,7 +8,7 @@ pytest.importorskip("torch", reason="comes with the extra 'learn'")
 
 
 def test_a_worker_ends_where_its_training_was_killed() -> None:
-    from roadgpt.learn.data_parallel import _not_alone
+    from roadgpt.learn.train import _not_alone
 
     _not_alone(os.getppid())
     with pytest.raises(SystemExit):

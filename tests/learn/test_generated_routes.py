@@ -10,11 +10,11 @@ from roadgpt.brief.plan import read_plan
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.errors import RoadGPTError
-from roadgpt.learn.generated_routes import assembled_route, draw_route, generated_routes
 from roadgpt.learn.generator import EVEN, Pair
 from roadgpt.learn.grammar import Discarded, grammar_of
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
+from roadgpt.learn.routes import assembled_route, draw_route, generated_routes
 from roadgpt.learn.standard import standard
 
 KINDS = {

@@ -10,12 +10,12 @@ from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.vocabulary import tokens_of
 from roadgpt.brief.refusal import refused
 from roadgpt.errors import LearnError
+from roadgpt.learn.data import with_shared_values
 from roadgpt.learn.generator import Pair, assembled, draw, pairs
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of, read_grammar
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.labels import REFUSALS
 from roadgpt.learn.negative_examples import contradicted, overdone
-from roadgpt.learn.shared_values import with_shared_values
 from roadgpt.learn.standard import makes_sense, standard
 
 

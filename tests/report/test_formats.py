@@ -20,7 +20,7 @@ from roadgpt.cli import app
 from roadgpt.errors import UsageError
 from roadgpt.report import FORMATS, Format, draw
 from roadgpt.report.canvas import encoded, format_of, new_figure, save_all
-from roadgpt.report.notebook import png_of
+from roadgpt.report.plotting import png_of
 from roadgpt.road import Design, Road, Segment, build
 from roadgpt.run import Request, Run, Setup, prove
 

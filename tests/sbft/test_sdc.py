@@ -19,11 +19,11 @@ from roadgpt.drive import simulate
 from roadgpt.drive.drivers.beamng_like import BeamngLike
 from roadgpt.errors import UsageError
 from roadgpt.road import CrossSection, Road, World
-from roadgpt.sbft.sdc import messages
+from roadgpt.sbft.sdc import service as our_service
 from roadgpt.sbft.sdc.risk import LINE_ONLY, PLAIN, UNKNOWN, RiskFeatures, fit_model, order, risk_features
 from roadgpt.sbft.sdc.service import serve
 
-PROTO = Path(messages.__file__).with_name("competition.proto")
+PROTO = Path(our_service.__file__).with_name("competition.proto")
 
 
 @pytest.fixture(scope="module")
@@ -70,7 +70,7 @@ def test_the_table_says_what_the_file_says(tmp_path: Path) -> None:
     words = ["protoc", f"-I{PROTO.parent}", f"--descriptor_set_out={out}", PROTO.name]
     assert protoc.main(words) == 0
     (compiled,) = descriptor_pb2.FileDescriptorSet.FromString(out.read_bytes()).file
-    ours = messages.description()
+    ours = our_service.description()
     for file in (compiled, ours):
         for message in file.message_type:
             for field in message.field:
@@ -243,10 +243,10 @@ def test_the_command_serves_until_it_is_stopped() -> None:
         with grpc.insecure_channel(address) as channel:
             ask = channel.unary_unary(
                 "/CompetitionTool/Name",
-                request_serializer=messages.message("Empty").SerializeToString,
-                response_deserializer=messages.message("NameReply").FromString,
+                request_serializer=our_service.message("Empty").SerializeToString,
+                response_deserializer=our_service.message("NameReply").FromString,
             )
-            assert ask(messages.message("Empty")(), timeout=30).name == "RoadGPT"
+            assert ask(our_service.message("Empty")(), timeout=30).name == "RoadGPT"
     finally:
         process.terminate()
         process.communicate(timeout=30)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from roadgpt.errors import UsageError
-from roadgpt.study.baseline import THESIS
+from roadgpt.study.chapters.validity import THESIS
 from roadgpt.study.prompts import read_prompts, thesis_prompts
 
 

@@ -19,7 +19,7 @@ from roadgpt.design.designers.planner import Planner
 from roadgpt.errors import DesignError, UsageError
 from roadgpt.run import Setup
 from roadgpt.run.atomic import alone_in
-from roadgpt.study.chapters.significance import Count, Source, chi_squared_blocks
+from roadgpt.study.chapters.validity import Count, Source, chi_squared_blocks
 from roadgpt.study.execution import work
 from roadgpt.study.plan import StudyPlan, open_folder, read_plan
 from roadgpt.study.prompts import Prompt, thesis_prompts

@@ -9,10 +9,11 @@ import json
 import logging
 from collections.abc import Callable
 from email.utils import parsedate
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from roadgpt.chat.address import address_of
-from roadgpt.chat.config import untrusted_source
+from roadgpt.chat.config import DEFAULT, configured, key_for, settings_with_origin, untrusted_source
 from roadgpt.chat.model import ChatSettings
 from roadgpt.chat.prices import has_openai_prices
 from roadgpt.chat.request_error import BUSY, RequestError, is_spent_up
@@ -25,6 +26,7 @@ CONNECT = 10.0  # s, to connect
 TALKATIVE = ("openai", "httpx2", "httpcore2")  # their debug logs may show keys
 BYTES_PER_TOKEN = 24  # generous: JSON that escapes every character
 ROOM = 200_000  # bytes, for everything around a reply
+PATIENCE = 5.0  # s
 
 
 class ApiClient:
@@ -193,3 +195,34 @@ def _asked_to_wait(said: str) -> str:
     if not said.isdecimal() and parsedate(said) is None:
         return ""
     return f"; it asks to wait {f'{said} s' if said.isdecimal() else f'until {said}'}, so try again later"
+
+
+def diagnose() -> str:
+    """Returns a text that names the model, the server and the library, or says that no model is configured.
+
+    Raises:
+        ChatError: a model or a server is configured but cannot be asked.
+        UsageError: a setting is not valid.
+    """
+    found = settings_with_origin()
+    if all(found[name].origin == DEFAULT for name in ("model", "base_url")):
+        return "none is configured, and none is needed; see roadgpt config show"
+    try:
+        library = f"openai {version('openai')}"
+    except PackageNotFoundError:
+        raise ChatError(
+            "the package 'openai' is missing; install it with: python -m pip install 'roadgpt[chat]'"
+        ) from None
+    settings = configured().model_copy(update={"timeout": PATIENCE, "retries": 0})
+    place, wanted = address_of(settings.base_url), settings.model
+    try:
+        models = ApiClient(settings, key_for(settings.base_url)).models()
+    except RequestError as fault:
+        raise ChatError(fault.sentence) from None
+    names = [str(one.get("id")) for one in models]
+    if wanted and names and wanted not in names:
+        shown = ", ".join(plain(name, 40) for name in names[:5])
+        raise ChatError(f"{place} has no model '{plain(wanted)}'; it has {shown}")
+    ends = next((one.get("shutdown_date") for one in models if one.get("id") == wanted), None)
+    told = f"; it will be switched off on {plain(str(ends), 20)}" if ends else ""
+    return f"{wanted or 'any'} of {len(names)} at {place}, through {library}{told}"

@@ -1,5 +1,7 @@
 """Prints the progress of a running campaign, and its results."""
 
+import sys
+import time
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +14,8 @@ from roadgpt.cli.result_row import COLOURS, metres
 from roadgpt.cli.streams import apart, warn
 
 if TYPE_CHECKING:
+    from rich.console import RenderableType
+
     from roadgpt.campaign.cell_status import CellStatus
     from roadgpt.campaign.faults.fault import Faults
     from roadgpt.campaign.scheduler import Progress
@@ -23,6 +27,7 @@ HEAD = ("cell", "done", "pass", "fail", "other", "least margin", "what")
 GAP = "  "  # between columns
 LEAST = 12  # letters of the last column, below which it is left out
 LONGEST = 60  # letters of a description, in a line of a table
+MOST_WATCHED, MOST_WORKERS = 12, 16  # rows of the screen
 
 
 def watch(folder: Path, steps: "Iterator[Progress]", as_json: bool, quiet: bool) -> None:
@@ -166,3 +171,52 @@ def one_line(text: str, most: int = 300) -> str:
     from roadgpt.chat.strict_json import plain
 
     return plain(text, most)
+
+
+def watch_campaign(campaign: Path, once: bool = False) -> None:
+    """Shows the progress of a campaign until it ends or the user presses Ctrl-C; without a terminal, shows it
+    once.
+
+    Raises:
+        UsageError: The folder holds no campaign.
+    """
+    from rich.console import Console
+    from rich.live import Live
+
+    from roadgpt.campaign.status import status_of
+
+    console = Console(file=sys.stdout)
+    if once or not sys.stdout.isatty():
+        console.print(_picture(status_of(campaign), console.width))
+        return
+    with Live(console=console, auto_refresh=False, screen=False) as live:
+        while True:
+            status = status_of(campaign)
+            live.update(_picture(status, console.width), refresh=True)
+            if status.is_finished:
+                return
+            time.sleep(1.0)
+
+
+def _picture(status: "Status", width: int) -> "RenderableType":
+    from rich.console import Group
+    from rich.padding import Padding
+    from rich.progress_bar import ProgressBar
+    from rich.text import Text
+
+    bar = ProgressBar(total=status.total or max(status.done, 1), completed=status.done)
+    workers = [
+        f"{lease.worker}  test {lease.number} of {lease.cell}" for lease in status.under_way[:MOST_WORKERS]
+    ]
+    lines = [outcomes_line(status.outcomes), "", *cell_lines(_chosen(status), width), "", *workers]
+    table = Text("\n".join(lines), no_wrap=True, overflow="ellipsis")
+    # without colours a bar does not fill its line, so that the next line would follow it
+    return Group(Text(headline(status), style="bold"), Padding(bar), table)
+
+
+def _chosen(status: "Status") -> "list[CellStatus]":
+    """Returns the cells to show: first those that are being worked on, then those with most failures."""
+    busy = {lease.cell for lease in status.under_way}
+    return sorted(
+        status.cells, key=lambda cell: (cell.name not in busy, -cell.outcomes.get("FAIL", 0), cell.name)
+    )[:MOST_WATCHED]

@@ -7,7 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
-from roadgpt.brief.plan import read_plan
+from roadgpt.brief.model import Amount
+from roadgpt.brief.normal import STRAIGHT, normal
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.route_words import TOLD_ON_ROUTES
 from roadgpt.brief.readers.model.slots import SLOTS, NumberSlot, slot_name, slotted
@@ -15,12 +17,10 @@ from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, OF_ROADS, SLOT_TOK
 from roadgpt.brief.readers.model.wordpiece import WordPieces
 from roadgpt.brief.sentence import sentence
 from roadgpt.learn.augmentation import augmented
-from roadgpt.learn.generated_routes import generated_routes
 from roadgpt.learn.generator import Pair, changed, contrasted, pairs, specified
 from roadgpt.learn.held_out import is_held_out
 from roadgpt.learn.mentions import names_in, with_mention, with_talk
-from roadgpt.learn.routes import routes
-from roadgpt.learn.shared_values import with_shared_values
+from roadgpt.learn.routes import generated_routes, routes
 
 Numbers = npt.NDArray[np.int64]
 LONGEST_PLAN = 95
@@ -67,6 +67,9 @@ STRIDE = 8
 """The lengths of texts and plans in a batch are rounded up to a multiple of this number."""
 SAID_BACK = 0.06
 """Share of hand-written pairs whose text is replaced by RoadGPT's own sentence for the plan."""
+FIELDS = ("degrees", "radius")
+FEWEST = 2
+"""The least number of turning clauses for which the rewritten plan is shorter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,3 +247,38 @@ def padded(rows: Sequence[Sequence[int]]) -> Numbers:
     for index, row in enumerate(rows):
         out[index, : len(row)] = row
     return out
+
+
+def with_shared_values(line: str, slots: Sequence[NumberSlot]) -> str:
+    """Moves degrees and radii that all turns share to the part of a plan that holds for the whole road.
+
+    A value is moved only if each of its numbers occurs exactly once in the description, two or more turns
+    share it, and the plan has no such value for the whole road yet.
+
+    Args:
+        line: a plan, or a refusal.
+        slots: the numbers in the description.
+
+    Returns:
+        A plan with the same normal form.
+    """
+    if line.startswith("!"):
+        return line
+    brief = read_plan(line)
+    turning = [clause for clause in brief.clauses if clause.kind not in STRAIGHT]
+    for name in FIELDS:
+        amounts = {getattr(clause, name) for clause in turning}
+        shared = next(iter(amounts)) if len(amounts) == 1 else None
+        if len(turning) < FEWEST or not shared or getattr(brief, name) or not _is_said_once(shared, slots):
+            continue
+        clauses = tuple(
+            clause if clause.kind in STRAIGHT else clause.model_copy(update={name: None})
+            for clause in brief.clauses
+        )
+        brief = brief.model_copy(update={"clauses": clauses, name: shared})
+    return plan(brief) if normal(brief) == normal(read_plan(line)) else line
+
+
+def _is_said_once(amount: Amount, slots: Sequence[NumberSlot]) -> bool:
+    values = [slot.value for slot in slots]
+    return all(values.count(number) == 1 for number in (amount.lo, amount.hi) if number is not None)

@@ -17,8 +17,7 @@ from roadgpt.learn.calibrate import calibrated
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.growing import decoder_layers
 from roadgpt.learn.network import NetworkSizes, ReaderNetwork
-from roadgpt.learn.piece_vocabulary import read_vocabulary
-from roadgpt.learn.pretrained import NOTICE
+from roadgpt.learn.pretrained import NOTICE, read_vocabulary
 
 OPSET = 17
 SHARED = "reader.pieces.weight_quantized"

@@ -1,11 +1,36 @@
 """Prepares a new training run, and verifies the hash of the public weights from which the encoder starts."""
 
+import re
 from collections.abc import Sequence
 from hashlib import file_digest
 from pathlib import Path
 
 from roadgpt.errors import LearnError
-from roadgpt.learn.piece_vocabulary import read_vocabulary, trimmed
+
+MARKS = 25
+"""One more than the number of unused vocabulary entries, [unused1] to [unused24], that stand for slots and
+marks."""
+LATIN = re.compile(r"(##)?[a-zß0-9]+|[!-/:-@\[-`{-~°º€]")
+SPECIAL = ("[UNK]", "[CLS]", "[SEP]")
+
+
+def trimmed(vocabulary: Sequence[str]) -> list[str]:
+    """Returns the pieces of BERT's vocabulary that the network uses, with the padding piece first."""
+    kept = ["[PAD]", *(f"[unused{number}]" for number in range(1, MARKS)), *SPECIAL]
+    seen = set(kept)
+    for piece in vocabulary:
+        large = piece.isdecimal() and int(piece) > 20  # such numbers are slots
+        if piece in seen or not LATIN.fullmatch(piece) or large:
+            continue
+        kept.append(piece)
+        seen.add(piece)
+    return kept
+
+
+def read_vocabulary(path: Path) -> list[str]:
+    """Returns the pieces in a vocabulary file with one piece per line, such as BERT's ``vocab.txt``."""
+    return path.read_text(encoding="utf-8").rstrip("\n").split("\n")
+
 
 NAME = "sentence-transformers/all-MiniLM-L6-v2 (Apache-2.0)"
 HASH = "53aa51172d142c89d9012cce15ae4d6cc0ca6895895114379cacb4fab128d9db"

@@ -2,9 +2,12 @@
 
 import json
 import math
+import multiprocessing
+import os
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ from torch.nn import functional
 
 from roadgpt.brief.readers.model.vocabulary import OF_ROADS, TOKENS
 from roadgpt.brief.readers.model.wordpiece import WordPieces
+from roadgpt.errors import LearnError
 from roadgpt.learn.data import SHARES, SHARES_OF_ROUTES, Numbers, batches, examples
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.growing import decoder_layers, grown
@@ -235,3 +239,73 @@ def _save(path: Path, reader: nn.Module, optimiser: torch.optim.Optimizer, step:
     beside = path.with_suffix(".new")
     torch.save({"reader": reader.state_dict(), "optimiser": optimiser.state_dict(), "step": step}, beside)
     beside.replace(path)
+
+
+def train_together(
+    folder: Path,
+    pieces: Sequence[str],
+    weights: Path | None,
+    hand: Sequence[Pair],
+    plan: TrainingSettings,
+    report: Callable[[str], None],
+) -> None:
+    """Trains as ``train`` does, but with ``plan.workers`` processes; on a GPU, only one process is used.
+
+    Raises:
+        LearnError: a worker process ended before its work was done.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for left_over in folder.glob("weights-*"):  # left by a training that was stopped between two saves
+        left_over.unlink()
+    if torch.cuda.is_available():
+        plan = replace(plan, workers=1)
+    spawn = multiprocessing.get_context("spawn")
+    others: list[BaseProcess] = [
+        spawn.Process(
+            target=_work,
+            args=(folder, pieces, weights, hand, replace(plan, rank=rank), os.getpid()),
+            daemon=True,
+        )
+        for rank in range(1, plan.workers)
+    ]
+    for worker in others:
+        worker.start()
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1 if others else threads)
+    try:
+        train(folder, pieces, weights, hand, plan, report, lambda: _all_there(others))
+    finally:
+        torch.set_num_threads(threads)
+        for worker in others:
+            worker.join(timeout=10)
+            worker.kill()
+
+
+def _work(
+    folder: Path,
+    pieces: Sequence[str],
+    weights: Path | None,
+    hand: Sequence[Pair],
+    plan: TrainingSettings,
+    parent: int,
+) -> None:
+    """Runs one worker."""
+    torch.set_num_threads(1)
+    train(folder, pieces, weights, hand, plan, lambda line: None, lambda: _not_alone(parent))
+
+
+def _not_alone(parent: int) -> None:
+    """Ends this worker if its parent was killed; otherwise the worker would run on and write into the folder
+    of the next training.
+    """
+    if os.getppid() != parent:
+        raise SystemExit(1)
+
+
+def _all_there(workers: Sequence[BaseProcess]) -> None:
+    for worker in workers:
+        if worker.exitcode not in (None, 0):
+            raise LearnError(
+                f"a training process ended with status {worker.exitcode}; "
+                "run the same command again to resume from the last checkpoint"
+            )

@@ -1,5 +1,7 @@
 """Draws the bird's-eye view of a road, to scale and with north at the top."""
 
+from dataclasses import replace
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -12,9 +14,10 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.ticker import MultipleLocator
 
+from roadgpt.campaign.faults.reason import FailureReason
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
-from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, new_figure
+from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, save
 from roadgpt.report.labels import Labels
 from roadgpt.report.network_view import SIGN_NAMES, sign_style, signs_shown
 from roadgpt.report.places import MarkedPlace, places_of
@@ -40,6 +43,9 @@ OUTSIDE: tuple[Severity, ...] = SEVERITIES[1:]
 
 # plasma without its lightest end, which has too little contrast on asphalt
 SPEEDS = LinearSegmentedColormap.from_list("speeds", colormaps["plasma"](np.linspace(0.0, 0.86, 64)))
+BEFORE, AFTER = 50.0, 20.0  # m of road that are shown
+FAULT_ROOM = 6.0  # m beside it
+FAULT_LEAST = 45.0  # m across
 
 
 def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> Figure:
@@ -208,3 +214,31 @@ def _draw_key(figure: Figure, above: float, entries: list[KeyEntry]) -> None:
         figure.add_artist(Line2D((left / wide, (left + width) / wide), (y, y), **style))
         figure.text((left + width + GAP) / wide, y, text, size=KEY_SIZE, color=SOFT, va="center")
         left += width + 3 * GAP + inches(text, KEY_SIZE)
+
+
+def fault_picture(run: Run, reason: FailureReason, more: str = "") -> Figure:
+    """Returns a bird's-eye view of the place of a failure, with the cause in its header.
+
+    Args:
+        run: a Run that failed.
+        reason: the reason for the failure.
+        more: text to add after the reason, such as "fails every time (5 of 5 disturbed drives)"; may be
+            empty.
+    """
+    assert run.road is not None
+    s = run.road.sample(1.0)
+    near = (s.s >= reason.station - BEFORE) & (s.s <= reason.station + AFTER)
+    frame = Frame.around(
+        s.points[near][:, :2],
+        FAULT_ROOM + run.world.profile_of(run.road).paved_reach,
+        FAULT_LEAST,
+        run.world.site.map_size,
+    )
+    said = f"{reason.sentence}; {more}" if more else reason.sentence
+    return birds_eye(replace(run, description=said), frame=frame)
+
+
+@in_our_style
+def draw_fault(run: Run, reason: FailureReason, more: str, path: Path) -> Path:
+    """Writes the picture of a failure to ``path``, whose suffix gives the format; see ``fault_picture``."""
+    return save(fault_picture(run, reason, more), path)

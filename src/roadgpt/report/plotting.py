@@ -4,16 +4,21 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
-from roadgpt.errors import UsageError
+from roadgpt.campaign import Campaign
+from roadgpt.errors import RoadGPTError, UsageError
 from roadgpt.network import MapDesign, NetworkDesign, Route, made_from
-from roadgpt.report.birds_eye import driven_path, mark
+from roadgpt.report.birds_eye import birds_eye, driven_path, mark
+from roadgpt.report.canvas import encoded, in_our_style
+from roadgpt.report.overview import pages
 from roadgpt.report.places import places_of
 from roadgpt.report.plan_view import draw_ends, draw_road, plan_points, stations_of
 from roadgpt.road import Design, Road, World
 from roadgpt.run import Run
 
 MARGIN = 0.05  # of the road's extent, left free around it
+SIDE = 5.0  # inches
 
 
 def plot(what: Road | Design | Run, ax: Axes | None = None, world: World | None = None) -> Axes:
@@ -72,3 +77,30 @@ def _metres_per_inch(ax: Axes) -> float:
     assert figure is not None
     low, high = ax.get_xlim()
     return float((high - low) / (ax.get_position().width * figure.get_figwidth()))
+
+
+@in_our_style
+def png_of(value: Any) -> bytes | None:
+    """Returns the bytes of a PNG file with a picture of the value, or None if there is nothing to show.
+
+    Args:
+        value: a Road, a Design, a Run, or a Campaign. For a Campaign, the first page of ``overview`` is
+            shown.
+    """
+    figure = _figure(value)
+    return None if figure is None else encoded(figure, "png")
+
+
+def _figure(value: Any) -> Figure | None:
+    if isinstance(value, Run):
+        return None if value.road is None else birds_eye(value)
+    if isinstance(value, Road | Design):
+        figure = Figure(figsize=(SIDE, SIDE), facecolor="white", layout="constrained")
+        plot(value, figure.add_subplot())
+        return figure
+    if isinstance(value, Campaign):
+        try:
+            return next(iter(pages(value.folder)), None)
+        except RoadGPTError:  # of a campaign that has not begun, its one line is enough
+            return None
+    return None

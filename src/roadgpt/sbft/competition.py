@@ -4,19 +4,22 @@ is used up.
 
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from roadgpt.errors import RoadGPTError, UsageError
+import numpy as np
+
+from roadgpt.check import Finding, sbft_verdict
+from roadgpt.check.sbft import TOO_FEW
+from roadgpt.errors import PartError, RoadGPTError, UsageError
 from roadgpt.road import Road, Site, World
-from roadgpt.run import Draw, Request, Run, Setup, check_parts, prove
+from roadgpt.run import Draw, Request, Run, Seconds, Setup, check_parts, prove
 from roadgpt.run.lost_drives import LostDrives
 from roadgpt.sbft.experiment import Ending, Experiment
 from roadgpt.sbft.generator_process import GeneratorExitedError, GeneratorProcess
 from roadgpt.sbft.json_lines import Message
 from roadgpt.sbft.results import LOG, Results, new_folder
-from roadgpt.sbft.single_test import run_test
 from roadgpt.stopping import look
 
 USUAL = World(site=Site(map_size=200.0))
@@ -29,6 +32,7 @@ LOADING = 120.0  # s of wall time for a generator's module to be imported
 NO_PYTHON = "{} does not run generators: {}; is it a Python of 3.8 or newer? Name another one with --python"
 
 OVER: Message = {"is_over": True}
+WRONG_TYPE = "Wrong type"
 
 
 @dataclass
@@ -245,3 +249,45 @@ def _died(status: int | None) -> str:
     if status is not None and status < 0:
         return f"its process was ended by signal {-status}"
     return f"its process ended without an answer (exit status {status})"
+
+
+def run_test(points: Any, index: int, request: Request, generating: float, is_test: bool = True) -> Run:
+    """Validates and drives one test, and returns its Run.
+
+    Args:
+        points: control points ``(n, 2)`` in metres; ignored if ``is_test`` is False.
+        index: number of the test.
+        request: the world, setup and seed of the test; the rules in the setup must be the competition's.
+        generating: seconds that the generator took to make the test.
+        is_test: False if the generator submitted something that is not a test; the Run is then invalid and
+            has no road.
+
+    Raises:
+        PartError: a plug-in is not installed.
+    """
+    if not is_test:
+        return _invalid(WRONG_TYPE, None, index, request, generating)
+    table = np.asarray(points, float).reshape(-1, 2)
+    if len(table) < 2:
+        return _invalid(TOO_FEW, None, index, request, generating)
+    try:
+        road = Road.through(table)
+        is_valid, message = sbft_verdict(table, request.world.site.map_size)
+    except RoadGPTError as error:
+        return _invalid(str(error), None, index, request, generating)
+    if not is_valid:
+        return _invalid(message, road, index, request, generating)
+    try:
+        run = prove(road, request.seed, request.world, request.setup, index)
+    except PartError:
+        raise
+    except Exception as error:  # an error costs only the road on which it happens
+        said = str(error) if isinstance(error, RoadGPTError) else f"the test failed: {error!r}"
+        run = Run(request, index, request.seed, outcome="ERROR", description=said, road=road)
+    return replace(run, request=request, seconds=Seconds(generating, run.seconds.drive))
+
+
+def _invalid(message: str, road: Road | None, index: int, request: Request, generating: float) -> Run:
+    finding = (Finding("sbft", message),)
+    seconds = Seconds(generating)
+    return Run(request, index, request.seed, "INVALID", message, road=road, findings=finding, seconds=seconds)

@@ -13,8 +13,14 @@ from roadgpt.plural import plural
 from roadgpt.reading import json_of
 from roadgpt.report.page import Block, Figure, Page, Section, Table, TableCell, linked, write
 from roadgpt.report.page.forest import forest
-from roadgpt.study.chapters.boundary import boundary, nearest, nearest_sentence
-from roadgpt.study.chapters.campaign_tests import coverage, failures, margins
+from roadgpt.study.chapters.campaign_tests import (
+    boundary,
+    coverage,
+    failures,
+    margins,
+    nearest,
+    nearest_sentence,
+)
 from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, outside_table, passed_tests
 from roadgpt.study.chapters.wording import (

@@ -1,6 +1,8 @@
 """Writes the report of a study, or of runs made by ``roadgpt run``, from the files in their folder."""
 
 from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from importlib.util import find_spec
 from pathlib import Path
 
 from roadgpt.campaign.faults.fault import faults_in
@@ -9,21 +11,21 @@ from roadgpt.plural import plural
 from roadgpt.reading import read_json
 from roadgpt.report.page import Page, Section, write
 from roadgpt.road import World
+from roadgpt.run import Setup
 from roadgpt.run.atomic import json_text, write_whole
 from roadgpt.run.card import read_card
-from roadgpt.study.baseline import NAME
 from roadgpt.study.chapters.alignment import alignment
-from roadgpt.study.chapters.card import card_of
 from roadgpt.study.chapters.diversity import diversity
 from roadgpt.study.chapters.faults import Steps, fault_summaries, faults, headline, what_to_try
 from roadgpt.study.chapters.out_of_lane import outside_sentences, passed_roads
 from roadgpt.study.chapters.roads import coverage, every_road, overview
-from roadgpt.study.chapters.significance import Source
 from roadgpt.study.chapters.validity import (
+    NAME,
     SBFT,
     STRICT,
     THESIS_LEFT,
     THESIS_VALID,
+    Source,
     departures,
     left_source,
     of_thesis,
@@ -37,6 +39,16 @@ from roadgpt.study.prompts import Prompt
 from roadgpt.study.road_record import RoadRecord, StudyPartRecord, read_part
 
 PROBLEMS = "problems.json"
+DIGITS = 16  # of a hash
+UNITS = {
+    "speed_limit": (3.6, " km/h"),
+    "max_grade": (100.0, " %"),
+    "bank": (100.0, " %"),
+    "friction": (1.0, ""),
+    "oob_tolerance": (1.0, ""),
+}
+"""Factor and unit with which a field of the World is shown; fields that are not listed are in metres."""
+WEIGHTS = (".onnx", ".npz", ".safetensors", ".bin")
 
 
 def keep_problems(folder: Path, problems: Sequence[Problem]) -> None:
@@ -201,3 +213,62 @@ def _least(roads: Sequence[RoadRecord], outcome: str) -> tuple[float, str] | Non
         (road.margin, road.index) for road in roads if road.outcome == outcome and road.margin is not None
     ]
     return (min(found)[0], f"road {min(found)[1]}") if found else None
+
+
+def card_of(
+    command: str, roads: int, seed: int, setup: Setup, world: World, parts: Sequence[StudyPartRecord]
+) -> dict[str, str]:
+    """Returns the information needed to reproduce a report, as labels with their texts in the order shown
+    on the page."""
+    out = {"command": command} if command else {}
+    out |= {
+        "seed": str(seed),
+        "roads of each": f"{roads:,}",
+        "made by": ", ".join(dict.fromkeys(part.designer for part in parts)),
+    }
+    out["reader"] = setup.reader + _hashes(setup.reader)
+    if setup.drives:
+        out["driven by"] = f"{setup.driver} in {setup.simulator}"
+    if setup.chat is not None and setup.chat.model:
+        out["language model"] = setup.chat.model
+    out["world"] = ", ".join(_said(name, value) for name, value in world.model_dump().items())
+    surfaces = {f"{road.friction:g}" for part in parts for road in part.roads if road.friction is not None}
+    if surfaces - {f"{world.site.friction:g}"}:
+        out["friction of the roads"] = f"{' and '.join(sorted(surfaces))}, by what the words say"
+    return out | {"versions": _versions(parts)}
+
+
+def _said(name: str, value: float | str) -> str:
+    """Returns a field of a World as a sentence shows it, in the unit in which users give it."""
+    factor, unit = UNITS.get(name, (1.0, " m"))
+    shown = value if isinstance(value, str) else f"{value * factor:.4g}{unit}"
+    if isinstance(value, bool):
+        shown = "counted" if value else "not counted"
+    return f"{name.replace('_', ' ')} {shown}"
+
+
+def _versions(parts: Sequence[StudyPartRecord]) -> str:
+    """Returns the versions of all libraries; several of one if it changed before a study was resumed."""
+    found: dict[str, dict[str, None]] = {}
+    for part in parts:
+        for road in part.roads:
+            for name, number in road.versions.items():
+                found.setdefault(name, {})[number] = None
+    return ", ".join(f"{name} {' and '.join(numbers)}" for name, numbers in found.items()) or "–"
+
+
+def _hashes(reader: str) -> str:
+    """Returns the hashes of the reader's weights, which show whether two studies used the same reader."""
+    name, _, folder = reader.partition(":")
+    if name != "model":
+        return ""
+    spec = find_spec("roadgpt.brief.readers.model")
+    home = Path(spec.origin).parent / "weights" if spec and spec.origin else None
+    place = Path(folder) if folder else home
+    if place is None or not place.is_dir():
+        return ""
+    files: Mapping[str, bytes] = {
+        path.name: path.read_bytes() for path in sorted(place.iterdir()) if path.suffix in WEIGHTS
+    }
+    told = (f"{name} sha256 {sha256(data).hexdigest()[:DIGITS]}" for name, data in files.items())
+    return f" ({', '.join(told)})" if files else ""

@@ -18,12 +18,11 @@ from roadgpt.report.canvas import Format, save_all
 from roadgpt.report.page import Figure
 from roadgpt.study.survey import rating_charts
 from roadgpt.study.survey.analysis import analyse, load_answers
-from roadgpt.study.survey.answers import answers_of_raters
+from roadgpt.study.survey.answers import answers_of_raters, synthetic
 from roadgpt.study.survey.questions import CHECK, MATCHES
 from roadgpt.study.survey.rating_charts import rating_bars
 from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import Survey
-from roadgpt.study.survey.synthetic import synthetic
 from roadgpt.study.survey.tally import agreement, tally
 from survey_made import EVIL, folder_of, survey
 

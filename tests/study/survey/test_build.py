@@ -24,8 +24,7 @@ from roadgpt.run.card import Card
 from roadgpt.study.survey import build, media
 from roadgpt.study.survey.item_criteria import criteria_of
 from roadgpt.study.survey.media import Axes
-from roadgpt.study.survey.plan import plan_text, read_plan
-from roadgpt.study.survey.sampling import plan_from_runs
+from roadgpt.study.survey.plan import plan_from_runs, plan_text, read_plan
 from roadgpt.study.survey.survey import Survey, read_survey
 
 SETUP = Setup(drives=False)

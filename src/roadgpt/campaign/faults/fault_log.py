@@ -43,7 +43,7 @@ HEAD_OF_FAILURES = ("test", "fault", "way", "side", "radius_m", "station_m", "ma
 
 
 class FailureDrawing(Protocol):
-    """A function that writes a picture of a failure to a file, such as ``report.fault.draw_fault``."""
+    """A function that writes a picture of a failure to a file, such as ``report.birds_eye.draw_fault``."""
 
     def __call__(self, run: Run, reason: FailureReason, more: str, path: Path) -> object:
         """Writes a picture of a failing Run to ``path``, with ``more`` as an additional sentence."""

@@ -9,8 +9,7 @@ from pydantic import BaseModel
 
 from roadgpt.chat.meter import Account, occasion
 from roadgpt.chat.model import ChatSettings, Message, Reply, Spent
-from roadgpt.chat.recording import question_of
-from roadgpt.chat.store import ExchangeStore
+from roadgpt.chat.recording import ExchangeStore, question_of
 from roadgpt.errors import ChatError, RefusedError, ReplyError, UnparsableError, UsageError
 
 FAILURES = {kind.__name__: kind for kind in (RefusedError, UnparsableError, ReplyError)}

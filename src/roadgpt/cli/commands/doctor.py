@@ -95,7 +95,7 @@ def _library(name: str) -> CheckResult:
 
 
 def _shelves() -> Iterator[CheckResult]:
-    from roadgpt.cli.installed_plugins import installed
+    from roadgpt.cli.commands.config import installed
 
     try:
         parts = installed()
@@ -113,7 +113,7 @@ def _shelves() -> Iterator[CheckResult]:
 
 def _model() -> str:
     """Checks that the configured language model can be used; the check also passes if none is configured."""
-    from roadgpt.chat.diagnosis import diagnose
+    from roadgpt.chat.client import diagnose
 
     return diagnose()
 

@@ -143,7 +143,7 @@ def _analysed(place: Path, found: "Faults", look: AnalysisOptions) -> "dict[int,
 
     draw: FailureDrawing | None = None
     if look.formats:
-        from roadgpt.report.fault import draw_fault as draw
+        from roadgpt.report.birds_eye import draw_fault as draw
     tasks = [
         AnalysisTask(place, each.number, each.names, look.repeat, look.minimise, draw, look.formats)
         for each in found.them

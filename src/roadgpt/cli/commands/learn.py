@@ -155,8 +155,7 @@ def train(
     roadgpt learn train runs/reader --installed --steps 2000 --own my-pairs
     """
     try:
-        from roadgpt.learn.data_parallel import train_together
-        from roadgpt.learn.train import TrainingSettings
+        from roadgpt.learn.train import TrainingSettings, train_together
     except ImportError as error:
         raise LearnError(EXTRA) from error
     from roadgpt.brief.readers.model import ROUTES, SECOND, WEIGHTS

@@ -34,8 +34,8 @@ def command(
     roadgpt show CAMPAIGN --failures
     roadgpt show CAMPAIGN --watch
     """
+    from roadgpt.cli.campaigns import watch_campaign
     from roadgpt.cli.summary import json_lines, progress_lines, show
-    from roadgpt.cli.watch_campaign import watch_campaign
 
     choice = options.choice_of(rest)
     if (watch or progress) and choice is not None:

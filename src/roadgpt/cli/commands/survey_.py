@@ -80,8 +80,7 @@ def new(
     if study is not None and not (asks.strip() and contact.strip()):
         raise UsageError(ASK)
     from roadgpt.study.survey.build import make_survey
-    from roadgpt.study.survey.plan import plan_text, read_plan
-    from roadgpt.study.survey.sampling import plan_from_runs
+    from roadgpt.study.survey.plan import plan_from_runs, plan_text, read_plan
 
     plan = read_plan(file) if file else plan_from_runs(study or Path(), asks, contact, seed, pairs)
     if no_films:

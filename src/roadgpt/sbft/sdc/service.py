@@ -6,10 +6,71 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 import grpc
+from google.protobuf import descriptor_pb2, descriptor_pool, message_factory
 
 from roadgpt.errors import UsageError
-from roadgpt.sbft.sdc.messages import METHODS, SERVICE, message
 from roadgpt.sbft.sdc.risk import LINE_ONLY, RiskFeatures, fit_model, order, risk_features
+
+FILE = "competition.proto"
+SERVICE = "CompetitionTool"
+Kind = descriptor_pb2.FieldDescriptorProto
+
+MESSAGES: dict[str, tuple[tuple[str, int | str, bool], ...]] = {
+    "Empty": (),
+    "NameReply": (("name", Kind.TYPE_STRING, False),),
+    "RoadPoint": (
+        ("sequenceNumber", Kind.TYPE_INT64, False),
+        ("x", Kind.TYPE_FLOAT, False),
+        ("y", Kind.TYPE_FLOAT, False),
+    ),
+    "SDCTestCase": (("testId", Kind.TYPE_STRING, False), ("roadPoints", "RoadPoint", True)),
+    "Oracle": (("testCase", "SDCTestCase", False), ("hasFailed", Kind.TYPE_BOOL, False)),
+    "InitializationReply": (("ok", Kind.TYPE_BOOL, False),),
+    "SelectionReply": (("testId", Kind.TYPE_STRING, False),),
+    "PrioritizationReply": (("testId", Kind.TYPE_STRING, False),),
+}
+"""For each message, its fields in the order of their numbers: (name, scalar type or name of a message, is
+repeated)."""
+
+METHODS = {
+    "Name": ("Empty", False, "NameReply", False),
+    "Initialize": ("Oracle", True, "InitializationReply", False),
+    "Select": ("SDCTestCase", True, "SelectionReply", True),
+    "Prioritize": ("SDCTestCase", True, "PrioritizationReply", True),
+}
+"""For each RPC: (request, whether the request is a stream, reply, whether the reply is a stream)."""
+
+
+def description() -> Any:
+    """Returns ``competition.proto`` as a protobuf file descriptor."""
+    file = descriptor_pb2.FileDescriptorProto(name=FILE, syntax="proto3")
+    for name, fields in MESSAGES.items():
+        message = file.message_type.add(name=name)
+        for number, (field, kind, is_repeated) in enumerate(fields, 1):
+            label = Kind.LABEL_REPEATED if is_repeated else Kind.LABEL_OPTIONAL
+            made = message.field.add(name=field, number=number, label=label)
+            if isinstance(kind, str):
+                made.type, made.type_name = Kind.TYPE_MESSAGE, f".{kind}"
+            else:
+                made.type = kind
+    service = file.service.add(name=SERVICE)
+    for name, (request, takes_many, reply, gives_many) in METHODS.items():
+        method = service.method.add(name=name, input_type=f".{request}", output_type=f".{reply}")
+        if takes_many:
+            method.client_streaming = True
+        if gives_many:
+            method.server_streaming = True
+    return file
+
+
+_POOL = descriptor_pool.DescriptorPool()
+_POOL.AddSerializedFile(description().SerializeToString())
+
+
+def message(name: str) -> Any:
+    """Returns the class of the message with this name."""
+    return message_factory.GetMessageClass(_POOL.FindMessageTypeByName(name))
+
 
 log = logging.getLogger(__name__)
 

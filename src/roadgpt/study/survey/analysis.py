@@ -7,11 +7,10 @@ from roadgpt.errors import RoadGPTError, UsageError, explained
 from roadgpt.report.page import Block, Page, Section, write
 from roadgpt.run.atomic import write_whole
 from roadgpt.study.survey import report_blocks
-from roadgpt.study.survey.answers import Answers, answers_in, csv_of
+from roadgpt.study.survey.answers import Answers, answers_in, csv_of, synthetic
 from roadgpt.study.survey.rating_charts import about_bars, rating_bars
 from roadgpt.study.survey.store import ANSWERS, AnswerStore
 from roadgpt.study.survey.survey import read_survey
-from roadgpt.study.survey.synthetic import synthetic
 from roadgpt.study.survey.tally import about_counts, tally
 
 FIGURES = "figures"
