@@ -161,7 +161,8 @@ def _way(z: Complex) -> complex:
 def is_clear(sketch: NetworkSketch) -> bool:
     """Returns whether all parts of a sketch keep clear of each other, except where they meet."""
     z, part, reach = sketch.z, sketch.part, sketch.reach
-    of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < reach[:, None] + reach + MARGIN, 1))
+    dx, dy = z.real[:, None] - z.real, z.imag[:, None] - z.imag
+    of, others = np.nonzero(np.triu(dx * dx + dy * dy < (reach[:, None] + reach + MARGIN) ** 2, 1))
     apart_from = ~sketch.joined[part[of], part[others]]
     of, others = of[apart_from], others[apart_from]
     meet = sketch.near[part[of], part[others]]
