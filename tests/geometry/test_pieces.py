@@ -44,6 +44,13 @@ def test_no_gap_between_pieces(curve: PieceCurve) -> None:
     assert np.all(gaps < 1e-8)
 
 
+@given(curves)
+def test_the_end_is_where_the_curve_is_after_its_length(curve: PieceCurve) -> None:
+    x, y, heading = curve.end
+    assert [x, y] == pytest.approx(curve.at(curve.length), abs=1e-9)
+    assert heading == pytest.approx(curve.heading(curve.length), abs=1e-12)
+
+
 @given(st.lists(curves, min_size=1, max_size=4))
 def test_curves_together_are_where_each_is_alone(several: list[PieceCurve]) -> None:
     """Their ends and the joints of their pieces are among the stations."""

@@ -20,6 +20,7 @@ from network.random_designs import random_lanes_design
 from network.shared_laws import Motion, check_that_ways_join_the_arms
 from roadgpt.geometry import CubicProfile
 from roadgpt.network import NetworkRoad, RoadEnd, Route, build_route, read_network_design, road_from_json
+from roadgpt.network.building import edges_at
 from roadgpt.network.lane_along import change_windows
 from roadgpt.road import World
 
@@ -52,6 +53,18 @@ def offsets(member: NetworkRoad, lane: int, s: float) -> tuple[float, float]:
     centre = value(profile.offset, s)
     inside = sum(value(each.width, s) for each in side[: abs(lane) - 1])
     return centre + sign * inside, centre + sign * (inside + value(side[abs(lane) - 1].width, s))
+
+
+@settled
+@given(seeds, st.floats(0, 1))
+def test_edges_at_one_station_are_the_outermost_borders(seed: int, share: float) -> None:
+    for member in drawn(seed).network.roads:
+        s, (along, against) = share * member.road.length, member.profile.count
+        left, right = edges_at(member.profile, s)
+        assert right == pytest.approx(offsets(member, -along, s)[1], abs=EXACT)
+        begin = value(member.profile.offset, s) + member.profile.median
+        widths = [value(lane.width, s) for lane in member.profile.left[:against]]
+        assert left == pytest.approx(begin + sum(widths), abs=EXACT)
 
 
 def borders(member: NetworkRoad, lane: int, s: float) -> np.ndarray:

@@ -36,6 +36,8 @@ __all__ = [
 
 OTHER_SIDE: dict[Side, Side] = {"left": "right", "right": "left"}
 CentreLine = Literal["solid", "broken", "double", "none"]
+OF_THE_WORDS = ("words", "beside", "unused", "confidence", "other")
+"""The fields of a Brief that say how it was read, and require nothing of a road."""
 
 
 def _known(name: str) -> str:
@@ -164,8 +166,12 @@ class Brief(Frozen):
     @property
     def is_open(self) -> bool:
         """Whether nothing is required of the road."""
-        said = {"words": "", "beside": (), "unused": (), "confidence": 1.0, "other": ""}
-        return self.model_copy(update=said) == Brief()
+        return self._requires_only(OF_THE_WORDS)
+
+    def _requires_only(self, names: tuple[str, ...]) -> bool:
+        """Returns whether all fields but those with these names have their usual values."""
+        fields = Brief.model_fields.items()
+        return all(name in names or getattr(self, name) == field.default for name, field in fields)
 
     @property
     def lanes_text(self) -> str | None:
@@ -204,8 +210,7 @@ class Brief(Frozen):
     @property
     def has_free_shape(self) -> bool:
         """Whether nothing but lanes and markings is required of the road."""
-        lanes = {"lanes": None, "against": None, "divided": False, "centre": None, "motorway": False}
-        return self.model_copy(update=lanes).is_open
+        return self._requires_only((*OF_THE_WORDS, "lanes", "against", "divided", "centre", "motorway"))
 
     @property
     def as_stretch(self) -> "Brief":

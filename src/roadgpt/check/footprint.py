@@ -16,7 +16,7 @@ from roadgpt.geometry import CubicProfile, GradeProfile, PieceCurve
 from roadgpt.geometry.curve import Array
 from roadgpt.geometry.pieces import advance
 from roadgpt.network import Network, NetworkRoad, RoadEnd
-from roadgpt.road.profile import Lane, Width
+from roadgpt.network.building import edges_at
 
 SAG = 0.01  # m, between the edge of a bend and the chords of its polygon
 LONGEST = 8.0  # m, of a chord of a bend
@@ -134,17 +134,11 @@ class Footprint:
         x, y, heading = self._places(index, u)
         first = np.searchsorted(owner, np.arange(len(self._plans) + 1))
         s = _before(self._pieces.length, np.searchsorted(self._pieces.owner, self._pieces.owner))[index] + u
-        left, right = np.empty(len(s)), np.empty(len(s))
-        for n, member in enumerate(self.network.roads):
-            here, begin = slice(first[n], first[n + 1]), member.profile.begins
-            if _varies(member):
-                centre = member.profile.centre(s[here])
-                left[here] = centre + begin[0] + _widths(member.profile.left, s[here])
-                right[here] = centre - begin[1] - _widths(member.profile.right, s[here])
-            else:
-                middle = member.profile.offset_range[0]
-                left[here] = middle + begin[0] + _width(member.profile.left)
-                right[here] = middle - begin[1] - _width(member.profile.right)
+        usual = np.array([edges_at(each.profile, 0.0) for each in self.network.roads])
+        left, right = np.repeat(usual, np.diff(first), axis=0).T.copy()
+        for n in np.flatnonzero(self._varies).tolist():
+            here = slice(first[n], first[n + 1])
+            left[here], right[here] = self.network.roads[n].profile.edges(s[here])
         sin, cos = np.sin(heading), np.cos(heading)
         return (
             np.stack((x - right * sin, y + right * cos), axis=1),
@@ -156,8 +150,8 @@ class Footprint:
     def _stations(self) -> tuple[Indices, Array]:
         """Returns the piece of each point of the edges, and its distance in metres from the piece's start."""
         owner, length, k0, dk, *_ = self._pieces
-        reach = np.array([_reach(each) for each in self.network.roads])[owner]
-        varies = np.array([_varies(each) for each in self.network.roads])[owner]
+        reach = np.array([each.profile.paved_reach for each in self.network.roads])[owner]
+        varies = self._varies[owner]
         bend = np.maximum(np.abs(k0), np.abs(k0 + dk * length))
         with np.errstate(divide="ignore"):
             step = np.minimum(LONGEST, np.sqrt(8 * SAG / (bend * (1 + bend * reach))))
@@ -172,6 +166,11 @@ class Footprint:
         u = np.where((nth == 0) & starts[index], trim[index], u)
         u = np.where((nth == count[index]) & ends[index], (length - trim)[index], u)
         return index, u
+
+    @cached_property
+    def _varies(self) -> NDArray[np.bool_]:
+        """Whether the width or the offset of the carriageway varies along each road, ``(n,)``."""
+        return np.array([_varies(each) for each in self.network.roads])
 
     @cached_property
     def bounds(self) -> Array:
@@ -209,7 +208,9 @@ class Footprint:
         right, left, _, first = self._edges
         points = np.concatenate((right, left))
         n = len(right)
-        order = np.concatenate([np.r_[a:b, n + b - 1 : n + a - 1 : -1] for a, b in pairwise(first.tolist())])
+        at = np.arange(n)
+        sides = [(at[a:b], n + at[a:b][::-1]) for a, b in pairwise(first.tolist())]
+        order = np.concatenate([each for pair in sides for each in pair])
         rings = np.repeat(np.arange(len(first) - 1), 2 * np.diff(first))
         found: NDArray[Any] = shapely.polygons(shapely.linearrings(points[order], indices=rings))
         return found
@@ -264,41 +265,18 @@ def _near(bounds: Array) -> tuple[Indices, Indices]:
     return one, other
 
 
-def _driving(lanes: tuple[Lane, ...]) -> list[Width]:
-    return [lane.width for lane in lanes if lane.kind == "driving"]
-
-
 def _varies(member: NetworkRoad) -> bool:
-    widths = [*_driving(member.profile.left), *_driving(member.profile.right), member.profile.offset]
+    lanes = (*member.profile.left, *member.profile.right)
+    widths = [member.profile.offset, *(lane.width for lane in lanes if lane.kind == "driving")]
     return any(isinstance(width, CubicProfile) for width in widths)
-
-
-def _width(lanes: tuple[Lane, ...]) -> float:
-    """Returns the width in metres of all driving lanes of one side, at most; exact if they do not vary."""
-    return sum(
-        max(row[0] for row in width.coefficients) if isinstance(width, CubicProfile) else width
-        for width in _driving(lanes)
-    )
-
-
-def _widths(lanes: tuple[Lane, ...], s: Array) -> Array:
-    """Returns the width in metres of all driving lanes of one side at stations ``s`` of the road."""
-    total = np.zeros(s.shape)
-    for width in _driving(lanes):
-        total += width.height(s) if isinstance(width, CubicProfile) else width
-    return total
-
-
-def _reach(member: NetworkRoad) -> float:
-    (low, high), begin = member.profile.offset_range, member.profile.begins
-    left = _width(member.profile.left) + begin[0]
-    return max(left + high, _width(member.profile.right) + begin[1] - low)
 
 
 def _heights(member: NetworkRoad) -> tuple[tuple[float, float], tuple[float, float]]:
     """Returns the height in metres and the grade at the start of a road, and those at its end."""
     profile = member.road.elevation
-    if isinstance(profile, GradeProfile) and not any(profile.grades):
-        return (profile.z0, 0.0), (profile.z0, 0.0)
+    if isinstance(profile, GradeProfile):
+        is_level = not any(profile.grades)
+        start = profile.z0, profile.grades[0]
+        return start, start if is_level else profile.at(member.road.length)
     z, grade = (f(np.array([0.0, member.road.length])).tolist() for f in (profile.height, profile.grade))
     return (z[0], grade[0]), (z[1], grade[1])

@@ -5,14 +5,15 @@ farther out (on a shorter road, to the other end), so a bend within these 15 m c
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import islice, pairwise
 
 import numpy as np
 
 from roadgpt.brief.junctions import RAMPS, Control, JunctionKind, LaneKind, Side, Way, side_of
-from roadgpt.geometry import CubicProfile
+from roadgpt.geometry import CubicProfile, PieceCurve
+from roadgpt.geometry.pieces import along_all
 from roadgpt.network import Connection, Junction, Network, NetworkRoad, Passage, RoadEnd, Route
 from roadgpt.network.lane_design import LEAST_WIDTH
 
@@ -89,7 +90,9 @@ class MeasuredJunction:
 
 def measured_junctions(route: Route) -> list[MeasuredJunction]:
     """Returns the junctions that a route passes, in driving order. A roundabout counts as one junction."""
-    return [_measured(route.network, passage) for passage in route.passages]
+    passages = route.passages
+    directions = iter(directions_of(route.network, [end for each in passages for end in each.arms]))
+    return [_measured(route.network, each, [*islice(directions, len(each.arms))]) for each in passages]
 
 
 @dataclass(frozen=True)
@@ -201,9 +204,8 @@ def lengths_beside_ramp(network: Network, junction: Junction) -> tuple[float, fl
     return full, beside.road.length - full
 
 
-def _measured(network: Network, passage: Passage) -> MeasuredJunction:
+def _measured(network: Network, passage: Passage, directions: Sequence[float]) -> MeasuredJunction:
     ring = network.roundabout_of.get(passage.entered.id)
-    directions = [direction_of(network, end) for end in passage.arms]
     is_ramp = _is_by_ramp(network, passage)
     full, taper = (None, None) if is_ramp is None else lengths_beside_ramp(network, passage.entered)
     around = 1 if not network.left_hand else -1
@@ -249,13 +251,17 @@ def _lanes(network: Network, end: RoadEnd) -> tuple[int, int]:
     return (forward, backward) if end.contact == "end" else (backward, forward)
 
 
-def direction_of(network: Network, end: RoadEnd) -> float:
-    """Returns the direction of an arm out of its junction, in degrees counter-clockwise from +x."""
-    road = network.road(end.road).road
-    far = min(OUT, road.length)
-    near, away = (0.0, far) if end.contact == "start" else (road.length, road.length - far)
-    x, y = (road.at(away) - road.at(near))[:2].tolist()
-    return math.degrees(math.atan2(y, x))
+def directions_of(network: Network, arms: Sequence[RoadEnd]) -> list[float]:
+    """Returns the directions of arms out of their junctions, in degrees counter-clockwise from +x."""
+    plans, stations = [], []
+    for end in arms:
+        plan = network.road(end.road).road.plan
+        assert isinstance(plan, PieceCurve)
+        far = min(OUT, plan.length)
+        plans.append(plan)
+        stations.append(np.array([0.0, far] if end.contact == "start" else [plan.length, plan.length - far]))
+    points = along_all(plans, stations)[0] if plans else np.empty((0, 2))
+    return [math.degrees(math.atan2(y, x)) for x, y in (points[1::2] - points[::2]).tolist()]
 
 
 def _wrapped(angle: float) -> float:

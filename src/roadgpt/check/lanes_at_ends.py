@@ -64,8 +64,10 @@ def _points(network: Network) -> dict[LaneEnd, tuple[Point, Point]]:
         for lanes in (into, out_of):
             begin, is_along = width_at(profile.offset, s), bool(lanes) and profile.leads_along(lanes[0])
             t = begin if is_along else begin - profile.side * profile.median
+            outer = pose.beside(t)
             for lane, own in zip(lanes, profile.along if is_along else profile.against, strict=False):
                 width = width_at(own.width, s)
-                inner, t = t, t - width if lane < 0 else t + width
-                found[(end, lane)] = (pose.beside(inner), pose.beside(t))
+                t = t - width if lane < 0 else t + width
+                inner, outer = outer, pose.beside(t)
+                found[(end, lane)] = (inner, outer)
     return found

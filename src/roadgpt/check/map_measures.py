@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from roadgpt.brief.junctions import Control, JunctionKind
-from roadgpt.check.junction_measures import direction_of, kinds_of
+from roadgpt.check.junction_measures import directions_of, kinds_of
 from roadgpt.network import Junction, Network, RoadEnd
 
 STRAIGHT = math.radians(5.0)  # largest change of heading of a road that counts as straight
@@ -72,7 +72,7 @@ def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:
     is_ring = junctions[0].id in network.roundabout_of
     # the first arm of each junction of a roundabout is the one that is no part of the ring
     arms = [each.arms[0] for each in junctions] if is_ring else list(junctions[0].arms)
-    directions = [direction_of(network, arm.end) for arm in arms]
+    directions = directions_of(network, [arm.end for arm in arms])
     around = -1 if is_ring and network.left_hand else 1
     gaps = [around * (b - a) % 360 for a, b in pairwise([*directions, directions[0]])]
     kinds: tuple[JunctionKind, ...] = ("roundabout",) if is_ring else kinds_of(gaps)

@@ -18,7 +18,7 @@ those of this module.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -187,13 +187,15 @@ def _resampled(points: ArrayLike) -> _Line:
     if p.ndim != 2 or p.shape[1] < 2 or not np.isfinite(p[:, :3]).all():
         raise UsageError("a centre line is two or more points of two or three finite numbers each")
     steps = np.hypot(np.diff(p[:, 0]), np.diff(p[:, 1]))
-    fresh = np.r_[True, steps > 1e-6]
+    fresh = np.append(True, steps > 1e-6)
     if not fresh[1:].any():
         raise UsageError(
             "the points of the centre line all lie in one place; give at least two different ones"
         )
-    p = p[fresh]
-    along = np.r_[0.0, np.cumsum(np.hypot(np.diff(p[:, 0]), np.diff(p[:, 1])))]
+    if not fresh.all():
+        p = p[fresh]
+        steps = np.hypot(np.diff(p[:, 0]), np.diff(p[:, 1]))
+    along = np.append(0.0, np.cumsum(steps))
     s = np.linspace(0.0, along[-1], max(round(float(along[-1]) / STEP), 3) + 1)
     x, y = np.interp(s, along, p[:, 0]), np.interp(s, along, p[:, 1])
     z = np.interp(s, along, p[:, 2]) if p.shape[1] > 2 else np.zeros_like(s)
@@ -296,7 +298,6 @@ def _feature(
     last: int,
     side: Literal["left", "right"] | None = None,
     degrees: float = 0.0,
-    pieces: tuple[MeasuredFeature, ...] = (),
 ) -> MeasuredFeature:
     last = min(max(last, first + 1), len(line.s) - 1)
     first = min(first, last - 1)
@@ -307,7 +308,7 @@ def _feature(
     grade = 100 * float(line.z[last] - line.z[first]) / (end - start)
     radius = _radius(line.curvature[first : last + 1])
     inner_grade = _inner_grade(line, first, last)
-    return MeasuredFeature(kind, start, end, side, degrees, radius, grade, inner_grade, pieces)
+    return MeasuredFeature(kind, start, end, side, degrees, radius, grade, inner_grade)
 
 
 def _inner_grade(line: _Line, first: int, last: int) -> float:
@@ -325,12 +326,12 @@ def _straight(line: _Line, first: int, last: int) -> MeasuredFeature:
     before, after = np.maximum(here - HALF_WINDOW, 0), np.minimum(here + HALF_WINDOW, len(line.s) - 1)
     local = 100 * (line.z[after] - line.z[before]) / (line.s[after] - line.s[before])
     classes = (local >= LEVEL).astype(np.int8) - (local <= -LEVEL).astype(np.int8)
-    cuts = zip(*_stretches(classes), strict=True)
+    whole, cuts = _feature(line, "straight", first, last), [*zip(*_stretches(classes), strict=True)]
+    if len(cuts) == 1:
+        return replace(whole, pieces=(whole,))
     found = (_feature(line, "straight", first + int(a), min(first + int(b) + 1, last)) for a, b in cuts)
     pieces = tuple(piece for piece in found if piece.length >= LEAST_PIECE)
-    return _feature(
-        line, "straight", first, last, pieces=pieces or (_feature(line, "straight", first, last),)
-    )
+    return replace(whole, pieces=pieces or (whole,))
 
 
 __all__ = ["MeasuredFeature", "Measures", "measure", "way"]

@@ -91,6 +91,7 @@ class NetworkSearch:
         self.has_wide_bends = main_roads(brief.junctions)
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
+        self.others = Shapes().of(())
         self.failed: Counter[str] = Counter()
 
     def run(self, drafts: int = DRAFTS) -> NetworkDesign:
@@ -274,7 +275,7 @@ class NetworkSearch:
             wanted = brief.model_copy(update={"turns": exactly(0) if is_straight else at_least(1)})
         if n in self.has_wide_bends and brief.turns is None and wanted.turns not in (None, exactly(0)):
             wanted = wanted.model_copy(update={"sharpness": "sweeping"})
-        search = DraftSearch(wanted, self.world, Shapes().of(()), self.rng)
+        search = DraftSearch(wanted, self.world, self.others, self.rng)
         for _ in range(STRETCHES):
             found = search.stretch(haste, plain=span(wanted.length).lo < LONG)
             if found is not None:

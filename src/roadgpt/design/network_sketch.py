@@ -161,13 +161,31 @@ def _way(z: Complex) -> complex:
 def is_clear(sketch: NetworkSketch) -> bool:
     """Returns whether all parts of a sketch keep clear of each other, except where they meet."""
     z, part, reach = sketch.z, sketch.part, sketch.reach
-    of, others = np.nonzero(np.triu(np.abs(z[:, None] - z) < reach[:, None] + reach + MARGIN, 1))
-    apart_from = ~sketch.joined[part[of], part[others]]
-    of, others = of[apart_from], others[apart_from]
-    meet = sketch.near[part[of], part[others]]
-    if not meet.all():
-        return False
-    for node, away in sketch.nodes:
-        inside = (np.abs(z[of] - node) < away) & (np.abs(z[others] - node) < away)
-        of, others = of[~inside], others[~inside]
-    return not len(of)
+    first = np.searchsorted(part, np.arange(len(sketch.near) + 1))
+    may_meet = np.triu(_boxes_touch(sketch, first[:-1]) & ~sketch.joined)
+    for number in np.flatnonzero(may_meet.any(axis=1)).tolist():
+        own, those = slice(first[number], first[number + 1]), np.flatnonzero(may_meet[number][part])
+        dx, dy = z.real[own, None] - z.real[those], z.imag[own, None] - z.imag[those]
+        one, other = np.nonzero(dx * dx + dy * dy < (reach[own, None] + reach[those] + MARGIN) ** 2)
+        if not sketch.near[number, part[those[other]]].all():
+            return False
+        here, there = z[own][one], z[those[other]]
+        for node, away in sketch.nodes:
+            is_outside = (np.abs(here - node) >= away) | (np.abs(there - node) >= away)
+            here, there = here[is_outside], there[is_outside]
+        if len(here):
+            return False
+    return True
+
+
+def _boxes_touch(sketch: NetworkSketch, first: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Returns whether the boxes around two parts touch, each as wide as its road and half the margin.
+
+    ``first`` are the indices of the first point of each part; the shape is (parts, parts).
+    """
+    half = sketch.reach[first] + MARGIN / 2
+    touch = np.ones_like(sketch.near)
+    for values in (sketch.z.real, sketch.z.imag):
+        low, high = np.minimum.reduceat(values, first) - half, np.maximum.reduceat(values, first) + half
+        touch &= (low[:, None] <= high) & (low <= high[:, None])
+    return touch

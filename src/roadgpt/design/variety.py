@@ -151,8 +151,11 @@ class Shapes:
 
 
 def _room_for(designs: int) -> PlanShape:
-    some = shape_of(np.array([0.0, 1.0]), np.array([0j, 1 + 0j]))
-    return PlanShape._make(np.zeros((designs, *np.shape(column)), column.dtype) for column in some)
+    def rows(length: int) -> Complex:
+        return np.zeros((designs, length), complex)
+
+    numbers, reach = np.zeros(designs), np.zeros(designs, np.intp)
+    return PlanShape(rows(POINTS), numbers, rows(MOST), reach, rows(MOST), np.zeros((designs, MOST)))
 
 
 def _alike(one: Sequence[Design], other: Sequence[Design]) -> int:

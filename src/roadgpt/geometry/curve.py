@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
-Angle = TypeVar("Angle", float, Array)
+Number = TypeVar("Number", float, Array)
 
 
 class PlanCurve(Protocol):
@@ -60,11 +60,18 @@ def placed(s: ArrayLike, starts: Array) -> tuple[Array, NDArray[np.intp]]:
     return s - starts[index], index
 
 
+def before(steps: Array) -> Array:
+    """Returns, for each step, the sum of the steps before it along the last axis."""
+    sums = np.zeros(steps.shape)
+    steps[..., :-1].cumsum(axis=-1, out=sums[..., 1:])
+    return sums
+
+
 def wrap_angle(angle: ArrayLike) -> Array:
     """Returns angles in radians, wrapped to (-pi, pi], as an array of the same shape."""
     return np.asarray(wrapped(np.asarray(angle, float)))
 
 
-def wrapped(angle: Angle) -> Angle:
+def wrapped(angle: Number) -> Number:
     """Returns an angle in radians, wrapped to (-pi, pi]; a number stays a number, which is faster."""
     return np.pi - (np.pi - angle) % (2 * np.pi)

@@ -6,16 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TypeVar
+from operator import ge
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from roadgpt.geometry.curve import Array, placed
+from roadgpt.geometry.curve import Array, Number, before, placed
 
 Cubic = tuple[float, float, float, float]
 """The coefficients (a, b, c, d) of a + b u + c u^2 + d u^3."""
-Number = TypeVar("Number", float, Array)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,16 +40,27 @@ class GradeProfile:
     def __post_init__(self) -> None:
         if len(self.stations) < 2 or len(self.stations) != len(self.grades):
             raise ValueError("a profile needs two or more stations and the same number of grades")
-        if any(b <= a for a, b in zip(self.stations, self.stations[1:], strict=False)):
+        if any(map(ge, self.stations, self.stations[1:])):
             raise ValueError("the stations of a profile must increase")
 
     @cached_property
     def _table(self) -> tuple[Array, Array, Array, Array]:
         """Returns station, height, grade and change of grade per metre at the start of each interval."""
         s, g = np.array(self.stations), np.array(self.grades)
-        rise = np.diff(s) * (g[1:] + g[:-1]) / 2
-        z = self.z0 + np.r_[0.0, np.cumsum(rise)]
-        return s[:-1], z[:-1], g[:-1], np.diff(g) / np.diff(s)
+        steps = s[1:] - s[:-1]
+        z = self.z0 + before(steps * (g[1:] + g[:-1]) / 2)
+        return s[:-1], z, g[:-1], (g[1:] - g[:-1]) / steps
+
+    def at(self, s: float) -> tuple[float, float]:
+        """Returns the height in metres and the grade as a ratio at one station, without the overhead of
+        arrays.
+        """
+        last = max(bisect_right(self.stations[:-1], s) - 1, 0)
+        knots = [*zip(self.stations, self.grades, strict=True)][: last + 2]
+        rises = [(s1 - s0) * (g1 + g0) / 2 for (s0, g0), (s1, g1) in pairwise(knots[:-1])]
+        (start, grade), (end, after) = knots[-2:]
+        u, change = s - start, (after - grade) / (end - start)
+        return self.z0 + sum(rises) + u * (grade + u * change / 2), grade + u * change
 
     def height(self, s: ArrayLike) -> Array:
         """Returns heights in metres."""
@@ -93,7 +103,7 @@ class CubicProfile:
     def __post_init__(self) -> None:
         if not self.stations or len(self.stations) != len(self.coefficients):
             raise ValueError("a profile needs stations and the same number of cubics")
-        if any(b <= a for a, b in zip(self.stations, self.stations[1:], strict=False)):
+        if any(map(ge, self.stations, self.stations[1:])):
             raise ValueError("the stations of a profile must increase")
         if any(len(cubic) != 4 for cubic in self.coefficients):
             raise ValueError("a cubic has four coefficients")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import fresnel
 
-from roadgpt.geometry.curve import Array, placed
+from roadgpt.geometry.curve import Array, Number, before, placed
 
 SAME = 1e-9  # 1/m; curvatures closer than this are treated as equal
 ALMOST_ARC = 1e-3  # rad; below this change of curvature times squared length, Fresnel arguments lose digits
@@ -57,9 +57,9 @@ class PieceCurve:
         rows = np.array([(p.length, p.k0, p.k1) for p in self.pieces])
         length, k0, k1 = rows[:, 0], rows[:, 1], rows[:, 2]
         dk = (k1 - k0) / length
-        heading = self.heading0 + _before(length * (k0 + k1) / 2)
+        heading = self.heading0 + before(length * (k0 + k1) / 2)
         dx, dy = advance(length, heading, k0, dk, length)
-        return _before(length), self.x + _before(dx), self.y + _before(dy), heading, k0, dk
+        return before(length), self.x + before(dx), self.y + before(dy), heading, k0, dk
 
     @cached_property
     def mirrored(self) -> "PieceCurve":
@@ -75,6 +75,21 @@ class PieceCurve:
     @cached_property
     def _lengths(self) -> Array:
         return np.array([piece.length for piece in self.pieces])
+
+    @property
+    def end(self) -> tuple[float, float, float]:
+        """x and y in metres and the heading in radians at the end, as ``at`` and ``heading`` give them, but
+        computed faster.
+        """
+        s = turned = across = along = 0.0
+        for piece in self.pieces[:-1]:
+            dx, dy = _step(piece, piece.length, self.heading0 + turned)
+            across, along = across + dx, along + dy
+            s, turned = s + piece.length, turned + piece.length * (piece.k0 + piece.k1) / 2
+        last, u, heading = self.pieces[-1], self.length - s, self.heading0 + turned
+        dx, dy = _step(last, u, heading)
+        dk = (last.k1 - last.k0) / last.length
+        return self.x + across + dx, self.y + along + dy, heading + u * (last.k0 + u * dk / 2)
 
     def at(self, s: ArrayLike) -> Array:
         """Returns points of shape ``(..., 2)`` in metres at stations ``s`` of shape ``(...)``."""
@@ -117,10 +132,10 @@ def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[
     length, k0, k1 = rows
     x, y, heading = np.array([(curve.x, curve.y, curve.heading0) for curve in curves]).T[..., None]
     dk = (k1 - k0) / length
-    heading = heading + _before(length * (k0 + k1) / 2)
+    heading = heading + before(length * (k0 + k1) / 2)
     dx, dy = advance(length, heading, k0, dk, length)
-    x, y = x + _before(dx), y + _before(dy)
-    start = np.where(is_piece, _before(length), np.inf)
+    x, y = x + before(dx), y + before(dy)
+    start = np.where(is_piece, before(length), np.inf)
     s, curve = np.concatenate(stations), np.repeat(np.arange(len(curves)), [len(each) for each in stations])
     piece = np.maximum((start[curve] <= s[:, None]).sum(axis=1) - 1, 0)
     x, y, heading, k0, dk, length, start = (
@@ -129,13 +144,6 @@ def along_all(curves: Sequence[PieceCurve], stations: Sequence[Array]) -> tuple[
     u = s - start
     dx, dy = advance(u, heading, k0, dk, length)
     return np.stack((x + dx, y + dy), axis=-1), heading + u * (k0 + u * dk / 2)
-
-
-def _before(steps: Array) -> Array:
-    """Returns, for each step, the sum of the steps before it along the last axis."""
-    sums = np.zeros(steps.shape)
-    np.cumsum(steps[..., :-1], axis=-1, out=sums[..., 1:])
-    return sums
 
 
 def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tuple[Array, Array]:
@@ -148,19 +156,36 @@ def advance(u: Array, heading: Array, k: Array, dk: Array, length: Array) -> tup
         dk: Change of curvature per metre in 1/m^2.
         length: Length of the whole piece in metres, used only to choose an accurate formula.
     """
-    u, heading, k, dk, length = np.broadcast_arrays(u, heading, k, dk, length)
-    turn = k * u
-    chord = u * np.sinc(turn / (2 * np.pi))
-    dx = np.asarray(chord * np.cos(heading + turn / 2))
-    dy = np.asarray(chord * np.sin(heading + turn / 2))
+    dx, dy = map(np.asarray, _arc(u, heading, k))
     bend = np.abs(dk) * length**2
-    for some, integral in ((bend >= ALMOST_ARC, _fresnel), ((bend > 0) & (bend < ALMOST_ARC), _quadrature)):
-        if np.any(some):
-            dx[some], dy[some] = integral(u[some], heading[some], k[some], dk[some])
+    if bend.any():
+        u, heading, k, dk, bend = np.broadcast_arrays(u, heading, k, dk, bend)
+        is_clothoid = bend >= ALMOST_ARC
+        for some, integral in ((is_clothoid, _fresnel), ((bend > 0) & ~is_clothoid, _quadrature)):
+            if some.any():
+                dx[some], dy[some] = integral(u[some], heading[some], k[some], dk[some])
     return dx, dy
 
 
-def _fresnel(u: Array, heading: Array, k: Array, dk: Array) -> tuple[Array, Array]:
+def _step(piece: Piece, u: float, heading: float) -> tuple[float, float]:
+    """Returns the displacements after ``u`` metres on one piece, as ``advance`` does but faster."""
+    dk = (piece.k1 - piece.k0) / piece.length
+    bend = abs(dk) * piece.length**2
+    if 0 < bend < ALMOST_ARC:
+        dx, dy = _quadrature(*(np.array([value]) for value in (u, heading, piece.k0, dk)))
+        return float(dx[0]), float(dy[0])
+    x, y = _fresnel(u, heading, piece.k0, dk) if bend else _arc(u, heading, piece.k0)
+    return float(x), float(y)
+
+
+def _arc(u: Number, heading: Number, k: Number) -> tuple[Number, Number]:
+    """Integrates an arc or a line."""
+    turn = k * u
+    chord, middle = u * np.sinc(turn / (2 * np.pi)), heading + turn / 2
+    return chord * np.cos(middle), chord * np.sin(middle)
+
+
+def _fresnel(u: Number, heading: Number, k: Number, dk: Number) -> tuple[Number, Number]:
     """Integrates a clothoid as part of Euler's spiral, from the place where its curvature is ``k``."""
     sign = np.sign(dk)
     a = np.sqrt(np.abs(dk) / np.pi)

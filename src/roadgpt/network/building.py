@@ -107,7 +107,21 @@ def _driving(lanes: Sequence[Lane]) -> tuple[Lane, ...]:
 
 def width_at(width: Width, s: float) -> float:
     """Returns the value in metres, at station ``s``, of a width that is constant or varies along a road."""
-    return float(width.cubic(s)[0]) if isinstance(width, CubicProfile) else width
+    return float(width.cubic(max(s, width.stations[0]))[0]) if isinstance(width, CubicProfile) else width
+
+
+def edges_at(profile: Profile, s: float) -> tuple[float, float]:
+    """Returns the offsets of the left and the right edge of the carriageway at station ``s``, in metres.
+
+    The result is that of ``Profile.edges``, without the overhead of arrays.
+    """
+    centre, (left, right), count = width_at(profile.offset, s), profile.begins, profile.count
+    if profile.left_hand:
+        count = count[::-1]
+    return (
+        centre + left + sum(width_at(lane.width, s) for lane in profile.left[: count[1]]),
+        centre - right - sum(width_at(lane.width, s) for lane in profile.right[: count[0]]),
+    )
 
 
 def level(length: float, z: float) -> GradeProfile:

@@ -50,9 +50,13 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
         spans, left = _spans_of_their_own(into, room, turns_right, turns_left), 1
     for n, j in enumerate(exits):
         lanes = spans[n]
-        beside = min(left - 1, room[n] - len(lanes)) if turns_left and n < len(exits) - 1 else 0
-        if (turns_right and n == 0) or (turns[n] == "straight" and _is_joined_from_the_left_only(stubs, j)):
-            beside = room[n] - len(lanes)
+        spare = room[n] - len(lanes)
+        beside = min(left - 1, spare) if turns_left and n < len(exits) - 1 else 0
+        is_rightmost = (turns_right and n == 0) or (
+            spare and turns[n] == "straight" and _is_joined_from_the_left_only(stubs, j)
+        )
+        if is_rightmost:
+            beside = spare
         yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
 
 
@@ -72,8 +76,10 @@ def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
     lanes are divided between both turns, in halves if the other arms have lanes enough for that.
     """
     room = len(stubs[end].out_of)
+    if room <= USUALLY_FED:
+        return 1, 1
     others = [(side_of(_turn(stub, stubs[end])), len(stub.into)) for n, stub in enumerate(stubs) if n != end]
-    if room <= USUALLY_FED or any(side == "straight" and lanes for side, lanes in others):
+    if any(side == "straight" and lanes for side, lanes in others):
         return 1, 1
     most = {side: max((n for each, n in others if each == side), default=0) for side in ("left", "right")}
     left = min(max(room - room // 2, room - most["right"]), max(most["left"], 1))

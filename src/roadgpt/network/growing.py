@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 
 from roadgpt.brief.junctions import Control, side_of
 from roadgpt.errors import UsageError
+from roadgpt.geometry import GradeProfile, PieceCurve
 from roadgpt.geometry.curve import wrapped
-from roadgpt.network.building import Builder, Stub
+from roadgpt.network.building import Builder, Stub, edges_at
 from roadgpt.network.crossing import Mouth, build_crossing, setbacks
 from roadgpt.network.crossing_lanes import USUALLY_FED
 from roadgpt.network.design import STUB, ArmDesign, JunctionDesign, NetworkDesign, PlaceDesign
@@ -86,9 +87,10 @@ class _RouteGrowth:
     def _end(self) -> NetworkPose:
         """Returns the pose at the end of the road on which the route has arrived."""
         arrival = self.builder.roads[self.passed[-1]].road
-        x, y = arrival.plan.at(arrival.length).tolist()
-        z = float(arrival.elevation.height(arrival.length))
-        return NetworkPose((x, y, z), float(arrival.heading(arrival.length)))
+        assert isinstance(arrival.plan, PieceCurve)
+        assert isinstance(arrival.elevation, GradeProfile)
+        x, y, heading = arrival.plan.end
+        return NetworkPose((x, y, arrival.elevation.at(arrival.length)[0]), heading)
 
     def pass_place(self, number: int, place: PlaceDesign) -> None:
         """Builds a place of the design, with its arms and the road on which the route goes on."""
@@ -108,10 +110,8 @@ class _RouteGrowth:
 
     def _go_on(self, number: int, place: LanesChangeDesign, is_level: bool) -> None:
         """Lets another road continue the one on which the route has arrived, with other lanes."""
-        before, lanes = (
-            self.passed[-1],
-            continued_lanes(place, self.profiles[number - 1], self.profiles[number]),
-        )
+        before = self.passed[-1]
+        lanes = continued_lanes(place, self.profiles[number - 1], self.profiles[number])
         road = self._road(number, self._end(), (True, is_level))
         self.builder.continuations.append(Continuation(RoadEnd(before, "end"), RoadEnd(road, "start"), lanes))
         if place.kind == "lane_change":
@@ -201,24 +201,24 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
         UsageError: The arm that the route takes has ``one_way``, or no arm fits ``take``.
     """
     width, shoulder = float(after.width(0.0)), after.shoulder_width
-    ring = (junction.ring_lanes, junction.ring_lanes)
+    ring, arms, taken = (junction.ring_lanes, junction.ring_lanes), junction.all_arms, junction.taken
     counts = (ring, ring) if junction.kind == "roundabout" else ((1, 1), before.count)
     side, ahead = (Profile.of(*count, width, shoulder) for count in counts)
     found = [
-        after if n == junction.taken else ahead if side_of(arm.angle) == "straight" else side
-        for n, arm in enumerate(junction.all_arms)
+        after if n == taken else ahead if side_of(arm.angle) == "straight" else side
+        for n, arm in enumerate(arms)
     ]
     opposite = _continuing(junction)
     fed = USUALLY_FED if before.count[1] else 1  # no lane leads to a one-way road of arrival
     needed = [after.count[::-1]] if max(after.count) > fed else []
-    if max(before.count) > USUALLY_FED and all(side_of(arm.angle) != "straight" for arm in junction.all_arms):
+    if max(before.count) > USUALLY_FED and all(side_of(arm.angle) != "straight" for arm in arms):
         needed.append(before.count)
     if opposite is not None and needed:
         out, into = (max(1, *counts) for counts in zip(*needed, strict=True))
         found[opposite] = Profile.of(out, into, width, shoulder)
-    for n, arm in enumerate(junction.all_arms):
+    for n, arm in enumerate(arms):
         if arm.one_way is not None:
-            if n == junction.taken:
+            if n == taken:
                 raise UsageError(
                     "the arm that the route takes has one_way; leave it out, and give the junction lanes "
                     'with "backward": 0'
@@ -233,12 +233,13 @@ def _continuing(junction: JunctionDesign) -> int | None:
 
     None at a roundabout, or if only the road of arrival or no road at all lies opposite.
     """
-    if junction.taken is None or junction.kind == "roundabout":
+    taken = junction.taken
+    if taken is None or junction.kind == "roundabout":
         return None
     angles = [arm.angle for arm in junction.all_arms]
-    behind = math.radians(angles[junction.taken] + 180)
+    behind = math.radians(angles[taken] + 180)
     others = {n: abs(wrapped(math.radians(angle) - behind)) for n, angle in enumerate(angles)}
-    others.pop(junction.taken)
+    others.pop(taken)
     nearest = min(others, key=lambda n: others[n], default=None)
     return nearest if nearest is not None and others[nearest] < LEAST else None
 
@@ -300,9 +301,8 @@ def mouth_of_arm(profile: Profile, direction: float, ends_here: bool) -> Mouth:
         direction: The heading in radians out of the junction.
         ends_here: True if the end of the road lies at the junction, False if its start does.
     """
-    edges = profile.edges(FAR if ends_here else 0.0)
-    left, right = float(edges.left), -float(edges.right)
-    return Mouth(direction, right, left) if ends_here else Mouth(direction, left, right)
+    left, right = edges_at(profile, FAR if ends_here else 0.0)
+    return Mouth(direction, -right, left) if ends_here else Mouth(direction, left, -right)
 
 
 def length_inside(place: PlaceDesign, before: Profile, after: Profile) -> float:

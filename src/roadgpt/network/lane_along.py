@@ -99,13 +99,12 @@ def added(terms: Sequence[Term], length: float) -> Width:
 
     The sum is a number if all widths are numbers; otherwise it is a CubicProfile.
     """
-    if not any(isinstance(width, CubicProfile) for _, width in terms):
-        return sum(factor * width for factor, width in terms if not isinstance(width, CubicProfile))
-    inside = {0.0}
-    for _, width in terms:
-        if isinstance(width, CubicProfile):
-            inside |= {s for s in width.stations if 0 < s < length - ROUNDING}
-    ordered = sorted(inside)
+    numbers = [factor * width for factor, width in terms if not isinstance(width, CubicProfile)]
+    if len(numbers) == len(terms):
+        return sum(numbers)
+    varying = [width for _, width in terms if isinstance(width, CubicProfile)]
+    inside = {s for width in varying for s in width.stations if 0 < s < length - ROUNDING}
+    ordered = sorted({0.0, *inside})
     # of stations that differ by rounding only, the last one: from there on, every width has its next cubic
     stations = [*(s for s, after in pairwise(ordered) if after - s > ROUNDING), ordered[-1]]
     total = np.zeros((len(stations), 4))

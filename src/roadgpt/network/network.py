@@ -197,12 +197,12 @@ class Network:
             named = {arm.end.road for arm in junction.arms}
             for connection in junction.connections:
                 named |= {connection.road, connection.incoming.road, connection.outgoing.road}
-            if unknown := named - set(self._by_id):
+            if unknown := named - self._by_id.keys():
                 raise ValueError(f"junction {junction.id} names road {min(unknown)}, which does not exist")
         if len({each.profile.left_hand for each in self.roads}) > 1:
             raise ValueError("traffic drives on the left on some roads only")
         for each in self.continuations:
-            if unknown := {each.before.road, each.after.road} - set(self._by_id):
+            if unknown := {each.before.road, each.after.road} - self._by_id.keys():
                 raise ValueError(f"a continuation names road {min(unknown)}, which does not exist")
 
     def __repr__(self) -> str:

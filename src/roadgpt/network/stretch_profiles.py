@@ -70,12 +70,14 @@ def profiles_between(
     around = (None, *places, None)
     for n, length in enumerate(lengths):
         before, after = around[n], around[n + 1]
-        found[n] = replace(found[n], offset=offsets[n])
+        if offsets[n]:
+            found[n] = replace(found[n], offset=offsets[n])
         if isinstance(after, RampDesign):
             _check_oncoming(n + 1, after, lanes[n : n + 2])
         gain = before if isinstance(before, LanesChangeDesign) and before.kind == "lane_gain" else None
         drop = after if isinstance(after, LanesChangeDesign) and after.kind == "lane_drop" else None
-        found[n] = _tapered(found[n], gain, drop, length)
+        if gain is not None or drop is not None:
+            found[n] = _tapered(found[n], gain, drop, length)
         is_ramp = _is_ramp(after, "merge") or _is_ramp(before, "diverge")
         if is_ramp and (lanes[n].forward, lanes[n].backward) != (1, 0):
             raise UsageError(

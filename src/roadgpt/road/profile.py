@@ -13,7 +13,7 @@ in each direction.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -99,17 +99,17 @@ class Profile:
         if not 0 <= self.driven < self.count[0]:
             own = "left" if self.left_hand else "right"
             raise ValueError(f"the driven lane must be one of the driving lanes on the {own}")
-        for side in (self.left, self.right):
-            if any(lane.kind == "driving" for lane in side[len(_driving(side)) :]):
-                raise ValueError("a driving lane cannot be outside a shoulder")
-        widths = [lane.width for side in (self.left, self.right) for lane in side]
-        of_station = [*widths, self.superelevation_angle, self.offset]
+        lanes = (*self.left, *self.right)
+        if sum(lane.kind == "driving" for lane in lanes) > sum(self.count):
+            raise ValueError("a driving lane cannot be outside a shoulder")
+        of_station = [*(lane.width for lane in lanes), self.superelevation_angle, self.offset]
         if any(any(each.coefficients[-1][1:]) for each in of_station if isinstance(each, CubicProfile)):
             raise ValueError("the last width of a lane, and the last superelevation, must be constant")
-        if widths and min(_extremes(width)[0] for width in widths) < -NEGATIVE:
+        if min(_extremes(lane.width)[0] for lane in lanes) < -NEGATIVE:
             raise ValueError("a lane has a negative width")
 
     @classmethod
+    @lru_cache(maxsize=256, typed=True)
     def of(
         cls,
         forward: int = 1,

@@ -8,12 +8,14 @@ if no road does, in a straight line.
 
 import math
 from itertools import combinations
+from typing import NamedTuple
 
 from roadgpt.brief.junctions import RAMPS
 from roadgpt.check.finding import Finding
 from roadgpt.check.footprint import EndPose, footprint
 from roadgpt.check.network_places import junction_finding, name_of
-from roadgpt.network import Arm, Network, RoadEnd, Route
+from roadgpt.network import Network, RoadEnd, Route
+from roadgpt.network.building import edges_at
 from roadgpt.network.crossing import OPPOSITE
 from roadgpt.road import World
 
@@ -28,10 +30,13 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     for junction in network.junctions:
         arms = junction.arms
         joined = {frozenset((each.incoming, each.outgoing)) for each in junction.connections}
-        for one, other in zip(arms, [*arms[1:], *arms[:1]], strict=True):
+        ways_out = [_outwards(network, arm.end) for arm in arms]
+        for n, one in enumerate(arms):
+            after = (n + 1) % len(arms)
+            other = arms[after]
             if junction.kind in RAMPS and frozenset((one.end, other.end)) not in joined:
                 continue  # no traffic goes from the ramp to the main road beside it
-            radius = _room(network, one, other)
+            radius = math.inf if other.end == one.end else _room(ways_out[n], ways_out[after])
             if radius < KERB - ROUNDING:
                 degrees = [round(math.degrees(arm.direction)) % 360 for arm in (one, other)]
                 what = (
@@ -43,19 +48,29 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     return (*found, *_between_junctions(network, route))
 
 
-def _room(network: Network, one: Arm, other: Arm) -> float:
+class _Outwards(NamedTuple):
+    """An arm, seen from its junction."""
+
+    pose: EndPose
+    left: float
+    """The offset in metres of the edge on the left when leaving the junction."""
+    right: float
+    """The offset in metres of the edge on the right when leaving the junction."""
+    heading: float
+    """The heading out of the junction in radians."""
+
+
+def _room(one: _Outwards, other: _Outwards) -> float:
     """Returns the radius in metres of the largest kerb that fits between an arm and the next one
     counter-clockwise; zero or negative if the arms overlap, infinite if they need no kerb.
     """
-    (here, width, heading), (there, other_width, other_heading) = (
-        _outwards(network, arm.end) for arm in (one, other)
-    )
+    heading, other_heading = one.heading, other.heading
     gap = (other_heading - heading) % (2 * math.pi)
-    if gap >= math.pi - OPPOSITE or len({one.end, other.end}) < 2:
+    if gap >= math.pi - OPPOSITE:
         return math.inf
     if gap < ROUNDING:
         return -math.inf
-    (ax, ay), (bx, by) = here.beside(width[0]), there.beside(other_width[1])
+    (ax, ay), (bx, by) = one.pose.beside(one.left), other.pose.beside(other.right)
     dx, dy = ax - bx, ay - by
     beyond = [
         (dx * math.sin(each) - dy * math.cos(each)) / math.sin(gap) for each in (other_heading, heading)
@@ -63,16 +78,12 @@ def _room(network: Network, one: Arm, other: Arm) -> float:
     return min(beyond) * math.tan(gap / 2)
 
 
-def _outwards(network: Network, end: RoadEnd) -> tuple[EndPose, tuple[float, float], float]:
-    """Returns the pose at the end of an arm, the offsets in metres of the edges that are on the left and on
-    the right when leaving the junction, and the heading out of the junction in radians.
-    """
+def _outwards(network: Network, end: RoadEnd) -> _Outwards:
     pose, member = footprint(network).ends[end], network.road(end.road)
-    s = 0.0 if end.contact == "start" else member.road.length
-    left, right = (float(t) for t in member.profile.edges(s))
+    left, right = edges_at(member.profile, 0.0 if end.contact == "start" else member.road.length)
     if end.contact == "start":
-        return pose, (left, right), pose.heading
-    return pose, (right, left), pose.heading + math.pi
+        return _Outwards(pose, left, right, pose.heading)
+    return _Outwards(pose, right, left, pose.heading + math.pi)
 
 
 def _between_junctions(network: Network, route: Route | None) -> list[Finding]:

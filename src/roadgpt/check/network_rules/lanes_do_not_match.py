@@ -9,7 +9,7 @@ Source: OpenDRIVE 1.8, road linkage: linked lanes connect without gaps.
 from roadgpt.check.finding import Finding
 from roadgpt.check.lanes_at_ends import gap, lanes_into, lanes_out_of
 from roadgpt.check.network_places import junction_finding
-from roadgpt.network import Connection, Junction, LaneLink, Network, RoadEnd, Route
+from roadgpt.network import Connection, LaneLink, Network, RoadEnd, Route
 from roadgpt.road import World
 
 MOST = 1e-3  # m
@@ -19,20 +19,24 @@ def inspect(network: Network, route: Route | None, world: World) -> tuple[Findin
     """Reports each lane link that names a missing arm or a missing lane, or joins lanes that do not meet."""
     found = []
     for junction in network.junctions:
+        arms = {arm.end for arm in junction.arms}
         for each in junction.connections:
             for lanes in each.lanes:
-                if (what := _wrong(network, junction, each, lanes)) is not None:
+                if (what := _no_arm(each, arms) or _wrong(network, each, lanes)) is not None:
                     found.append(junction_finding("lanes_do_not_match", route, junction, what))
     return tuple(found)
 
 
-def _wrong(network: Network, junction: Junction, each: Connection, lanes: LaneLink) -> str | None:
-    lane, own, target = lanes
-    ends = {arm.end for arm in junction.arms}
+def _no_arm(each: Connection, arms: set[RoadEnd]) -> str | None:
     for end in (each.incoming, each.outgoing):
-        if end not in ends:
+        if end not in arms:
             joined = f"connecting road {each.road} meets the {end.contact} of road {end.road}"
             return f"{joined}, which is no arm; join it to an arm"
+    return None
+
+
+def _wrong(network: Network, each: Connection, lanes: LaneLink) -> str | None:
+    lane, own, target = lanes
     start, finish = RoadEnd(each.road, "start"), RoadEnd(each.road, "end")
     if lane not in lanes_into(network, each.incoming):
         return f"road {each.incoming.road} has no lane {lane} that leads into it; name a lane that does"
