@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
-from roadgpt.report.network_view import draw_network, draw_network_from_far, lines_of
+from roadgpt.report.network_view import GRASS, draw_network, draw_network_from_far, lines_of
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
 
@@ -94,6 +94,8 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     if profile.has_shoulders:
         _ribbon(axes, road, s, profile.rims(s), VERGE, 1)
     _ribbon(axes, road, s, profile.edges(s), ASPHALT, 2)
+    if profile.median:
+        _ribbon(axes, road, s, profile.sides(s), GRASS, 2.1)
     if float(profile.width(0.0)) / per_inch * POINTS < THINNEST_LANE:
         line = road.at(s)
         axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)

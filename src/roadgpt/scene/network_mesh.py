@@ -15,7 +15,7 @@ from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, RoadEnd, Route
 from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import signs, strokes
+from roadgpt.network.markings import between_crosswalks, signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.road import World
@@ -25,13 +25,12 @@ from roadgpt.scene.junction_signs import SignColour, faces_of
 from roadgpt.scene.light import daylight, level_light
 from roadgpt.scene.mesh import GRASS, ROAD, Patch, attributes, grid
 from roadgpt.scene.palette import BLACK, CONCRETE, GREEN, RED, RIM, WHITE, YELLOW
-from roadgpt.scene.road_mesh import posts, slab, slope, stations_between, surface
+from roadgpt.scene.road_mesh import LIFT, median, posts, slab, slope, stations_between, surface
 from roadgpt.scene.surfaces import INSET, LINE, PERIOD, LaneBoundaries
 from roadgpt.scene.terrain import LitTerrain
 
 FAR = 1e4  # m, offset of boundaries that are too far away to be seen
 BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
-LIFT = 0.006  # m by which lines lie above the road
 KERB = 0.12  # m, height of a traffic island
 LEAST_OFFSET = 1e-6  # m
 CHECKS = 8  # squares across the lane at the end of the route
@@ -145,7 +144,9 @@ def _road(
 
     road, profile = member.road, member.profile
     s = stations_between(road, profile.reach)
-    out = surface(road, profile, s, start)
+    first, last = between_crosswalks(route.network, member)
+    green = np.r_[first, s[(s > first) & (s < last)], last]
+    out = [*surface(road, profile, s, start), *median(road, profile, green)]
     if not has_ground:
         return [*out, *slab(road, profile, s)]
     banks = list(embankments(road, profile, s, terrain.land))

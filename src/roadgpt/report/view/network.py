@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
-from roadgpt.network.markings import PaintedStroke, signs, strokes
+from roadgpt.network.markings import PaintedStroke, between_crosswalks, signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.junctions import junction_stretches
@@ -42,7 +42,7 @@ def network_values(route: Route) -> dict[str, Any]:
     lines = [each.road.centreline(LONGEST_STEP) for each in inside]
     roads = []
     for each in parts.roads:
-        columns = road_columns(each.road, each.profile)
+        columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
         columns["lanes"] |= {"against": 0}  # both lanes look alike: a network has no single direction
         roads.append({**columns, "ends": list(free_ends(network, each))})
     return {
