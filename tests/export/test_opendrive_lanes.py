@@ -236,9 +236,7 @@ def test_lines_to_stop_at_lie_where_they_are_painted(
             s, t, u, v = (float(each.attrib[name]) for name in ("s", "t", "length", "width"))
             corners = [(float(c.attrib["u"]), float(c.attrib["v"])) for c in each.iter("cornerLocal")]
             corners = corners or [(-u / 2, -v / 2), (u / 2, -v / 2), (u / 2, v / 2), (-u / 2, v / 2)]
-            line = shapely.affinity.rotate(
-                shapely.Polygon(corners), own.heading(s), (0, 0), use_radians=True
-            )
+            line = shapely.affinity.rotate(shapely.Polygon(corners), own.heading(s), (0, 0), use_radians=True)
             found.append(shapely.affinity.translate(line, *own.at(s, t)[:2]))
     written = shapely.union_all(found)
     assert all(each.is_valid for each in found)

@@ -82,9 +82,8 @@ def median(road: Road, profile: Profile, s: Array) -> list[Patch]:
         return []
     left, right = profile.sides(s)
     rows = np.stack([line(road, s, t) for t in (right + LINE / 2, left - LINE / 2)], axis=1)
-    return _blocks(
-        rows + [0.0, 0.0, LIFT], attributes(0.0, 0.0, daylight(_upwards(road, s))[:, None] * np.ones(2)), GRASS
-    )
+    light = np.repeat(daylight(_upwards(road, s))[:, None], 2, axis=1)
+    return _blocks(rows + [0.0, 0.0, LIFT], attributes(0.0, 0.0, light), GRASS)
 
 
 def _upwards(road: Road, s: Array) -> Array:

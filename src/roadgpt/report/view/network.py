@@ -24,8 +24,10 @@ SIGNS = {
     "white": "#f4f4ef",
     "red": "#c1272d",
     "yellow": "#f2b90f",
-    "green": "#2e9a4b",
+    "green": "#38d977",
     "black": "#26282b",
+    "dim red": "#4a1618",
+    "dim yellow": "#524216",
 }
 CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and on the plan

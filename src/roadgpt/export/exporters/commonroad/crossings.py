@@ -65,8 +65,8 @@ class Crossings:
         """Yields the element ``stopLine`` of a lanelet on which traffic stops or gives way; nothing for any
         other lanelet.
 
-        Where traffic gives way to a roundabout, the element has no points, which means that the line is at the
-        end of the lanelet.
+        Where traffic gives way to a roundabout, the element has no points, which means that the line is at
+        the end of the lanelet.
         """
         if lanelet not in self._signed:
             return
