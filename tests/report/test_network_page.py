@@ -146,16 +146,3 @@ def test_a_browser_draws_the_network(page: chromium.BrowserTab, tmp_path: Path, 
     # between the stop line and the car, where the lane has no other paint
     ahead = picture[int(0.53 * high) : int(0.75 * high), int(0.42 * wide) : int(0.58 * wide)]
     assert 0.05 < (ahead.min(axis=2) > 0.7).mean() < 0.5
-
-
-def test_no_post_stands_on_the_asphalt_of_another_road(page: chromium.BrowserTab, tmp_path: Path) -> None:
-    data = {**TWO, "junction1": {"after": 1, "kind": "merge", "take": "ramp", "length": 60}}
-    del data["junction2"], data["road_segment3"]
-    run = prove(made_from(read_network_design(data)[0], World()), setup=Setup(drives=False))
-    assert isinstance(run.road, Route)
-    page.open(view.write([run], tmp_path / "page.html"))
-    assert page.told == []
-    (places,) = page.run("roadgpt.posts")
-    away = shapely.distance(run.road.network.paved, shapely.points(np.array(places)[:, :2]))
-    assert len(places) >= 8
-    assert away.min() > 0.4  # 0.5 m, but the page's outline of the asphalt is simplified

@@ -112,7 +112,8 @@ def _area_of(
     kind, junctions = node
     wide = paved.buffer(width, quad_segs=ROUND) if width > 0 else paved
     holes = [shapely.Polygon(hole) for part in shapely.get_parts(paved) for hole in part.interiors]
-    kerbed, green = [], []
+    kerbed: list[Polygon] = []
+    green: list[Polygon] = []
     for nose in _beside_medians(network, paved, wide, holes):
         (green if kind in RAMPS else kerbed).append(nose)
     for hole in holes:

@@ -118,7 +118,7 @@ def is_far(road: Road, world: World, per_inch: float) -> bool:
     return float(world.profile_of(road).width(0.0)) / per_inch * POINTS < THINNEST_LANE
 
 
-def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: int) -> None:
+def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: float) -> None:
     outline = np.concatenate([road.at(s, edges.left), road.at(s, edges.right)[::-1]])[:, :2]
     axes.add_patch(Polygon(outline, closed=True, fc=colour, ec="none", zorder=layer))
 

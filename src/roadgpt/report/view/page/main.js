@@ -103,6 +103,5 @@ window.roadgpt = {
   get poses() { return panels.map(({ pose }) => pose); },
   get plates() { return panels.map(({ stage }) => stage && stage.plates); },
   get grids() { return panels.map(({ stage }) => stage && stage.grid.visible); },
-  get posts() { return scenes.map((scene) => roadsOf(scene).flatMap((road) => postPlaces(road, scene.network))); },
   get eyes() { return panels.map(({ stage }) => stage && stage.camera.position.toArray()); },
 };

@@ -1,47 +1,25 @@
 // Signs: start and goal, posts beside the road, and pins where the car failed or a rule objects.
 
 const POST_EVERY = 25; // m; half of what German rules ask for on straights, so that speed is seen
-const POST_FREE = 0.5; // m around a post without asphalt
 const PLATE = 0.00082; // of the height of the picture, per pixel of text
 
-// Where posts stand beside a road, on its shoulders: x, y, z. None stands on the asphalt of another road.
-function postPlaces(road, network) {
+function posts(road, origin) {
   const { left, right } = road.lanes.rims;
   const count = Math.max(1, Math.floor(road.length / POST_EVERY));
-  const found = [];
+  const body = new THREE.InstancedMesh(new THREE.BoxGeometry(0.12, 0.12, 1), new THREE.MeshLambertMaterial({ color: 0xf7f7f5 }), 2 * count);
+  const dark = new THREE.InstancedMesh(new THREE.BoxGeometry(0.13, 0.13, 0.22), new THREE.MeshLambertMaterial({ color: 0x22252a }), 2 * count);
+  const matrix = new THREE.Matrix4();
   for (let n = 0; n < count; n++) {
     for (const side of [1, -1]) {
       const s = (n + 0.5) * (road.length / count);
-      found.push(beside(road, s, offsetAt(road, side > 0 ? left : right, s) - side * 0.25));
+      const [x, y, z] = beside(road, s, offsetAt(road, side > 0 ? left : right, s) - side * 0.25);
+      const at = 2 * n + (side > 0 ? 0 : 1);
+      matrix.makeTranslation(x - origin.x, y - origin.y, z + 0.45 - origin.z);
+      body.setMatrixAt(at, matrix);
+      matrix.makeTranslation(x - origin.x, y - origin.y, z + 0.72 - origin.z);
+      dark.setMatrixAt(at, matrix);
     }
   }
-  const around = [[0, 0], [POST_FREE, 0], [-POST_FREE, 0], [0, POST_FREE], [0, -POST_FREE]];
-  return network ? found.filter(([x, y]) => !around.some(([u, v]) => isInside(network.plan.paved, x + u, y + v))) : found;
-}
-
-// Whether a point is inside an area whose outlines and holes are rings x, y, x, y.
-function isInside(rings, x, y) {
-  let inside = false;
-  for (const ring of rings) {
-    for (let i = 0, j = ring.length - 2; i < ring.length; j = i, i += 2) {
-      const [x0, y0, x1, y1] = [ring[j], ring[j + 1], ring[i], ring[i + 1]];
-      if (y0 > y !== y1 > y && x < x0 + ((y - y0) / (y1 - y0)) * (x1 - x0)) inside = !inside;
-    }
-  }
-  return inside;
-}
-
-function posts(road, network, origin) {
-  const places = postPlaces(road, network);
-  const body = new THREE.InstancedMesh(new THREE.BoxGeometry(0.12, 0.12, 1), new THREE.MeshLambertMaterial({ color: 0xf7f7f5 }), places.length);
-  const dark = new THREE.InstancedMesh(new THREE.BoxGeometry(0.13, 0.13, 0.22), new THREE.MeshLambertMaterial({ color: 0x22252a }), places.length);
-  const matrix = new THREE.Matrix4();
-  places.forEach(([x, y, z], at) => {
-    matrix.makeTranslation(x - origin.x, y - origin.y, z + 0.45 - origin.z);
-    body.setMatrixAt(at, matrix);
-    matrix.makeTranslation(x - origin.x, y - origin.y, z + 0.72 - origin.z);
-    dark.setMatrixAt(at, matrix);
-  });
   const group = new THREE.Group();
   group.add(body, dark);
   return group;

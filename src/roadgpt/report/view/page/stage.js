@@ -27,7 +27,7 @@ function makeStage(canvas, scene, trip, fastest) {
   world.add(pavement(scene, origin, net.bank, asphaltGrain(renderer)), startAndGoal(scene, origin));
   if (scene.network) world.add(networkMarkings(scene, origin), networkSigns(scene.network, origin));
   else world.add(markings(scene, origin));
-  for (const road of roads) if (road.lanes.shoulder > 0.5) world.add(posts(road, scene.network, origin));
+  for (const road of roads) if (road.lanes.shoulder > 0.5) world.add(posts(road, origin));
   const line = scene.drive ? drivenLine(scene, origin, fastest) : new THREE.Group();
   world.add(line);
   const pins = scene.places.map((place) => {
