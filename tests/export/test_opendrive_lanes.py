@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 import shapely
+import shapely.affinity
 
 from export.test_opendrive_networks import WORLD, WrittenMap, boundary_of, check_signs, turned
 from network.changing import design
@@ -13,7 +14,9 @@ from network.random_designs import random_lanes_design
 from roadgpt.export.exporters.opendrive import document
 from roadgpt.network import Junction, Route, build_route, read_network_design
 from roadgpt.network.arrows import arrows
+from roadgpt.network.markings import STOP_LINE, strokes
 from roadgpt.network.paved import paved_by
+from roadgpt.road.profile import LINE
 
 SEEDS = range(25)
 NEAR = 0.05  # m, between two segments of a boundary
@@ -202,3 +205,44 @@ def check_ids(here: WrittenMap) -> None:
         if each.get("subtype") != "signalLines"
     ]
     assert len({*signs, *ids}) == len(signs) + len(ids)
+
+
+@pytest.mark.parametrize("left_hand", [False, True])
+@pytest.mark.parametrize(
+    ("kind", "control", "count"),
+    [
+        ("roundabout", "yield", 4),
+        ("roundabout", "stop", 1),
+        ("crossroads", "yield", 2),
+        ("crossroads", "lights", 4),
+    ],
+)
+def test_lines_to_stop_at_lie_where_they_are_painted(
+    kind: str, control: str, count: int, left_hand: bool
+) -> None:
+    junction = {"kind": kind, "take": "left", "control": control, "crosswalk": True}
+    data = design(60.0, junction, 60.0) | ({"left_hand": True} if left_hand else {})
+    route = build_route(read_network_design(data)[0], WORLD)
+    drawn, name = ("give_way", "give-way line") if control == "yield" else ("stop", "stop line")
+    strips = [shapely.LineString(each.points[:, :2]) for each in strokes(route.network) if each.kind == drawn]
+    painted = shapely.union_all([each.buffer(STOP_LINE / 2, cap_style="flat") for each in strips])
+    here = WrittenMap(document(route, WORLD).to_text())
+    found = []
+    for road in here.root.iter("road"):
+        own = route.network.road(int(road.attrib["id"])).road
+        for each in road.iter("object"):
+            if each.attrib["name"] != name:
+                continue
+            s, t, u, v = (float(each.attrib[name]) for name in ("s", "t", "length", "width"))
+            corners = [(float(c.attrib["u"]), float(c.attrib["v"])) for c in each.iter("cornerLocal")]
+            corners = corners or [(-u / 2, -v / 2), (u / 2, -v / 2), (u / 2, v / 2), (-u / 2, v / 2)]
+            line = shapely.affinity.rotate(shapely.Polygon(corners), own.heading(s), (0, 0), use_radians=True)
+            found.append(shapely.affinity.translate(line, *own.at(s, t)[:2]))
+    written = shapely.union_all(found)
+    assert all(each.is_valid for each in found)
+    assert len(found) == count
+    assert shapely.difference(painted, written).area < 0.01 * painted.area
+    if control == "yield":  # between its blocks is a third of a give-way line
+        assert painted.area > 0.6 * written.area
+    else:  # the paint ends at the edge line, the object at the edge of the lane
+        assert written.area - painted.area == pytest.approx(len(found) * STOP_LINE * LINE, rel=0.01)

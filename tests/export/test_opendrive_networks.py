@@ -231,6 +231,7 @@ def check_signs(here: WrittenMap, network: Network) -> None:
         if arm.control != "none"
     )
     found: Counter[tuple[str, ...]] = Counter()
+    at_rings = ring_lines(here, network)
     for road in here.roads.values():
         objects = {each.attrib["id"]: each.attrib for each in road.element.iter("object")}
         for signal in road.element.iter("signal"):
@@ -250,6 +251,11 @@ def check_signs(here: WrittenMap, network: Network) -> None:
             if data["type"] == "306":  # traffic that has priority does not stop
                 assert data["id"] not in objects
                 continue
+            if data["id"] in at_rings:  # gives way to a ring, where its line lies
+                assert data["type"] == "205"
+                assert data["id"] not in objects
+                at_rings.remove(data["id"])
+                continue
             line = objects.pop(data["id"])
             assert line["orientation"] == data["orientation"]
             nearest, farthest = min(into, key=abs), max(into, key=abs)
@@ -258,8 +264,30 @@ def check_signs(here: WrittenMap, network: Network) -> None:
             assert float(line["t"]) == pytest.approx(sum(edges) / 2)
             assert float(line["width"]) == pytest.approx(abs(edges[1] - edges[0]))
             assert abs(at - road.end(contact)) == pytest.approx(float(line["length"]) / 2)
-        assert {each.get("name") for each in objects.values()} <= {"arrow"}  # these have a test of their own
+        others = {"arrow"} if road.junction == "-1" else {"give-way line"}  # these have tests of their own
+        assert {each.get("name") for each in objects.values()} <= others
     assert found == wanted
+    assert not at_rings
+
+
+def ring_lines(here: WrittenMap, network: Network) -> set[str]:
+    """The ids of the lines where traffic gives way to roundabouts; all lie on the roads into the ring."""
+    onto = {
+        str(way.road)
+        for ring in network.roundabouts
+        for junction in map(network.junction, ring.junctions)
+        for arm in junction.arms
+        for way in junction.connections
+        if arm.control == "yield" and way.incoming == arm.end
+    }
+    found = {
+        each.attrib["id"]: road.id
+        for road in here.roads.values()
+        for each in road.element.iter("object")
+        if each.attrib["name"] == "give-way line" and road.junction != "-1"
+    }
+    assert set(found.values()) == onto
+    return set(found)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

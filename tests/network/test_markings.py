@@ -8,7 +8,7 @@ import shapely
 from tests.network.random_designs import random_design, random_lanes_design
 
 from roadgpt.network import Network, Route, made_from, read_any_design
-from roadgpt.network.markings import STOP_LINE, signs, strokes
+from roadgpt.network.markings import STOP_LINE, between_crosswalks, signs, strokes
 from roadgpt.network.paved import ribbon
 from roadgpt.network.surface import NetworkSurface, free_ends, triangulated
 from roadgpt.road import CrossSection, World
@@ -217,3 +217,42 @@ def test_signs_stand_on_the_right_of_those_who_read_them() -> None:
     first = next(sign for sign in signs(route.network) if math.cos(sign.heading) > 0.99)
     assert first.control == "stop"
     assert first.place[1] == pytest.approx(60 - 4 - 3 - 0.6)
+
+
+DIVIDED = {"forward": 2, "backward": 2, "width": 3.5, "divided": True}
+
+
+@pytest.mark.parametrize("left_hand", [False, True])
+def test_a_median_ends_with_a_kerb_in_the_junction(left_hand: bool) -> None:
+    junction = {"after": 1, "kind": "crossroads", "take": "straight"}
+    data = {"starting_point": [40, 60, 2], "theta": 0, "lanes": DIVIDED, "road_segment1": STRAIGHT,
+            "junction1": junction, "road_segment2": STRAIGHT}  # fmt: skip
+    route = made_from(read_any_design(data | ({"left_hand": True} if left_hand else {}))[0], World())
+    assert isinstance(route, Route)
+    (area,) = NetworkSurface.of(route.network).areas
+    for leg, is_end in ((route.legs[0], True), (route.legs[-1], False)):
+        member = route.network.road(leg.road)
+        s = member.road.length if is_end else 0.0
+        end = shapely.LineString(member.road.at(np.full(2, s), np.ravel(member.profile.sides(s)))[:, :2])
+        assert end.length == pytest.approx(2.0)
+        (nose,) = (island for island in area.kerbed if island.dwithin(end, 1e-3))
+        assert end.buffer(1e-3).intersection(nose.boundary).length == pytest.approx(2.0, abs=0.01)
+        assert nose.intersection(area.shoulder).area < 1e-3
+        assert nose.area > 2.0
+
+
+def test_the_median_of_a_motorway_goes_on_as_grass_where_a_ramp_joins() -> None:
+    route = route_of({"kind": "merge", "take": "main", "length": 60}, lanes=DIVIDED)
+    (area,) = NetworkSurface.of(route.network).areas
+    assert not area.kerbed
+    (strip,) = area.green
+    passage = route.passages[0]
+    assert strip.area == pytest.approx(2.0 * (passage.end - passage.start), rel=0.02)
+
+
+def test_crosswalks_interrupt_medians() -> None:
+    route = route_of({"kind": "crossroads", "take": "straight", "crosswalk": True}, lanes=DIVIDED)
+    network = route.network
+    arrival, departure = (network.road(route.legs[n].road) for n in (0, -1))
+    assert between_crosswalks(network, arrival) == pytest.approx((0.0, arrival.road.length - 5.0))
+    assert between_crosswalks(network, departure) == pytest.approx((5.0, departure.road.length))

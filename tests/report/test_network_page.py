@@ -14,6 +14,7 @@ from roadgpt.network import Route, made_from, read_network_design
 from roadgpt.network.arrows import arrows
 from roadgpt.network.markings import strokes
 from roadgpt.report import view
+from roadgpt.report.view.network import SIGNS
 from roadgpt.road import CrossSection, Design, Segment, World
 from roadgpt.run import Run, Setup, prove
 
@@ -73,7 +74,7 @@ def test_triangles_are_seen_from_above(run: Run) -> None:
 def test_every_line_and_every_sign_is_on_the_page(run: Run, route: Route) -> None:
     network = view.scene(run)["network"]
     assert len(network["strokes"]) == len(strokes(route.network))
-    lights = [face for face in network["signs"] if face["colour"] == "#2e9a4b"]
+    lights = [face for face in network["signs"] if face["colour"] == SIGNS["green"]]
     assert not lights
     assert [each["name"] for each in network["stretches"]] == ["crossroads", "roundabout"]
 

@@ -7,20 +7,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from roadgpt.network import NetworkDesign, Route, made_from, read_network_design
 from roadgpt.network.arrows import arrows
-from roadgpt.report import birds_eye, draw, height_profile, strip
+from roadgpt.report import birds_eye, draw, height_profile, strip, view
 from roadgpt.report.junctions import junction_stretches
 from roadgpt.report.network_view import ASPHALT, GRASS, KERB, PAINT, TINT
 from roadgpt.report.overview import pages
 from roadgpt.report.page.failure_site import draw_site, site_of
 from roadgpt.report.plan_view import Frame
 from roadgpt.report.plotting import plot
-from roadgpt.road import CrossSection, World
+from roadgpt.road import CrossSection, Profile, Road, World
 from roadgpt.run import Run, Setup, prove, write_run
 
 TWO = {
@@ -180,8 +182,6 @@ def test_heights_and_curvature_name_the_junctions(driven: Run) -> None:
 
 
 def test_a_road_without_junctions_has_no_stretches(driven: Run) -> None:
-    from roadgpt.road import Road
-
     assert junction_stretches(Road.through([[0, 0], [50, 0], [100, 10], [160, 0]])) == ()
 
 
@@ -233,3 +233,56 @@ def test_arrows_before_a_junction_are_drawn() -> None:
     site = site_of(found, World(), None, 60.0)
     assert any(np.array_equal(each, outer.points[:, :2]) for each in site.arrows)
     assert f"{len(site.arrows)}" == f"{draw_site(site, 'arrows').count('<polygon')}"
+
+
+def test_the_limit_of_curvature_is_not_drawn_in_junctions(driven: Run, route: Route) -> None:
+    curvature, _radius, grade = strip(driven).axes[:3]
+
+    def drawn(axes: Axes) -> list[tuple[float, ...]]:
+        lines = [each for each in axes.collections if isinstance(each, LineCollection)]
+        return sorted({tuple(piece[:, 0].tolist()) for each in lines for piece in each.get_segments()})
+
+    one, two = junction_stretches(route)
+    assert drawn(curvature) == [(0.0, one.start), (one.end, two.start), (two.end, route.length)]
+    assert drawn(grade) == [(0.0, route.length)]
+
+
+def test_the_bars_at_both_ends_lie_over_the_lanes_of_the_drive(above: Figure, route: Route) -> None:
+    assert route.profile is not None
+    for s, least, most in ((0.0, 0.99, 1.0), (route.length, 0.3, 0.7)):
+        edges = route.profile.lane(s)
+        inside = np.linspace(float(edges.left) - 0.4, float(edges.right) + 0.4, 41)
+        oncoming = float(edges.left) + np.linspace(0.8, 3.2, 41)
+        is_black = [
+            near(seen(above, route.at(np.full(41, s), t)[:, :2]), "#1b1e23", 60) for t in (inside, oncoming)
+        ]
+        assert least <= is_black[0].mean() <= most
+        assert not is_black[1].any()
+
+
+def test_a_key_explains_the_tint_of_the_route(above: Figure) -> None:
+    assert "lane of the route" in {text.get_text() for text in above.texts}
+
+
+@pytest.mark.parametrize("is_route", [True, False])
+def test_medians_are_green(is_route: bool) -> None:
+    road: Road
+    if is_route:
+        lanes = {"forward": 2, "backward": 2, "width": 3.5, "divided": True}
+        data = {**TWO, "lanes": lanes, "junction1": {**TWO["junction1"], "crosswalk": True}}
+        data["junction2"] = {"after": 2, "kind": "crossroads", "take": "straight"}
+        route = made_from(read_network_design(data)[0], World())
+        assert isinstance(route, Route)
+        road, profile = route, route.network.road(route.legs[0].road).profile
+    else:
+        profile = replace(Profile.of(2, 2, 3.5), median=2.0)
+        road = Road.through([[20, 90, 0], [60, 90, 0], [120, 90, 3]]).with_profile(profile)
+    run = prove(road, setup=Setup(drives=False))
+    x = np.array([24.0, 32.0, 50.0, 65.0])
+    y = np.full(4, 90 + sum(float(t) for t in profile.sides(0.0)) / 2)
+    assert near(seen(birds_eye(run), np.column_stack([x, y])), GRASS).all()
+    told = view.scene(run)
+    shown = told["network"]["roads"][0]["lanes"] if is_route else told["road"]["lanes"]
+    strip_ = shown["median"]
+    assert [shown["bounds"][strip_["strip"] + n]["t"] for n in (0, 1)] == [2.0, 0.0]
+    assert (strip_["from"], strip_["to"]) == pytest.approx((0.0, 65.0 if is_route else road.length), abs=1e-3)

@@ -17,10 +17,11 @@ HIGH = 40.0  # m, of a camera that looks down
 STRAIGHT = {"distance": 60, "direction": "straight", "incline": 0, "turn_degrees": 0}
 
 
-def route_of(world: World | None = None, **junction: object) -> Route:
+def route_of(world: World | None = None, lanes: dict[str, object] | None = None, **junction: object) -> Route:
     data = {
         "starting_point": [40, 60, 2],
         "theta": 0,
+        **({"lanes": lanes} if lanes else {}),
         "road_segment1": STRAIGHT,
         "junction1": {"after": 1, **junction},
         "road_segment2": {**STRAIGHT, "incline": 6},
@@ -147,10 +148,10 @@ def test_signs_face_the_traffic_that_arrives() -> None:
     route = route_of(kind="crossroads", take="left", control="lights")
     for sign in signs(route.network):
         ahead = np.array([math.cos(sign.heading), math.sin(sign.heading), 0.0])
-        lit = [face for face in faces_of(sign) if face.colour in ("red", "yellow", "green")]
-        assert [face.colour for face in lit] == ["green", "yellow", "red"]
-        assert lit[0].points[:, 2].mean() < lit[2].points[:, 2].mean()
-        for face in lit:
+        heads = [face for face in faces_of(sign) if face.colour in ("dim red", "dim yellow", "green")]
+        assert [face.colour for face in heads] == ["green", "dim yellow", "dim red"]  # lights are green
+        assert heads[0].points[:, 2].mean() < heads[2].points[:, 2].mean()
+        for face in heads:
             normal = np.cross(face.points[1] - face.points[0], face.points[2] - face.points[1])
             assert normal @ ahead < -0.99 * np.linalg.norm(normal)
 
@@ -238,3 +239,14 @@ def test_arrows_are_white_and_the_asphalt_beside_them_is_not() -> None:
         assert is_white(seen(scene, place, inner(outline.buffer(-0.04), 0.02), 6.0)).all()
         ring = shapely.difference(outline.buffer(0.2), outline.buffer(0.05))
         assert is_grey(seen(scene, place, inner(ring, 0.05), 6.0)).all()
+
+
+def test_medians_are_green_but_where_a_crosswalk_leads_over_them() -> None:
+    lanes = {"forward": 2, "backward": 2, "width": 3.5, "divided": True}
+    route = route_of(lanes=lanes, kind="crossroads", take="straight", crosswalk=True)
+    scene, member = Scene.of(route, World()), route.network.road(route.legs[0].road)
+    middle = sum(float(t) for t in member.profile.sides(0.0)) / 2
+    end, away = member.road.length, np.linspace(0.6, 12.0, 58)
+    pixels = seen(scene, tuple(member.road.at(end, 0.0)), member.road.at(end - away, middle)[:, :2])
+    assert is_green(pixels)[away > 5.2].all()
+    assert not is_green(pixels)[away < 4.8].any()

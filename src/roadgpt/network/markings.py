@@ -2,7 +2,8 @@
 
 The lines along a road are those of its profile. Inside junctions there are only edge lines along the kerbs,
 and lines between the lanes of a road that a ramp joins or leaves. An arm at which traffic has to stop or to
-give way has a line across the end of its road; at a roundabout, this line lies at the outer edge of the ring.
+give way has a line across the end of its road. Where traffic gives way to a roundabout, this line lies at the
+outer edge of the ring instead.
 """
 
 from collections.abc import Iterator
@@ -76,8 +77,7 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
     """Yields the lines of a road's profile; crosswalks interrupt the lines between lanes."""
     road, profile = member.road, member.profile
     s = stations_of(road)
-    ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
-    first, last = CROSSED * ends[0], road.length - CROSSED * ends[1]
+    first, last = between_crosswalks(network, member)
     for number, line in enumerate(profile.markings(s)):
         is_outer = line.marking == "solid" and number in (0, len(profile.markings(s)) - 1)
         if is_outer:
@@ -92,6 +92,15 @@ def _of_road(network: Network, member: NetworkRoad) -> Iterator[PaintedStroke]:
             along = np.r_[start, s[(s > start) & (s < end)], end]
             edges = profile.markings(along)[number].edges
             yield PaintedStroke("lane", LINE, road.at(along, (edges.left + edges.right) / 2), member.id)
+
+
+def between_crosswalks(network: Network, member: NetworkRoad) -> tuple[float, float]:
+    """Returns the stations in metres between which a road has lines between its lanes, and its median: from
+    one end to the other, but for crosswalks.
+    """
+    ends = (RoadEnd(member.id, "start") in network.crossed, RoadEnd(member.id, "end") in network.crossed)
+    first = min(CROSSED * ends[0], member.road.length)
+    return first, max(member.road.length - CROSSED * ends[1], first)
 
 
 def _kerb_lines(network: Network, inside: Area, height: float) -> Iterator[PaintedStroke]:
@@ -155,14 +164,33 @@ def _of_arm(network: Network, junction: Junction, arm: Arm) -> Iterator[PaintedS
 
 def line_to_stop_at(network: Network, junction: Junction, arm: Arm) -> Array | None:
     """Returns points ``(n, 3)`` in metres along the middle of the line at which traffic from an arm stops or
-    gives way.
+    gives way: ``STOP_LINE`` metres wide, from the middle of the road outwards if it lies across an arm.
 
     None if the arm has priority or no sign, or if it is an arm of a roundabout without a road into the ring.
     """
     if arm.control in ("priority", "none"):
         return None
-    ring = network.roundabout_of.get(junction.id)
-    return _across(network, arm) if ring is None else _around(network, junction, arm, ring)
+    if gives_way_to_ring(network, junction, arm):
+        return _around(network, junction, arm, network.roundabout_of[junction.id])
+    return _across(network, arm)
+
+
+def gives_way_to_ring(network: Network, junction: Junction, arm: Arm) -> bool:
+    """Returns whether traffic from an arm gives way at the outer edge of a roundabout's ring. The line then
+    lies on the road that leads into the ring, and not on the road of the arm.
+    """
+    return arm.control == "yield" and junction.id in network.roundabout_of
+
+
+def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
+    """Returns the id of the road on which the line of ``line_to_stop_at`` lies.
+
+    Raises:
+        StopIteration: No road leads from the arm into the roundabout, so that there is no line.
+    """
+    if not gives_way_to_ring(network, junction, arm):
+        return arm.end.road
+    return next(each.road for each in junction.connections if each.incoming == arm.end)
 
 
 def _across(network: Network, arm: Arm) -> Array:

@@ -4,15 +4,17 @@ A roundabout is one area, which includes the pieces of its ring. The roads and t
 paved area of the network. Pictures, pages and exported meshes are made from these parts.
 """
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from roadgpt.brief.junctions import RAMPS
 from roadgpt.geometry.curve import Array
 from roadgpt.network.network import Junction, Kind, Network, NetworkRoad, RoadEnd
-from roadgpt.network.paved import paved_by
+from roadgpt.network.paved import NEAR, paved_by
 from roadgpt.network.polygon import Area
 from roadgpt.road import Road
 
@@ -38,9 +40,11 @@ class JunctionSurface:
     """The shoulder around the paved area, without the shoulders of the roads that lead there; may be
     empty."""
     kerbed: tuple["Polygon", ...]
-    """Traffic islands with kerbs: holes in the paved area that are too small for a shoulder."""
+    """Traffic islands with kerbs: holes in the paved area that are too small for a shoulder, and the noses of
+    medians."""
     green: tuple["Polygon", ...]
-    """The areas of grass inside the shoulders of larger islands, such as the middle of a roundabout."""
+    """The areas of grass inside the shoulders of larger islands, such as the middle of a roundabout, and the
+    medians beside ramps."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,18 +112,41 @@ def _area_of(
     kind, junctions = node
     wide = paved.buffer(width, quad_segs=ROUND) if width > 0 else paved
     holes = [shapely.Polygon(hole) for part in shapely.get_parts(paved) for hole in part.interiors]
-    kerbed, green = [], []
+    kerbed: list[Polygon] = []
+    green: list[Polygon] = []
+    for nose in _beside_medians(network, paved, wide, holes):
+        (green if kind in RAMPS else kerbed).append(nose)
     for hole in holes:
         rest = shapely.difference(hole, wide)
         if rest.area < GREEN * hole.area:
             kerbed.append(hole)
         else:
             green += [part for part in shapely.get_parts(rest) if part.area > 0]
-    used = shapely.union_all([network.paved, beside, *kerbed])
+    used = shapely.union_all([network.paved, beside, *kerbed, *green])
     shoulder = polygons(shapely.difference(wide, used)) if width > 0 else shapely.MultiPolygon()
     height = junctions[0].node[2]
     numbers = tuple(each.id for each in junctions)
     return JunctionSurface(kind, height, numbers, paved, shoulder, tuple(kerbed), tuple(green))
+
+
+def _beside_medians(
+    network: Network, paved: Area, wide: Area, holes: "Sequence[Polygon]"
+) -> "Iterator[Polygon]":
+    """Yields what lies between the ways of a junction and the ends of medians.
+
+    Args:
+        network: The network.
+        paved: The paved area of the junction.
+        wide: The same with a shoulder around it.
+        holes: The holes in ``paved``, which are left out.
+    """
+    import shapely
+
+    for part in shapely.get_parts(network.paved):
+        for hole in map(shapely.Polygon, part.interiors):
+            is_near = shapely.dwithin(hole, paved, NEAR) and shapely.difference(hole, wide).area < NEAR
+            if is_near and not any(each.contains(hole.representative_point()) for each in holes):
+                yield hole
 
 
 def polygons(shape: Any) -> Area:

@@ -17,13 +17,14 @@ from matplotlib.ticker import MultipleLocator
 from roadgpt.campaign.faults.reason import FailureReason
 from roadgpt.drive import Drive
 from roadgpt.geometry.curve import Array
+from roadgpt.network import Route
 from roadgpt.report.canvas import HALO, INK, SEVERE, SOFT, Header, add_axes, in_our_style, new_figure, save
 from roadgpt.report.labels import Labels
-from roadgpt.report.network_view import SIGN_NAMES, sign_style, signs_shown
+from roadgpt.report.network_view import FAR_ROUTE, SIGN_NAMES, TINT, sign_style, signs_shown
 from roadgpt.report.places import MarkedPlace, places_of
-from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, plan_points
+from roadgpt.report.plan_view import GROUND, Frame, draw_ends, draw_road, is_far, plan_points
 from roadgpt.report.text_width import inches
-from roadgpt.road import Road
+from roadgpt.road import Road, World
 from roadgpt.run import Run
 from roadgpt.verdict import SEVERITIES, Severity, severity
 
@@ -64,7 +65,9 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
     across = SIDE * min(1.0, frame.width / frame.height)
     right = BAR if run.drive is not None else 0.3
     header = Header.of(run, LEFT + across + right)
-    rows = [row for row in (_outside_key(run.drive), _sign_key(road, frame, frame.width / across)) if row]
+    per_inch = frame.width / across
+    network_key = [*_route_key(road, world, per_inch), *_sign_key(road, frame, per_inch)]
+    rows = [row for row in (_outside_key(run.drive), network_key) if row]
     foot = BOTTOM + KEY * len(rows)
     figure = new_figure(header.width, foot + across * frame.height / frame.width + header.height)
     axes = add_axes(figure, LEFT, foot, right, header.height)
@@ -84,7 +87,7 @@ def birds_eye(run: Run, scale: Scale = "equal", frame: Frame | None = None) -> F
         labels.put((place.x, place.y), place.text, place.letters)
     for s, text, sign in ((0.0, "start", -1.0), (road.length, "end", 1.0)):
         heading = float(road.heading(s))
-        x, y, _ = road.at(s)
+        x, y, _ = road.at(s, float(world.profile_of(road).middle(s)))
         if frame.holds(x, y):
             labels.put((x, y), text, INK, sign * np.array([np.cos(heading), np.sin(heading)]))
     if not is_part and not all(frame.holds(x, y) for x, y in centre):
@@ -194,6 +197,14 @@ def _outside_key(drive: Drive | None) -> list[KeyEntry]:
         for name in OUTSIDE
         if name in found
     ]
+
+
+def _route_key(road: Road, world: World, per_inch: float) -> list[KeyEntry]:
+    """Returns the key to the tint of the route's lane; none for a road without junctions."""
+    if not isinstance(road, Route):
+        return []
+    colour = FAR_ROUTE if is_far(road, world, per_inch) else TINT
+    return [KeyEntry("lane of the route", SWATCH, {"lw": RIM, "color": colour})]
 
 
 def _sign_key(road: Road, frame: Frame, per_inch: float) -> list[KeyEntry]:

@@ -6,15 +6,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.markers import MarkerStyle
-from matplotlib.patches import PathPatch
+from matplotlib.patches import PathPatch, Polygon
 from matplotlib.path import Path
 
 from roadgpt.brief.junctions import Control
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Route
+from roadgpt.network import Network, NetworkRoad, Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
-from roadgpt.network.markings import JunctionSign, signs, strokes
+from roadgpt.network.markings import JunctionSign, between_crosswalks, signs, strokes
+from roadgpt.network.paved import stations_of
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import NetworkSurface
 from roadgpt.report.text_width import POINTS
@@ -52,6 +53,9 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
             _fill(axes, island, KERB, 2.1)
         for island in area.green if surface.shoulder > 0 else ():
             _fill(axes, island, GRASS, 2.1)
+    for member in network.roads_outside:
+        if member.profile.median:
+            axes.add_patch(Polygon(_median(network, member), fc=GRASS, ec="none", zorder=2.1))
     _draw_route(axes, route, per_inch)
     painted = strokes(network)
     least = ((("edge", "lane"), LINE_POINTS), (("stop", "give_way"), STOP_POINTS), (("crosswalk",), 0.0))
@@ -67,6 +71,15 @@ def draw_network(axes: Axes, route: Route, per_inch: float) -> None:
     axes.add_collection(PolyCollection(outlines, facecolors=PAINT, edgecolors="none", zorder=3))
     for sign in signs_shown(route, per_inch):
         axes.plot(*sign.place[:2], **sign_style(sign.control), zorder=4)
+
+
+def _median(network: Network, member: NetworkRoad) -> Array:
+    """Returns the outline ``(n, 2)`` in metres of the median of a road, between its crosswalks."""
+    first, last = between_crosswalks(network, member)
+    s = stations_of(member.road)
+    s = np.r_[first, s[(s > first) & (s < last)], last]
+    sides = member.profile.sides(s)
+    return np.concatenate([member.road.at(s, sides.left), member.road.at(s, sides.right)[::-1]])[:, :2]
 
 
 def draw_network_from_far(axes: Axes, route: Route, points: float) -> None:

@@ -15,6 +15,7 @@ from roadgpt.report.canvas import DARKER, HALO, SEVERE, VERMILLION
 from roadgpt.report.text_width import fitted, plain
 from roadgpt.run import Run
 from roadgpt.verdict import Verdict, percent
+from roadgpt.verdict.judging import far_beyond
 
 MOST = 3  # findings; more would cover the road
 LONGEST = 30  # letters of a line of a label
@@ -90,7 +91,7 @@ def _farthest(drive: Drive, verdict: Verdict) -> MarkedPlace:
     """Returns the place where the largest share of the car was outside its lane."""
     step = int(drive["outside"][: drive.lane_steps].argmax())
     x, y, s = (float(drive[name][step]) for name in ("x", "y", "s"))
-    beyond = f",\n{verdict.beyond:.2f} m beyond the marking" if verdict.beyond else ""
+    beyond = "" if verdict.beyond is None else f",\n{far_beyond(verdict.beyond)}"
     return MarkedPlace(x, y, s, f"{percent(verdict.max_oob)} outside{beyond}", step, SEVERE[verdict.severity])
 
 

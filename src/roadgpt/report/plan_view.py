@@ -9,7 +9,7 @@ from matplotlib.patches import Polygon
 
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
-from roadgpt.report.network_view import draw_network, draw_network_from_far, lines_of
+from roadgpt.report.network_view import GRASS, draw_network, draw_network_from_far, lines_of
 from roadgpt.report.text_width import POINTS
 from roadgpt.road import Edges, Road, World
 
@@ -86,7 +86,7 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     """
     s, profile = stations_of(road), world.profile_of(road)
     if isinstance(road, Route):
-        if float(profile.width(0.0)) / per_inch * POINTS < THINNEST_LANE:
+        if is_far(road, world, per_inch):
             draw_network_from_far(axes, road, THINNEST_LANE)
         else:
             draw_network(axes, road, per_inch)
@@ -94,7 +94,9 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
     if profile.has_shoulders:
         _ribbon(axes, road, s, profile.rims(s), VERGE, 1)
     _ribbon(axes, road, s, profile.edges(s), ASPHALT, 2)
-    if float(profile.width(0.0)) / per_inch * POINTS < THINNEST_LANE:
+    if profile.median:
+        _ribbon(axes, road, s, profile.sides(s), GRASS, 2.1)
+    if is_far(road, world, per_inch):
         line = road.at(s)
         axes.plot(line[:, 0], line[:, 1], color=FAR_ASPHALT, lw=THINNEST_LANE, zorder=2)
         return
@@ -110,17 +112,27 @@ def draw_road(axes: Axes, road: Road, world: World, per_inch: float) -> None:
         axes.add_collection(LineCollection(list(dashes), colors=PAINT, linewidths=1.1, zorder=3))
 
 
-def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: int) -> None:
+def is_far(road: Road, world: World, per_inch: float) -> bool:
+    """Returns whether lanes are so narrow in a picture with ``per_inch`` metres per inch that roads are drawn
+    as lines."""
+    return float(world.profile_of(road).width(0.0)) / per_inch * POINTS < THINNEST_LANE
+
+
+def _ribbon(axes: Axes, road: Road, s: Array, edges: Edges, colour: str, layer: float) -> None:
     outline = np.concatenate([road.at(s, edges.left), road.at(s, edges.right)[::-1]])[:, :2]
     axes.add_patch(Polygon(outline, closed=True, fc=colour, ec="none", zorder=layer))
 
 
 def draw_ends(axes: Axes, road: Road, world: World) -> None:
-    """Draws a black bar at the start of the road and a chequered bar at the end."""
+    """Draws a black bar at the start of the road and a chequered bar at the end, over the lanes in the
+    direction of the drive."""
     profile = world.profile_of(road)
     for s, colours in ((0.0, ("#1b1e23",)), (road.length, ("#1b1e23", "white"))):
-        edges = profile.edges(s)
-        across = road.at(np.full(9, s), np.linspace(float(edges.right), float(edges.left), 9))[:, :2]
+        outer, inner = profile.edges(s), profile.sides(s)
+        edges = (outer.left, inner.left) if profile.left_hand else (inner.right, outer.right)
+        left, right = (float(t) for t in edges)
+        count = max(4, 2 * round((left - right) / 2)) + 1  # squares of about a metre, at least four
+        across = road.at(np.full(count, s), np.linspace(right, left, count))[:, :2]
         pairs = np.stack([across[:-1], across[1:]], axis=1)
         shades = [colours[i % len(colours)] for i in range(len(pairs))]
         axes.add_collection(LineCollection(list(pairs), colors=shades, linewidths=3.2, zorder=5))

@@ -17,7 +17,7 @@ from roadgpt.report.canvas import (
     add_axes,
     new_figure,
 )  # fmt: skip
-from roadgpt.report.junctions import shade_junctions
+from roadgpt.report.junctions import junction_stretches, shade_junctions
 from roadgpt.report.places import name_places, places_of
 from roadgpt.report.plan_view import stations_of
 from roadgpt.report.text_width import POINTS
@@ -63,7 +63,9 @@ def _curvature(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     bend, limit = run.road.curvature(s), 1 / run.world.limits.min_radius
     reach = _fill(axes, s, bend, limit)
-    _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m")
+    ends = [end for each in junction_stretches(run.road) for end in (each.start, each.end)]
+    # ways through junctions have a limit of their own
+    _limits(axes, limit, f"limit: radius {run.world.limits.min_radius:.1f} m", [0.0, *ends, run.length])
     axes.set_ylabel("curvature, 1/m")
     _name_sides(axes, "left", "right")
     other = axes.twinx()
@@ -101,7 +103,7 @@ def _grade(axes: Axes, run: Run, s: Array) -> None:
     assert run.road is not None
     grade, limit = run.road.grade(s) * 100, run.world.limits.max_grade * 100
     _fill(axes, s, grade, limit)
-    _limits(axes, limit, f"limit: {limit:.0f} %")
+    _limits(axes, limit, f"limit: {limit:.0f} %", [0.0, run.length])
     axes.set_ylabel("grade, %")
     _name_sides(axes, "up", "down")
 
@@ -125,9 +127,10 @@ def _name_sides(axes: Axes, above: str, below: str) -> None:
         )  # fmt: skip
 
 
-def _limits(axes: Axes, limit: float, text: str) -> None:
+def _limits(axes: Axes, limit: float, text: str, ends: list[float]) -> None:
+    """Draws both signs of a limit, from each station with an even index in ``ends`` to the next one."""
     for side in (-limit, limit):
-        axes.axhline(side, color=VERMILLION, lw=1.1, ls=(0, (1, 1.5)))
+        axes.hlines([side] * (len(ends) // 2), ends[::2], ends[1::2], VERMILLION, (0, (1, 1.5)), lw=1.1)
     _name_limit(axes, limit, text)
 
 

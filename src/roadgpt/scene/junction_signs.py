@@ -9,7 +9,7 @@ import numpy as np
 from roadgpt.geometry.curve import Array
 from roadgpt.network.markings import JunctionSign
 
-SignColour = Literal["grey", "white", "red", "yellow", "green", "black"]
+SignColour = Literal["grey", "white", "red", "yellow", "green", "black", "dim red", "dim yellow"]
 
 POLE, POLE_SIDES = 0.04, 6  # radius of a post in m, and number of its sides
 FOOT = 0.5  # m by which a post reaches into the ground
@@ -19,8 +19,16 @@ MIDDLE = {"stop": 2.45, "yield": 2.4, "priority": 2.35, "lights": 2.6}
 OCTAGON = np.pi / 8 + np.arange(8) * np.pi / 4
 TRIANGLE = np.pi / 2 + np.arange(3) * 2 * np.pi / 3 + np.pi
 DIAMOND = np.arange(4) * np.pi / 2
-LETTER = np.array([[-0.05, -0.12], [0.05, -0.12], [0.05, 0.12], [-0.05, 0.12]])
-LETTERS = (-0.24, -0.08, 0.08, 0.24)  # m from the middle of a stop sign to its letters, drawn as bars
+BAR = 0.032  # m, width of the bars of letters
+TALL, WIDE = 0.26, 0.13  # m, of a letter
+LETTERS = {
+    "S": ("top", "upper left", "middle", "lower right", "foot"),
+    "T": ("top", "centre"),
+    "O": ("top", "upper left", "lower left", "upper right", "lower right", "foot"),
+    "P": ("top", "upper left", "lower left", "upper right", "middle"),
+}
+"""The bars of the letters of a stop sign, in the order of the word."""
+APART = 0.18  # m, from the middle of a letter to that of the next
 BOX, LENS = (0.32, 0.96, 0.25), 0.11  # m: width, height and depth of a traffic light; radius of a lens
 
 
@@ -50,11 +58,31 @@ def faces_of(sign: JunctionSign) -> Iterator[SignFace]:
 def _layers(sign: JunctionSign) -> list[tuple[SignColour, Array]]:
     """Returns the colours of a sign's front from the back to the front, each with its outline ``(n, 2)``."""
     if sign.control == "stop":
-        letters: list[tuple[SignColour, Array]] = [("white", LETTER + [x, 0.0]) for x in LETTERS]
+        letters: list[tuple[SignColour, Array]] = [("white", bar) for bar in _word()]
         return [("white", _polygon(OCTAGON, 0.48)), ("red", _polygon(OCTAGON, 0.44)), *letters]
     if sign.control == "yield":
         return [("red", _polygon(TRIANGLE, 0.52)), ("white", _polygon(TRIANGLE, 0.33))]
     return [("white", _polygon(DIAMOND, 0.45)), ("yellow", _polygon(DIAMOND, 0.33))]
+
+
+def _word() -> Iterator[Array]:
+    """Yields the bars ``(4, 2)`` of the word on a stop sign."""
+    half, wide, tall = BAR / 2, WIDE / 2, TALL / 2
+    up, across = tall - half, wide - half
+    boxes = {  # left, right, lower and upper edge
+        "top": (-wide, wide, up - half, tall),
+        "middle": (-wide, wide, -half, half),
+        "foot": (-wide, wide, -tall, half - up),
+        "centre": (-half, half, -tall, tall),
+        "upper left": (-wide, half - across, 0.0, tall),
+        "lower left": (-wide, half - across, -tall, 0.0),
+        "upper right": (across - half, wide, 0.0, tall),
+        "lower right": (across - half, wide, -tall, 0.0),
+    }
+    for number, bars in enumerate(LETTERS.values()):
+        for left, right, low, high in map(boxes.__getitem__, bars):
+            corners = np.array([[left, low], [right, low], [right, high], [left, high]])
+            yield corners + [(number - (len(LETTERS) - 1) / 2) * APART, 0.0]
 
 
 def _polygon(angles: Array, radius: float) -> Array:
@@ -82,7 +110,7 @@ def _tube(sign: JunctionSign, radius: float, low: float, high: float) -> Iterato
 
 
 def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
-    """Yields the faces of a traffic light: a box with three lenses."""
+    """Yields the faces of a traffic light: a box with three lenses, of which the green one is lit."""
     wide, high, deep = BOX
     x, y = np.array([-1, 1, 1, -1]) * wide / 2, np.array([-1, -1, 1, 1]) * high / 2
     front = _placed(sign, np.column_stack([x, y]), middle, deep)
@@ -93,6 +121,6 @@ def _lights(sign: JunctionSign, middle: float) -> Iterator[SignFace]:
         n = (k + 1) % 4
         yield SignFace("black", np.array([back[k], back[n], front[n], front[k]]))
     lens = _polygon(np.arange(12) * np.pi / 6, LENS)
-    colours: tuple[SignColour, ...] = ("green", "yellow", "red")
+    colours: tuple[SignColour, ...] = ("green", "dim yellow", "dim red")
     for k, colour in enumerate(colours):
         yield SignFace(colour, _placed(sign, lens + [0.0, (k - 1) * 0.29], middle, deep + LAYER))

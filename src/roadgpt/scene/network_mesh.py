@@ -15,28 +15,37 @@ from roadgpt.export.embankments import FOOT, OUTSIDE, RUN, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.network import Network, NetworkRoad, RoadEnd, Route
 from roadgpt.network.arrows import arrows
-from roadgpt.network.markings import signs, strokes
+from roadgpt.network.markings import between_crosswalks, signs, strokes
 from roadgpt.network.polygon import Area
-from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
+from roadgpt.network.surface import (
+    ROUND,
+    JunctionSurface,
+    NetworkSurface,
+    free_ends,
+    polygons,
+    triangulated,
+)
 from roadgpt.road import World
 from roadgpt.road.land import LONGEST_STEP, Land
 from roadgpt.road.profile import LINE as PAINTED
 from roadgpt.scene.junction_signs import SignColour, faces_of
 from roadgpt.scene.light import daylight, level_light
 from roadgpt.scene.mesh import GRASS, ROAD, Patch, attributes, grid
-from roadgpt.scene.palette import BLACK, CONCRETE, GREEN, RED, RIM, WHITE, YELLOW
-from roadgpt.scene.road_mesh import posts, slab, slope, stations_between, surface
+from roadgpt.scene.palette import BLACK, CONCRETE, DIM_RED, DIM_YELLOW, GREEN, RED, RIM, WHITE, YELLOW
+from roadgpt.scene.road_mesh import LIFT, median, posts, slab, slope, stations_between, surface
 from roadgpt.scene.surfaces import INSET, LINE, PERIOD, LaneBoundaries
 from roadgpt.scene.terrain import LitTerrain
 
 FAR = 1e4  # m, offset of boundaries that are too far away to be seen
 BESIDE = 0.3  # m of asphalt with an edge line, laid along a kerb
-LIFT = 0.006  # m by which lines lie above the road
 KERB = 0.12  # m, height of a traffic island
+OVERLAP = 0.05  # m by which the edge line of a junction lies on that of a road
+BARE = 0.8  # m beside the carriageway of a junction, beyond which its shoulder is all grass
 LEAST_OFFSET = 1e-6  # m
 CHECKS = 8  # squares across the lane at the end of the route
 COLOURS: dict[SignColour, int] = {
     "grey": RIM, "white": WHITE, "red": RED, "yellow": YELLOW, "green": GREEN, "black": BLACK,
+    "dim red": DIM_RED, "dim yellow": DIM_YELLOW,
 }  # fmt: skip
 
 
@@ -145,7 +154,9 @@ def _road(
 
     road, profile = member.road, member.profile
     s = stations_between(road, profile.reach)
-    out = surface(road, profile, s, start)
+    first, last = between_crosswalks(route.network, member)
+    green = np.r_[first, s[(s > first) & (s < last)], last]
+    out = [*surface(road, profile, s, start), *median(road, profile, green)]
     if not has_ground:
         return [*out, *slab(road, profile, s)]
     banks = list(embankments(road, profile, s, terrain.land))
@@ -165,13 +176,26 @@ def _junction(area: JunctionSurface, axis: StationAxis) -> list[Patch]:
     """Returns the asphalt of a junction, its shoulder and its islands."""
     out = [_level(area.paved, area.height, ROAD, axis.plain)]
     if not area.shoulder.is_empty:
-        out.append(_level(area.shoulder, area.height, ROAD, axis.kerb, area.paved))
+        out += _shoulder(area, axis.kerb)
         out += [_level(island, area.height, GRASS, 0.0) for island in area.green]
     for island in area.kerbed:
         out.append(_level(island, area.height + KERB, CONCRETE, 0.0))
         ring = np.asarray(island.exterior.coords, float)[:, :2]
         out.append(_wall(ring if island.exterior.is_ccw else ring[::-1], area.height, KERB))
     return out
+
+
+def _shoulder(area: JunctionSurface, station: float) -> list[Patch]:
+    """Returns the shoulder of a junction, in two parts: gravel that turns into grass beside the carriageway,
+    and grass farther away.
+
+    All corners of the whole may lie at the carriageway, as those between two ways do; between corners without
+    any distance from it, it would be all gravel.
+    """
+    near = area.paved.buffer(BARE, quad_segs=ROUND)
+    parts = polygons(area.shoulder.intersection(near)), polygons(area.shoulder.difference(near))
+    out = [] if parts[0].is_empty else [_level(parts[0], area.height, ROAD, station, area.paved)]
+    return out if parts[1].is_empty else [*out, _level(parts[1], area.height, GRASS, 0.0)]
 
 
 def _level(area: Area, height: float, kind: int, station: float, beside: "Area | None" = None) -> Patch:
@@ -212,7 +236,15 @@ def _offset(points: Array, t: float) -> Array:
 
 
 def _kerb_line(points: Array, station: float) -> Patch:
-    """Returns asphalt with an edge line; the carriageway lies to the left of the points."""
+    """Returns asphalt with an edge line; the carriageway lies to the left of the points.
+
+    Where the line is open, it begins and ends a little on the road: as it lies above the road, the asphalt
+    before it would be seen as a gap between it and the road's own line.
+    """
+    if not np.array_equal(points[0], points[-1]):
+        steps = points[[0, -1]] - points[[1, -2]]
+        steps *= OVERLAP / np.linalg.norm(steps, axis=1, keepdims=True)
+        points = np.concatenate([points[:1] + steps[0], points[1:-1], points[-1:] + steps[1]])
     edge = _offset(points, -PAINTED / 2) + [0.0, 0.0, LIFT]
     inner = _offset(points, BESIDE - PAINTED / 2) + [0.0, 0.0, LIFT]
     s = station + np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]

@@ -7,7 +7,7 @@ from roadgpt.scene.mesh import PLAIN
 from roadgpt.scene.textures import linear
 
 CONCRETE, PAINT, GLASS, TRIM, TYRE, RIM, GAP, TAIL, HEAD, PLATE, HIGH = range(PLAIN, PLAIN + 11)
-WHITE, RED, YELLOW, GREEN, BLACK = range(PLAIN + 11, PLAIN + 16)
+WHITE, RED, YELLOW, GREEN, BLACK, DIM_RED, DIM_YELLOW = range(PLAIN + 11, PLAIN + 18)
 
 _COLOURS = {
     CONCRETE: (158, 154, 148),
@@ -26,8 +26,13 @@ _COLOURS = {
     YELLOW: (240, 186, 20),
     GREEN: (30, 150, 70),
     BLACK: (36, 38, 40),
+    DIM_RED: (74, 22, 24),
+    DIM_YELLOW: (82, 66, 22),
 }
-PALETTE = np.array([[*linear(*_COLOURS[kind]), 0.0, 0.0, 0.0] for kind in sorted(_COLOURS)])
+_LIT = {GREEN: (0.02, 0.5, 0.16)}  # the light that a traffic light shows
+PALETTE = np.array(
+    [[*linear(*_COLOURS[kind]), *_LIT.get(kind, (0.0, 0.0, 0.0))] for kind in sorted(_COLOURS)]
+)
 """Shape (n, 6), one row for each type from PLAIN on: three columns of linear colour, and three of emitted
 light."""
 GLOSS = {PAINT: 1.0, GLASS: 1.0, TAIL: 0.6, HEAD: 0.9, RIM: 0.5, TRIM: 0.15}

@@ -10,6 +10,7 @@ from roadgpt.export.edges import line, stations
 from roadgpt.export.embankments import FOOT, Embankment, embankments
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Profile, Road, World
+from roadgpt.road.profile import LINE
 from roadgpt.scene.light import daylight, level_light
 from roadgpt.scene.mesh import GRASS, POST, ROAD, Mesh, Patch, attributes, grid
 from roadgpt.scene.palette import CONCRETE
@@ -22,6 +23,7 @@ THICK = 0.5  # m, thickness of a road that floats
 POST_EVERY, POST_WIDE, POST_HIGH = 25.0, 0.14, 1.0
 """Distance between posts, width of a post, and height of a post, in metres. The distance is half of that on
 straight German roads, to give a better impression of speed."""
+LIFT = 0.006  # m by which lines and medians lie above the road
 POST_FROM_RIM = 0.6  # m from the outer edge of the shoulder
 
 
@@ -32,10 +34,10 @@ def road_patches(road: Road, world: World, terrain: LitTerrain) -> list[Patch]:
     profile = world.profile_of(road)
     s = stations_between(road, profile.reach)
     if not profile.has_shoulders:
-        return [*surface(road, profile, s), *slab(road, profile, s)]
+        return [*surface(road, profile, s), *median(road, profile, s), *slab(road, profile, s)]
     banks = embankments(road, profile, s, terrain.land)
     slopes = [patch for bank in banks for patch in slope(bank, terrain)]
-    return [*surface(road, profile, s), *slopes, *posts(road, profile)]
+    return [*surface(road, profile, s), *median(road, profile, s), *slopes, *posts(road, profile)]
 
 
 def stations_between(road: Road, rim: float) -> Array:
@@ -71,6 +73,17 @@ def surface(road: Road, profile: Profile, s: Array, start: float = 0.0) -> list[
     light = daylight(_upwards(road, s))
     t = np.sign(np.stack(offsets, axis=1)) * np.linalg.norm(rows - road.at(s)[:, None], axis=-1)
     return _blocks(rows, attributes(start + s[:, None], t, light[:, None]), ROAD)
+
+
+def median(road: Road, profile: Profile, s: Array) -> list[Patch]:
+    """Returns the grass of a median between the lines beside it, with points at the stations ``s``; nothing
+    if there is no median."""
+    if not profile.median:
+        return []
+    left, right = profile.sides(s)
+    rows = np.stack([line(road, s, t) for t in (right + LINE / 2, left - LINE / 2)], axis=1)
+    light = np.repeat(daylight(_upwards(road, s))[:, None], 2, axis=1)
+    return _blocks(rows + [0.0, 0.0, LIFT], attributes(0.0, 0.0, light), GRASS)
 
 
 def _upwards(road: Road, s: Array) -> Array:

@@ -157,6 +157,11 @@ def _left(road: "Road", drive: "Drive", step: int, world: "World") -> bool:
     return bool(drive["t"][step] > world.profile_of(road).middle(drive["s"][step]))
 
 
+def far_beyond(beyond: float) -> str:
+    """Returns in words how far a car was outside its lane: ``beyond`` metres beyond the marking, or on it."""
+    return f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
+
+
 def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: float) -> str:
     """Describes a PASS. The text also states how far outside its lane the car was, because the tolerance
     allows this up to a limit.
@@ -167,8 +172,7 @@ def _kept(road: "Road", drive: "Drive", world: "World", margin: float, beyond: f
     kept = f"kept its lane within the tolerance of {percent(world.limits.oob_tolerance)}"
     if world.limits.lane_departure:
         kept = "kept its front tyres within the markings"
-    far = f"{beyond:.2f} m beyond the marking" if beyond >= LEAST else "on the marking"
-    outside = f"at most {percent(drive.max_outside)} outside, {far}"
+    outside = f"at most {percent(drive.max_outside)} outside, {far_beyond(beyond)}"
     return f"{kept} {reached}: {outside}, {margin:.2f} m from failing"
 
 

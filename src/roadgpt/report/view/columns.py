@@ -13,7 +13,9 @@ CHORD = 0.01  # m, largest distance between the road and the drawn lines
 MILLIMETRES, FINE = 3, 5  # digits
 
 
-def road_columns(road: Road, profile: Profile, reach: float | None = None) -> dict[str, Any]:
+def road_columns(
+    road: Road, profile: Profile, reach: float | None = None, median: tuple[float, float] | None = None
+) -> dict[str, Any]:
     """Returns a road's cross-section, and its geometry at stations close enough to draw the road. Values are
     in metres and radians, the curvature is in 1/m, and the grade is a ratio.
 
@@ -22,6 +24,7 @@ def road_columns(road: Road, profile: Profile, reach: float | None = None) -> di
         profile: The cross-section of the road.
         reach: The largest offset, in metres, of any line that is drawn along the road; None: the profile's
             ``reach``.
+        median: The stations between which grass grows on the profile's median; None: on the whole road.
 
     Raises:
         UsageError: A number of the road is not finite.
@@ -40,8 +43,18 @@ def road_columns(road: Road, profile: Profile, reach: float | None = None) -> di
         "heading": rounded(np.unwrap(road.heading(s)), FINE),
         "curvature": rounded(road.curvature(s), FINE),
         "grade": rounded(road.grade(s), FINE),
-        "lanes": _lanes(profile, s),
+        "lanes": {**_lanes(profile, s), "median": _median(profile, median or (0.0, road.length))},
     }
+
+
+def _median(profile: Profile, span: tuple[float, float]) -> dict[str, float] | None:
+    """Returns which of the strips between two boundaries, counted from the left, is the median, and where it
+    is green; None if there is none.
+    """
+    if not profile.median:
+        return None
+    at = profile.count[0] if profile.left_hand else profile.count[1]
+    return {"strip": at, "from": round(span[0], MILLIMETRES), "to": round(span[1], MILLIMETRES)}
 
 
 def _lanes(profile: Profile, s: Array) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network import Route
 from roadgpt.network.arrows import arrows
 from roadgpt.network.ground import ground_of
-from roadgpt.network.markings import PaintedStroke, signs, strokes
+from roadgpt.network.markings import PaintedStroke, between_crosswalks, signs, strokes
 from roadgpt.network.polygon import Area
 from roadgpt.network.surface import JunctionSurface, NetworkSurface, free_ends, triangulated
 from roadgpt.report.junctions import junction_stretches
@@ -24,8 +24,10 @@ SIGNS = {
     "white": "#f4f4ef",
     "red": "#c1272d",
     "yellow": "#f2b90f",
-    "green": "#2e9a4b",
+    "green": "#38d977",
     "black": "#26282b",
+    "dim red": "#4a1618",
+    "dim yellow": "#524216",
 }
 CENTIMETRES = 2  # digits, of outlines that are only drawn on the plan
 NEAR, ROUGH = 0.01, 0.05  # m, by which outlines may be simplified: in 3-D, and on the plan
@@ -42,7 +44,7 @@ def network_values(route: Route) -> dict[str, Any]:
     lines = [each.road.centreline(LONGEST_STEP) for each in inside]
     roads = []
     for each in parts.roads:
-        columns = road_columns(each.road, each.profile)
+        columns = road_columns(each.road, each.profile, median=between_crosswalks(network, each))
         columns["lanes"] |= {"against": 0}  # both lanes look alike: a network has no single direction
         roads.append({**columns, "ends": list(free_ends(network, each))})
     return {

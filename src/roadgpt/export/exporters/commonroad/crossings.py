@@ -14,7 +14,7 @@ from roadgpt.brief.junctions import SIDE, Control, Way, side_of
 from roadgpt.export.lanelets import Lanelet, leading_to
 from roadgpt.export.markup import XmlElement, number
 from roadgpt.network import Arm, Connection, Junction, Network
-from roadgpt.network.markings import line_to_stop_at, place_of_sign
+from roadgpt.network.markings import gives_way_to_ring, line_to_stop_at, place_of_sign
 
 SIGNS: dict[Control, str] = {"yield": "205", "stop": "206", "priority": "306"}
 LINES: dict[Control, str] = {"yield": "dashed", "stop": "solid", "lights": "solid"}
@@ -65,7 +65,8 @@ class Crossings:
         """Yields the element ``stopLine`` of a lanelet on which traffic stops or gives way; nothing for any
         other lanelet.
 
-        At a roundabout, the element has no points, which means that the line is at the end of the lanelet.
+        Where traffic gives way to a roundabout, the element has no points, which means that the line is at
+        the end of the lanelet.
         """
         if lanelet not in self._signed:
             return
@@ -74,7 +75,7 @@ class Crossings:
         if line is None:
             return
         out = XmlElement("stopLine")
-        if junction.id not in self.network.roundabout_of:
+        if not gives_way_to_ring(self.network, junction, arm):
             out.extended(*(point_element(each) for each in np.round(line[:, :2], 4).tolist()))
         out.add("lineMarking", raw=LINES[arm.control])
         yield out

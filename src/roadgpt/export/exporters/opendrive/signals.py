@@ -9,12 +9,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from roadgpt.export.exporters.opendrive.arrows import arrow_object
+from roadgpt.export.exporters.opendrive.stop_lines import line_object
 from roadgpt.export.markup import XmlElement
 from roadgpt.network import Arm, Network, RoadEnd
 from roadgpt.network.arrows import PaintedArrow, arrows
-from roadgpt.network.building import width_at
-from roadgpt.network.markings import place_of_sign
-from roadgpt.network.passages import CROSSWALK, STOP_LINE, line_before
+from roadgpt.network.markings import line_to_stop_at, place_of_sign, road_of_line
+from roadgpt.network.passages import CROSSWALK
 
 TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
 NAMES = {
@@ -85,7 +85,12 @@ class Signals:
         """
         found: dict[int, list[XmlElement]] = {}
         for signal in self.them:
-            found.setdefault(signal.arm.end.road, []).extend(self._line(signal))
+            junction = self.network.junction(signal.junction)
+            line = line_to_stop_at(self.network, junction, signal.arm)
+            if line is not None:
+                road = road_of_line(self.network, junction, signal.arm)
+                made = line_object(self.network.road(road), line, signal.arm, signal.id)
+                found.setdefault(road, []).append(made)
         arms = [arm for junction in self.network.junctions for arm in junction.arms]
         crossed = [arm.end for arm in arms if arm.crosswalk]
         for number, end in enumerate(crossed, self.first_free):
@@ -170,35 +175,3 @@ class Signals:
         for corner in ((-u, -v), (-u, v), (u, v), (u, -v)):
             outline.add("cornerLocal", {"u": corner[0], "v": corner[1], "z": 0.0, "height": 0.01})
         return made
-
-    def _line(self, signal: _Signal) -> Iterator[XmlElement]:
-        """Yields the stop line or give-way line of an arm; nothing for a road with priority."""
-        if signal.arm.control == "priority":
-            return
-        end = signal.arm.end
-        member = self.network.road(end.road)
-        at_end = end.contact == "end"
-        half = min(line_before(signal.arm) + STOP_LINE / 2, member.road.length)
-        s = member.road.length - half if at_end else half
-        lanes = zip(member.ids_towards(end.contact), member.lanes_towards(end.contact), strict=False)
-        width_in = sum(width_at(lane.width, s) for _, lane in lanes)
-        inner = member.begin_towards(end.contact, s)
-        outer = inner + member.side_towards(end.contact) * width_in
-        yield XmlElement(
-            "object",
-            {
-                "id": str(signal.id),
-                "name": "give-way line" if signal.arm.control == "yield" else "stop line",
-                "type": "roadMark",
-                "subtype": "signalLines",
-                "s": s,
-                "t": (inner + outer) / 2,
-                "zOffset": 0.0,
-                "hdg": 0.0,
-                "orientation": "+" if at_end else "-",
-                "length": STOP_LINE,
-                "width": width_in,
-                "height": 0.01,
-                "dynamic": "no",
-            },
-        )

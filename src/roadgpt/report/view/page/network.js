@@ -1,6 +1,6 @@
 // Networks: level junctions with their islands, lines, signs, and the lane of the route.
 
-const GREEN = 0x7f9a63, KERBED = 0xb9b4a8, ON_ROUTE = 0x465260;
+const KERBED = 0xb9b4a8, ON_ROUTE = 0x465260;
 const KERB_HIGH = 0.12; // m of a traffic island
 const FRONT = 0; // three.js's FrontSide: signs are grey behind
 const DOWN = 1.3; // m that a bank runs outwards, for each metre of height
@@ -112,7 +112,7 @@ function paintNetwork(pen, { network, road }, px, py, scale) {
   const { ground, paved, kerbed, green } = network.plan;
   areas(ground, LOOK.verge);
   areas(paved, LOOK.asphalt);
-  areas(green, LOOK.meadow);
+  areas([...green, ...network.roads.filter(({ lanes }) => lanes.median).map(greenOf)], LOOK.meadow);
   areas(kerbed, LOOK.verge);
   const { bounds, driven } = road.lanes;
   const sides = [bounds[driven].t, bounds[driven + 1].t].map((t) => road.s.map((s) => beside(road, s, offsetAt(road, t, s))));

@@ -117,6 +117,7 @@ function makePlan(canvas, scene, trip, fastest, moveTo) {
     const { bounds, driven, rims } = road.lanes;
     ribbon(pen, rims.left, rims.right, LOOK.verge, 5);
     ribbon(pen, bounds[0].t, bounds[bounds.length - 1].t, LOOK.asphalt, 4);
+    if (road.lanes.median) ribbon(pen, bounds[road.lanes.median.strip].t, bounds[road.lanes.median.strip + 1].t, LOOK.meadow, 1);
     const lane = (offsetAt(road, bounds[driven].t, 0) - offsetAt(road, bounds[driven + 1].t, 0)) * view.scale;
     if (lane > 3) bounds.slice(1, -1).forEach(({ t }) => trace(pen, ...along(t), "#fff", 0.8));
   }

@@ -4,6 +4,7 @@ const PINCH = 0.95; // share of the radius; an offset line nearer to the centre 
 const THICK = 0.3; // m of asphalt
 const APRON = 4; // m of shoulder beyond each end of the road
 const ASPHALT = 0x44474d, SIDE = 0x33353a, GRAVEL = 0x8d8672, BANK = 0x7b8a5f, PAINT = 0xf4f4ef, AGAINST = 0x4a4d53;
+const GREEN = 0x7f9a63; // of medians and islands
 
 // Gathers triangles of one look; colours are per vertex.
 class Shape3 {
@@ -126,12 +127,15 @@ function pavement(scene, origin, bank, grain) {
 
 // The surface of one road; `ends` says which of its ends are free, and both are if it says nothing.
 function sweep(shape, road, bank) {
-  const { bounds, against, rims, shoulder } = road.lanes;
+  const { bounds, against, rims, shoulder, median } = road.lanes;
   const free = road.ends || [true, true];
   const s = road.s;
   const [left, right] = [bounds[0].t, bounds[bounds.length - 1].t];
   bounds.slice(1).forEach(({ t }, lane) => {
-    band(shape, road, s, [bounds[lane].t, 0], [t, 0], colourOf(lane < against ? AGAINST : ASPHALT));
+    const colour = colourOf(lane < against ? AGAINST : ASPHALT);
+    for (const [a, b, isGreen] of median && median.strip === lane ? stripsOf(road) : [[0, road.length, false]]) {
+      if (b > a) band(shape, road, stationsBetween(road, a, b), [bounds[lane].t, 0], [t, 0], isGreen ? colourOf(GREEN) : colour);
+    }
   });
   band(shape, road, s, [left, -THICK], [left, 0], colourOf(SIDE));
   band(shape, road, s, [right, 0], [right, -THICK], colourOf(SIDE));
@@ -146,6 +150,19 @@ function sweep(shape, road, bank) {
     }
     for (const isEnd of [false, true].filter((_, i) => free[i])) apron(shape, road, bank, isEnd);
   }
+}
+
+// The median along a road, in pieces: green, but for crosswalks at its ends.
+function stripsOf({ length, lanes: { median } }) {
+  return [[0, median.from, false], [median.from, median.to, true], [median.to, length, false]];
+}
+
+// The outline of what is green of a road's median: x, y, x, y.
+function greenOf(road) {
+  const { bounds, median } = road.lanes;
+  const s = stationsBetween(road, median.from, median.to);
+  const line = (t) => s.map((each) => beside(road, each, offsetAt(road, t, each)).slice(0, 2));
+  return [...line(bounds[median.strip].t), ...line(bounds[median.strip + 1].t).reverse()].flat();
 }
 
 function markings(scene, origin) {

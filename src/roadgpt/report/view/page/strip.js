@@ -114,9 +114,10 @@ function makeStrip(canvas, scene, trip, what, moveTo) {
       pen.lineTo(LEFT + view.wide, py(what.limit.value));
       pen.stroke();
       pen.setLineDash([]);
-      said(pen, what.limit.name, LEFT + 4, py(what.limit.value) + 9, "left", LOOK.soft);
+      said(pen, what.limit.name, LEFT + view.wide - 2, py(what.limit.value) + 12, "right", LOOK.soft);
     }
-    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), TOP + 5, 4, place.colour);
+    const level = what.names ? TOP + view.tall - 6 : TOP + 5; // names of junctions are at the top
+    for (const place of scene.places) cross(pen, px(clamp(place.s, 0, road.length)), level, 4, place.colour);
   }
 
   function over(pen, size, pose) {
