@@ -212,7 +212,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     fed = USUALLY_FED if before.count[1] else 1  # no lane leads to a one-way road of arrival
     needed = [after.count[::-1]] if max(after.count) > fed else []
     if max(before.count) > USUALLY_FED and all(side_of(arm.angle) != "straight" for arm in junction.all_arms):
-        needed.append(before.count)
+        is_fork = junction.kind == "y_junction"
+        needed.append(tuple(map(min, before.count, after.count)) if is_fork else before.count)
     if opposite is not None and needed:
         out, into = (max(1, *counts) for counts in zip(*needed, strict=True))
         found[opposite] = Profile.of(out, into, width, shoulder)
