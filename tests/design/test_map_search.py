@@ -68,6 +68,9 @@ CASES: dict[str, dict[str, Any]] = {
         "dead_ends": 4,
         "controls": {"lights": [0, 2], "yield": 3},
     },
+    "map crossroads x3 || len=2000": {"junctions": 3, "kinds": {"X": 3}, "length": 2000},
+    "map columns=3 rows=2 || len=1300..1500": {"blocks": 6, "length": [1300, 1500]},
+    "map t_junction x2; roundabout || len=600 left_hand": {"roundabouts": 1, "length": 600},
     "map t_junction": {"junctions": 1, "kinds": {"T": 1}, "dead_ends": 3},
 }
 
@@ -152,6 +155,15 @@ def test_signs_that_the_junctions_of_a_grid_cannot_have_are_refused() -> None:
     ):
         with pytest.raises(BriefError, match=why):
             check(read_plan(line), map_size=None, min_radius=0.0)
+
+
+def test_the_check_measures_the_length_of_all_roads() -> None:
+    world = world_for(read_plan("map crossroads x2 || len=800"), USUAL)
+    route = route_of("map crossroads x2 || len=800", 3, world)
+    found = [each.sentence for each in inspect(route, read_plan("map crossroads x2 || len=1000"), world)]
+    assert len(found) == 1
+    assert found[0].startswith("asked for 1000 m of roads in all, has ")
+    assert 720 <= float(found[0].split()[-2]) <= 880
 
 
 @pytest.mark.parametrize(

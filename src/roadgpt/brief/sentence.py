@@ -60,7 +60,8 @@ def _map_sentence(asked: MapClause, brief: Brief) -> str:
     text += f"; {_counted(asked.blocks, 'block')}" if asked.blocks else ""
     text += f"; {_counted(asked.dead_ends, 'dead end')}" if asked.dead_ends else ""
     text += f"; the route goes {', '.join(asked.route)}" if asked.route else ""
-    return "; ".join([text, *_wishes(brief)]) + "."
+    text += f"; {brief.length} metres of roads in all" if brief.length else ""
+    return "; ".join([text, *_wishes(brief.model_copy(update={"length": None}))]) + "."
 
 
 def _map_kind(asked: MapClause, each: JunctionCount) -> str:

@@ -14,6 +14,7 @@ from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import measured_junctions
 from roadgpt.check.map_measures import MeasuredMap, MeasuredNode, measured_map
+from roadgpt.check.route_promises import length_range
 from roadgpt.network import Route
 from roadgpt.plural import plural
 
@@ -24,10 +25,18 @@ NEVER_USUAL = ("lights", "stop")
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
-def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that the map of a route does not meet."""
+def broken_map(route: Route, asked: MapClause, length: Amount | None = None) -> tuple[Finding, ...]:
+    """Returns one Finding for each requirement that the map of a route does not meet.
+
+    Args:
+        route: the route.
+        asked: the requirements.
+        length: the required length of all roads outside junctions, in metres.
+    """
     found = measured_map(route.network)
     out = [Finding(RULE, text) for text in (*_complaints(found, asked), *_route(route, asked))]
+    if length is not None and found.length not in length_range(length):
+        out.append(Finding(RULE, f"asked for {length} m of roads in all, has {found.length:.0f} m"))
     if asked.signed or any(each.control for each in asked.junctions):
         controls = _controls_of_grid if asked.signed else _controls
         return (*out, *(Finding(RULE, text) for text in controls(found, asked)))

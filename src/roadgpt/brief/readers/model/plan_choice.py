@@ -17,6 +17,7 @@ from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
+from roadgpt.brief.readers.model.map_lengths import with_whole_length
 from roadgpt.brief.readers.model.map_signs import with_counted_signs
 from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
@@ -107,7 +108,8 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
-    brief = _with_listed_hills(with_each_lane(with_counted_signs(with_counted_map(brief, text), text)))
+    brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
+    brief = _with_listed_hills(with_each_lane(brief))
     brief = _with_turns_by_degrees(with_told_arms(brief, text))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_motorway_behind_ramp(brief, words)
