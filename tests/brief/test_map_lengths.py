@@ -19,6 +19,7 @@ SPACED, WHOLE = "map crossroads x3 len=2000", "map crossroads x3 || len=2000"
         "a village with three crossroads and a total length of 2 km",
         "ein Dorf mit drei Kreuzungen und zwei Kilometern Straßen",
         "ein Dorf mit drei Kreuzungen, Gesamtlänge 2 km",
+        "ein Dorf mit drei Kreuzungen, 2 km Straßennetz",
         "un village de trois carrefours avec 2 km de rues",
         "un pueblo con tres cruces y 2 km de calles",
         "un paese con tre incroci e 2 km di strade",

@@ -50,6 +50,7 @@ def test_one_junction_of_a_grid_has_lights(words: str, written: str) -> None:
         "a grid of two by two blocks with lights at two of the junctions",
         "two by two blocks, two of the crossings have traffic lights",
         "zwei mal zwei Blöcke, Ampeln an zwei der Kreuzungen",
+        "zwei mal zwei Blöcke, Ampeln nur an zwei Kreuzungen",
         "zwei mal zwei Blöcke, an zwei Kreuzungen stehen Ampeln",
         "deux îlots sur deux, des feux à deux des carrefours",
         "dos por dos manzanas, en dos cruces hay semáforo",
@@ -164,6 +165,11 @@ def test_all_junctions_of_a_grid_but_one_have_a_sign(words: str) -> None:
             "two crossroads and three T-junctions, three of them with lights",
             "map crossroads x2; t_junction x3 lights",
             "map crossroads x2 lights; t_junction lights; t_junction x2",
+        ),
+        (
+            "two T-junctions with stop signs, one crossroads with lights",
+            "map t_junction x2 stop",
+            "map t_junction x2 stop",
         ),
         (
             "five crossroads, not one of them has lights",

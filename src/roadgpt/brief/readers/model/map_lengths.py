@@ -18,7 +18,7 @@ ROADS = (
 TOTAL = r"(?:total length|length in all|gesamtlange|longueur totale|longitud total|lunghezza totale)"
 METRES = r"\[unused(\d+)\] metres(?: \[unused\d+\])?"
 WHOLE = re.compile(
-    rf"{METRES} (?:(?:of|an|von|de|di) (?:(?:its|the|all) )?{ROADS}|stra(?:ss|ß)en)\b"
+    rf"{METRES} (?:(?:of|an|von|de|di) (?:(?:its|the|all) )?{ROADS}|stra(?:ss|ß)en(?:netz)?)\b"
     r"(?! (?:between|zwischen|entre|tra|from|before|behind|to|from|each|per|je|bis|vor|nach)\b)|"
     rf"\b{TOTAL} (?:\w+ )?{METRES}\b|"
     rf"{METRES} (?:long |lang |de long |largo |lungh\w+ )?(?:{IN_ALL})\b|"

@@ -91,6 +91,8 @@ def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, o
         sign = signs.all_but
         counted = (*counted, CountedSigns(sign.control, total - sign.number, sign.amount, ""))
         others = signs.others
+    if any(_names_another_kind(each, counts) for each in counted):
+        return None
     numbers = [each.number for each in counted]
     if not numbers or min(numbers) < 1 or sum(numbers) > total or (len(counted) == 1 and numbers[0] == total):
         return None
@@ -105,6 +107,14 @@ def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, o
             "control": kinds[-1].control,
         }
     return {"junctions": kinds, "control": others}
+
+
+def _names_another_kind(signs: CountedSigns, counts: Mapping[MapJunctionKind, int]) -> bool:
+    """Returns whether the words for the junctions with a sign name a kind that the map lacks."""
+    named = {kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"{signs.number}{signs.nouns}")}
+    named |= {kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(signs.nouns)}
+    may_be_any = CROSSING.search(signs.nouns) is not None and bool({*OF_ANY_KIND} & {*counts})
+    return bool(named) and not named & {*counts} and "junction" not in counts and not may_be_any
 
 
 def _all_split(

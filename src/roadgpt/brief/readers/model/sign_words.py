@@ -174,12 +174,12 @@ def _forms(control: Control) -> tuple[tuple[re.Pattern[str], ...], ...]:
     sign = SIGN_WORDS[control]
     noun = rf"(?:{SINGULARS}|{PLURALS})\b"
     number, one = rf"(\d+){BETWEEN}", rf"(?:l ' )?({ONE})((?: {OF}){{0,3}} {noun})"
-    only = rf"{ONLY}(?:{AT} )?({ONE})((?: {OF}){{0,3}}(?: {noun})?)"
+    only = rf"{ONLY}(?:{AT} )?((?!an? (?!single)){ONE})((?: {OF}){{0,3}}(?: {noun})?)"
     of_them, of_which = rf"({ONE}) {OF_THEM}()", rf"(?:dont|davon|of which) ({ONE})()"
     have, ends = rf",? {HAVE} {ARTICLE}{sign}\b", r"(?! \w+s\b(?<! others))"
     are = rf"{ARE} {ARTICLE}{sign}\b"
     behind = (
-        rf"\b{sign} {AT} {ONLY}?{number}{ends}",
+        rf"\b{sign} {ONLY}?{AT} {ONLY}?{number}{ends}",
         rf"\b{sign} {AT} {one}",
         rf"\b{sign} (?:{AT} )?{only}{ends}",
         rf"\b{sign} {AT} (?:l ' )?{of_them}",
