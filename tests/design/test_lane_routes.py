@@ -196,6 +196,22 @@ CASES: dict[str, dict[str, Any]] = {
         "centre": "double",
         "no_overtaking": True,
     },
+    "| lanes=3 against=3 // crossroads straight // | lanes=1 against=1": {
+        "sequence": [{"kind": "X", "take": "straight"}],
+        "between": [{"lanes": 3, "lanes_against": 3}, {"lanes": 1, "lanes_against": 1}],
+    },
+    "| lanes=2 against=2 // crossroads straight lights // | lanes=4 against=4": {
+        "sequence": [{"kind": "X", "take": "straight", "control": "lights"}],
+        "between": [TWO_EACH, {"lanes": 4, "lanes_against": 4}],
+    },
+    "| lanes=3 against=3 // y_junction left // | lanes=2 against=2": {
+        "sequence": [{"kind": "Y", "take": "left"}],
+        "between": [{"lanes": 3, "lanes_against": 3}, TWO_EACH],
+    },
+    "| lanes=4 against=4 // y_junction right // | lanes=2 against=2": {
+        "sequence": [{"kind": "Y", "take": "right"}],
+        "between": [{"lanes": 4, "lanes_against": 4}, TWO_EACH],
+    },
     "| centre=solid // lane_gain // || len=400": {
         "sequence": [{"kind": "lane_gain"}],
         "length": 400,
@@ -444,8 +460,21 @@ def test_what_cannot_be_built_yet_is_named(line: str, said: str) -> None:
         draft(read_plan(line), WIDE, seed=1)
 
 
-def test_lanes_that_would_lead_nowhere_are_named() -> None:
-    brief = read_plan("| lanes=4 against=4 // crossroads straight // | lanes=1 against=1")
+@pytest.mark.parametrize(
+    ("line", "most", "more"),
+    [
+        ("| lanes=4 against=4 // crossroads straight // | lanes=1 against=1", "2 lanes", 3),
+        ("| lanes=3 // t_junction straight // | lanes=1", "1 lane", 2),
+        ("| lanes=1 against=1 // t_junction straight // | lanes=1 against=3", "1 lane", 2),
+    ],
+)
+def test_lanes_that_would_lead_nowhere_are_refused_at_once(line: str, most: str, more: int) -> None:
+    with pytest.raises(DesignError, match=f"can differ by {most} in .*, and not by {more}; .*lane_drop"):
+        NetworkSearch(read_plan(line), WIDE, np.random.default_rng(1))
+
+
+def test_lanes_for_which_no_draft_has_room_are_named() -> None:
+    brief = read_plan("| lanes=2 against=2 // y_junction left // | lanes=4 against=4")
     with pytest.raises(DesignError, match=r"lanes of one road would lead nowhere .*; give .* as many lanes$"):
         NetworkSearch(brief, WIDE, np.random.default_rng(1)).run(3)
 

@@ -11,15 +11,16 @@ import numpy as np
 import pytest
 
 from outside_judge import SHARED
+from roadgpt.brief.feasible import check
 from roadgpt.brief.plan import read_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft, draft_road
 from roadgpt.design.map_search import MapSearch
 from roadgpt.design.room import world_for
 from roadgpt.drive import simulate
-from roadgpt.errors import DesignError, UsageError
+from roadgpt.errors import BriefError, DesignError, UsageError
 from roadgpt.export import save
-from roadgpt.network import MapDesign, Route, build_map, made_from
+from roadgpt.network import MapDesign, MapNode, Route, build_map, made_from
 from roadgpt.road import CrossSection, Limits, Site, World
 from roadgpt.verdict import judge
 
@@ -57,6 +58,19 @@ CASES: dict[str, dict[str, Any]] = {
         "kinds": {"X": 3, "T": 1},
         "controls": {"stop": 2, "lights": 2},
     },
+    "map columns=2 rows=2; junction lights": {"blocks": 4, "controls": {"lights": 1}},
+    "map columns=3 rows=2 stop; junction none; crossroads x2 lights": {
+        "blocks": 6,
+        "controls": {"lights": 2},
+    },
+    "map columns=2 rows=2 dead_ends=4; junction x..2 lights; t_junction x3 yield || left_hand": {
+        "blocks": 4,
+        "dead_ends": 4,
+        "controls": {"lights": [0, 2], "yield": 3},
+    },
+    "map crossroads x3 || len=2000": {"junctions": 3, "kinds": {"X": 3}, "length": 2000},
+    "map columns=3 rows=2 || len=1300..1500": {"blocks": 6, "length": [1300, 1500]},
+    "map t_junction x2; roundabout || len=600 left_hand": {"roundabouts": 1, "length": 600},
     "map t_junction": {"junctions": 1, "kinds": {"T": 1}, "dead_ends": 3},
 }
 
@@ -125,6 +139,58 @@ def test_what_finds_no_place_is_refused_with_what_to_do() -> None:
         drafted("map columns=2 rows=2 len=20", 1)
     with pytest.raises(UsageError, match="leave out --lanes"):
         drafted("map columns=2 rows=1", 1, World(section=CrossSection(lanes="2+1")))
+
+
+def test_signs_that_the_junctions_of_a_grid_cannot_have_are_refused() -> None:
+    for line, why in (
+        ("map columns=1 rows=1; junction x5 lights", "4 of the kind junction at most, not 5; ask for fewer"),
+        ("map columns=2 rows=2 dead_ends=0; crossroads x2 lights", "1 of the kind crossroads at most, not 2"),
+        ("map columns=2 rows=2; star lights", "no star junction; leave"),
+        ("map columns=2 rows=2 stop; junction stop", "all junctions of the grid have stop signs"),
+        (
+            "map columns=2 rows=2 dead_ends=0; t_junction x3 lights; junction x3 stop",
+            "has 5 junctions at most",
+        ),
+        ("map columns=2 rows=2; junction x2", "give a sign behind each kind"),
+    ):
+        with pytest.raises(BriefError, match=why):
+            check(read_plan(line), map_size=None, min_radius=0.0)
+
+
+def test_the_check_measures_the_length_of_all_roads() -> None:
+    world = world_for(read_plan("map crossroads x2 || len=800"), USUAL)
+    route = route_of("map crossroads x2 || len=800", 3, world)
+    found = [each.sentence for each in inspect(route, read_plan("map crossroads x2 || len=1000"), world)]
+    assert len(found) == 1
+    assert found[0].startswith("asked for 1000 m of roads in all, has ")
+    assert 720 <= float(found[0].split()[-2]) <= 880
+
+
+@pytest.mark.parametrize(
+    ("line", "control", "number"),
+    [
+        ("map columns=2 rows=2; junction lights", "lights", 1),
+        ("map columns=3 rows=2 stop; junction none", "none", 1),
+    ],
+)
+def test_the_check_counts_the_signs_of_a_grid(line: str, control: str, number: int) -> None:
+    """A design with one sign too many, and one with one too few, break the promise."""
+    design, brief = drafted(line, 3), read_plan(line)
+    assert sum(node.control == control for node in junctions_of(design)) == number
+    other = next(node.control for node in junctions_of(design) if node.control != control)
+    for old, new in ((control, other), (other, control)):
+        first = next(
+            n for n, node in enumerate(design.nodes) if node in junctions_of(design) and node.control == old
+        )
+        nodes = list(design.nodes)
+        nodes[first] = nodes[first].model_copy(update={"control": new})
+        route = build_map(design.model_copy(update={"nodes": tuple(nodes)}), USUAL)
+        assert any("of the grid, has" in each.sentence for each in inspect(route, brief, USUAL))
+
+
+def junctions_of(design: MapDesign) -> list[MapNode]:
+    """The nodes of a design at which roads meet."""
+    return [node for node in design.nodes if node.kind not in ("bend", "end")]
 
 
 def test_where_maps_do_not_belong_they_are_refused() -> None:

@@ -10,13 +10,14 @@ from roadgpt.brief.junctions import (
     ACROSS,
     ARMS,
     LANE_KINDS,
+    NAMES,
     RAMPS,
     SIZES,
     JunctionClause,
     JunctionKind,
     Way,
 )
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.map_clause import SIGNS, MapClause
 from roadgpt.brief.words import MOST_LANES, Range, overlap
 from roadgpt.errors import BriefError
 
@@ -182,10 +183,44 @@ def check_map(asked: MapClause) -> None:
             raise BriefError(
                 f"a map has 1 to {MOST_OF_KIND} junctions of one kind, not {each.count}; change it"
             )
+    if asked.signed:
+        _check_signed(asked)
     if asked.blocks is not None:
         _check_blocks(asked, span(asked.blocks))
     if asked.dead_ends is not None:
         _check_dead_ends(asked, span(asked.dead_ends))
+
+
+def _check_signed(asked: MapClause) -> None:
+    """Checks the junctions of a grid that have signs of their own.
+
+    A grid has four junctions fewer than corners of blocks, unless roads lead out at its own corners. Only
+    where a road leads out, the junctions at its border are crossroads.
+    """
+    columns, rows = (min(span(each).hi, MOST_BLOCKS) for each in (asked.columns, asked.rows))
+    out = min(span(asked.dead_ends).hi, 2 * (columns + rows))
+    most = {"junction": (columns + 1) * (rows + 1) - max(4 - out, 0)}
+    most["t_junction"] = most["junction"]
+    most["crossroads"] = (columns - 1) * (rows - 1) + min(out, 2 * (columns + rows - 2))
+    usual, total = asked.control or "none", 0.0
+    for each in asked.signed:
+        name, wanted = NAMES[each.kind][0], span(each.count).lo
+        if each.kind not in most:
+            raise BriefError(f"a grid has T-junctions and crossroads, no {name}; leave the {name} out")
+        if wanted > most[each.kind]:
+            raise BriefError(
+                f"this grid has {most[each.kind]:g} of the kind {name} at most, not {each.count}; "
+                "ask for fewer or a larger grid"
+            )
+        if (each.control, usual) in ((usual, usual), ("priority", "yield"), ("yield", "priority")):
+            raise BriefError(
+                f"all junctions of the grid have {SIGNS[usual]}; give others to those that are counted"
+            )
+        total += wanted
+    if total > most["junction"]:
+        raise BriefError(
+            f"this grid has {most['junction']:g} junctions at most, not {total:g}; give fewer of them signs"
+        )
 
 
 def _check_blocks(asked: MapClause, wanted: Range) -> None:

@@ -4,10 +4,13 @@ map columns=3 rows=2 lights        a grid of three by two blocks with traffic li
 map crossroads x3; roundabout      three crossroads and a roundabout, joined by roads
 map t_junction x4 blocks=0         four T-junctions whose roads enclose no area
 map junction x2 lights; junction x3    five junctions, two of them with traffic lights
+map columns=2 rows=2; junction x2 lights       a grid with traffic lights at two of its junctions
+map columns=2 rows=2 stop; junction none       a grid with stop signs at all of its junctions but one
 map columns=2 rows=2 route=left+straight   a grid, and where the route through it goes at its junctions
 """
 
 import re
+from collections.abc import Mapping
 from typing import Self, get_args
 
 from pydantic import Field, ValidationError, model_validator
@@ -24,6 +27,14 @@ ROUTE = "route"
 LONGEST_ROUTE = 12  # junctions
 CONTROLS = get_args(Control)
 ONE = exactly(1)
+SIGNS: Mapping[Control, str] = {
+    "priority": "roads with priority",
+    "yield": "give-way signs",
+    "stop": "stop signs",
+    "lights": "traffic lights",
+    "none": "no signs",
+}
+"""The signs or lights at the junctions of a map, in words."""
 
 
 class JunctionCount(Frozen):
@@ -49,6 +60,8 @@ class MapClause(Frozen):
     """The number of areas that the roads between junctions enclose; a grid has columns and rows instead."""
     dead_ends: Amount | None = None
     """The number of dead ends; a road that leads out of the map also counts as a dead end."""
+    signed: tuple[JunctionCount, ...] = ()
+    """The junctions of a grid with signs or lights of their own; each has a control."""
     control: Control | None = None
     """The sign or light of all junctions that have none of their own."""
     route: tuple[Way, ...] = Field((), max_length=LONGEST_ROUTE)
@@ -59,6 +72,8 @@ class MapClause(Frozen):
         is_grid = self.columns is not None and self.rows is not None
         if is_grid == bool(self.junctions) or (self.columns is None) != (self.rows is None):
             raise ValueError("a map has either columns and rows of blocks, or kinds of junctions")
+        if self.signed and not (is_grid and all(each.control for each in self.signed)):
+            raise ValueError("kinds of junctions beside columns and rows have a control each")
         if is_grid and self.blocks is not None:
             raise ValueError("the blocks of a grid are its columns and rows; leave out blocks=")
         if self.junctions and all(each.control for each in self.junctions):
@@ -92,7 +107,8 @@ def map_plan(asked: MapClause) -> str:
     ]
     words += [asked.control] if asked.control else []
     words += [f"{ROUTE}={'+'.join(asked.route)}"] if asked.route else []
-    return " ".join([MAP, *filter(None, ["; ".join(kinds)]), *words])
+    signed = "".join(f"; {_kind_text(each)}" for each in asked.signed)
+    return " ".join([MAP, *filter(None, ["; ".join(kinds)]), *words]) + signed
 
 
 def _kind_text(each: JunctionCount) -> str:
@@ -110,12 +126,14 @@ def read_map(line: str) -> MapClause:
 
     Raises:
         BriefError: A word or number is not part of the plan language, a field is given twice, or the plan
-            gives neither a grid nor junctions, or gives both at once.
+            gives neither a grid nor junctions, or a grid whose kinds of junctions have no signs.
     """
     fields: dict[str, object] = {}
     counts: list[JunctionCount] = []
     words = line.replace(";", " ").split()
+    is_grid = any(word.startswith("columns=") for word in words)
     last = max((n for n, word in enumerate(words) if word in get_args(MapJunctionKind)), default=0)
+    last = len(words) if is_grid else last
     for n, word in enumerate(words[1:], 1):
         key, equals, value = word.partition("=")
         if equals and key in KEYS:
@@ -143,8 +161,14 @@ def read_map(line: str) -> MapClause:
         fields[found[0]] = found[1]
     if "blocks" in fields and "columns" in fields:
         raise BriefError("the blocks of a grid are its columns and rows, so leave blocks= out of the plan")
+    if is_grid and not all(each.control for each in counts):
+        raise BriefError(
+            "the kinds of junctions of a grid say which of them have signs of their own; give a sign behind "
+            "each kind, as in map columns=2 rows=2; junction x2 lights"
+        )
+    fields["signed" if is_grid else "junctions"] = tuple(counts)
     try:
-        return MapClause(**fields, junctions=tuple(counts))
+        return MapClause(**fields)
     except ValidationError as error:
         raise BriefError(
             f"the map '{line.strip()[:60]}' in a plan cannot be read; give columns and rows, as in map "

@@ -170,7 +170,9 @@ def _read_network(line: str) -> Brief:
 def _read_map(line: str) -> Brief:
     """Returns the Brief of a plan that asks for a map."""
     roads, _, whole = line.partition(WHOLE)
-    return _made(Brief, {"map": read_map(roads), **_read_whole(whole, ("left_hand", "beside"))}, line)
+    return _made(
+        Brief, {"map": read_map(roads), **_read_whole(whole, ("length", "left_hand", "beside"))}, line
+    )
 
 
 def _read_whole(text: str, names: tuple[str, ...]) -> dict[str, object]:

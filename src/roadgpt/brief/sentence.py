@@ -1,8 +1,8 @@
 """Writes a Brief as one plain English sentence, which the model reader can read back."""
 
 from roadgpt.brief.junction_sentence import junction_text
-from roadgpt.brief.junctions import CONTROLS, NAMES
-from roadgpt.brief.map_clause import JunctionCount, MapClause
+from roadgpt.brief.junctions import NAMES
+from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
 from roadgpt.brief.model import Amount, Brief, CentreLine, Clause, Slope, at_least, exactly
 from roadgpt.brief.normal import STRAIGHT, normal
 from roadgpt.brief.words import FEATURE, KINDS, ROAD, SLOPES, SURFACES
@@ -53,19 +53,23 @@ def _map_sentence(asked: MapClause, brief: Brief) -> str:
         text = f"A grid of {asked.columns} by {asked.rows} blocks"
     text += f" of {asked.length} metres" if asked.length else ""
     is_said = any(each.control for each in asked.junctions)
-    text += f" {CONTROLS[asked.control]}" if asked.control and not is_said else ""
+    sign = SIGNS[asked.control] if asked.control and not is_said else ""
+    text += f" with {sign}" if sign and not asked.signed else ""
+    text += "".join(f"; {_map_kind(asked, each)}" for each in asked.signed)
+    text += f"; {sign} at the other junctions" if sign and asked.signed else ""
     text += f"; {_counted(asked.blocks, 'block')}" if asked.blocks else ""
     text += f"; {_counted(asked.dead_ends, 'dead end')}" if asked.dead_ends else ""
     text += f"; the route goes {', '.join(asked.route)}" if asked.route else ""
-    return "; ".join([text, *_wishes(brief)]) + "."
+    text += f"; {brief.length} metres of roads in all" if brief.length else ""
+    return "; ".join([text, *_wishes(brief.model_copy(update={"length": None}))]) + "."
 
 
 def _map_kind(asked: MapClause, each: JunctionCount) -> str:
     """Returns a number of junctions of a map, with their signs if the kinds have signs of their own."""
-    is_said = any(one.control for one in asked.junctions)
+    is_said = any(one.control for one in (*asked.junctions, *asked.signed))
     control = asked.control_of(each) if is_said else None
     text = _counted(each.count, NAMES[each.kind][0])
-    return f"{text} {CONTROLS[control]}" if control else text
+    return f"{text} with {SIGNS[control]}" if control else text
 
 
 def _stretch(brief: Brief) -> str:

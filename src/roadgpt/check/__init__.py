@@ -110,7 +110,7 @@ def inspect(road: Road, brief: Brief | None, world: World, rules: str = "strict"
         if brief is None:
             return found_there
         if brief.map is not None:
-            return (*found_there, *broken_map(road, brief.map))
+            return (*found_there, *broken_map(road, brief.map, brief.length))
         return (*found_there, *broken_promises(road, brief, world.site.map_size))
     road, found = world.lay(road), list[Finding]()
     for _, rule in rules_of(rules):

@@ -39,6 +39,8 @@ class MeasuredMap:
     """The number of separate parts, which no roads connect; 1 for a connected map."""
     distances: tuple[float, ...]
     """For each straight road between two junctions, the distance in metres between their middles."""
+    length: float
+    """The length in metres of all roads outside junctions."""
 
     def number(self, kind: JunctionKind) -> int:
         """Returns the number of junctions that have this kind among their ``kinds``."""
@@ -65,7 +67,8 @@ def measured_map(network: Network) -> MeasuredMap:
             distances.append(math.dist(found[met[0]].place, found[met[1]].place))
     count = len(found) + ends
     parts = _parts(count, joined)
-    return MeasuredMap(tuple(found), len(roads) - count + parts, ends, parts, tuple(distances))
+    length = sum(member.road.length for member in roads)
+    return MeasuredMap(tuple(found), len(roads) - count + parts, ends, parts, tuple(distances), length)
 
 
 def _node(network: Network, junctions: tuple[Junction, ...]) -> MeasuredNode:

@@ -5,43 +5,46 @@ Everything is measured on the finished network, by ``check.map_measures`` and ``
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.junctions import NAMES, Control, MapJunctionKind
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.map_clause import SIGNS, JunctionCount, MapClause
 from roadgpt.brief.words import ROAD, Range
 from roadgpt.check.finding import Finding
 from roadgpt.check.junction_measures import measured_junctions
 from roadgpt.check.map_measures import MeasuredMap, MeasuredNode, measured_map
+from roadgpt.check.route_promises import length_range
 from roadgpt.network import Route
 from roadgpt.plural import plural
 
 RULE = "promises"
 SHARE = 0.1  # ratio by which a distance between junctions may differ from the requested distance
-SAID: dict[Control, str] = {
-    "priority": "roads with priority",
-    "yield": "give-way signs",
-    "stop": "stop signs",
-    "lights": "traffic lights",
-    "none": "no signs",
-}
 NEVER_USUAL = ("lights", "stop")
 """Signs that a junction has only if they were asked for; a roundabout has signs to give way without it."""
 CORNERS = 4  # corners of a grid; at each, the road may bend without a junction
 
 
-def broken_map(route: Route, asked: MapClause) -> tuple[Finding, ...]:
-    """Returns one Finding for each requirement that the map of a route does not meet."""
+def broken_map(route: Route, asked: MapClause, length: Amount | None = None) -> tuple[Finding, ...]:
+    """Returns one Finding for each requirement that the map of a route does not meet.
+
+    Args:
+        route: the route.
+        asked: the requirements.
+        length: the required length of all roads outside junctions, in metres.
+    """
     found = measured_map(route.network)
     out = [Finding(RULE, text) for text in (*_complaints(found, asked), *_route(route, asked))]
-    if any(each.control for each in asked.junctions):
-        return (*out, *(Finding(RULE, text) for text in _controls(found, asked)))
+    if length is not None and found.length not in length_range(length):
+        out.append(Finding(RULE, f"asked for {length} m of roads in all, has {found.length:.0f} m"))
+    if asked.signed or any(each.control for each in asked.junctions):
+        controls = _controls_of_grid if asked.signed else _controls
+        return (*out, *(Finding(RULE, text) for text in controls(found, asked)))
     for node in found.nodes:
         if asked.control is not None and not _is_controlled(node, asked.control):
             x, y = node.place
-            has = " and ".join(SAID[each] for each in sorted(node.controls))
-            text = f"asked for {SAID[asked.control]} at all junctions, near ({x:.0f}, {y:.0f}): {has}"
+            has = " and ".join(SIGNS[each] for each in sorted(node.controls))
+            text = f"asked for {SIGNS[asked.control]} at all junctions, near ({x:.0f}, {y:.0f}): {has}"
             out.append(Finding(RULE, text, None, x, y))
     return tuple(out)
 
@@ -106,14 +109,39 @@ def _controls(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
         allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
         number = sum(_is_controlled(node, control) for node in found.nodes)
         if number < allowed.lo or (control in NEVER_USUAL and number > allowed.hi):
-            yield f"asked for {SAID[control]} at {allowed} junctions, has {number}"
-    for each in asked.junctions:
+            yield f"asked for {SIGNS[control]} at {allowed} junctions, has {number}"
+    yield from _kinds_with_signs(found, asked, asked.junctions)
+
+
+def _controls_of_grid(found: MeasuredMap, asked: MapClause) -> Iterator[str]:
+    """Yields what is wrong with the signs of a grid some of whose junctions have their own.
+
+    All others have the sign of the grid, or none.
+    """
+    left = len(found.nodes)
+    for control in dict.fromkeys(each.control for each in asked.signed if each.control is not None):
+        counts = [span(each.count) for each in asked.signed if each.control == control]
+        allowed = Range(sum(each.lo for each in counts), sum(each.hi for each in counts))
+        number = sum(_is_controlled(node, control) for node in found.nodes)
+        left -= number
+        if number not in allowed:
+            yield f"asked for {SIGNS[control]} at {allowed} of the junctions of the grid, has {number}"
+    yield from _kinds_with_signs(found, asked, asked.signed)
+    usual = asked.control or "none"
+    number = sum(_is_controlled(node, usual) for node in found.nodes)
+    if number != left:
+        yield f"asked for {SIGNS[usual]} at the {left} other junctions of the grid, has {number}"
+
+
+def _kinds_with_signs(found: MeasuredMap, asked: MapClause, kinds: Sequence[JunctionCount]) -> Iterator[str]:
+    """Yields a text for each of some kinds of which too few junctions have the signs that are asked for."""
+    for each in kinds:
         held = asked.control_of(each)
         if held is not None:
             number = sum(_is_of(node, each.kind) and _is_controlled(node, held) for node in found.nodes)
             if number < span(each.count).lo:
                 kind = NAMES[each.kind][0]
-                yield f"asked for {SAID[held]} at {each.count} of the kind {kind}, has {number}"
+                yield f"asked for {SIGNS[held]} at {each.count} of the kind {kind}, has {number}"
 
 
 def _is_of(node: MeasuredNode, kind: MapJunctionKind) -> bool:

@@ -5,12 +5,13 @@ streets, or a junction if a road leads out there.
 """
 
 import cmath
+from collections.abc import Sequence
 from math import inf, pi
 
 import numpy as np
 
 from roadgpt.brief.amount import Amount, span
-from roadgpt.brief.map_clause import MapClause
+from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.words import Range, overlap
 from roadgpt.design.map_draft import DraftNode, MapDraft, Rng, drawn_bend, drawn_kerb, drawn_stub, kind_of
 from roadgpt.network.turning import tangent_length
@@ -59,7 +60,7 @@ def draft_grid(asked: MapClause, room: float, least_radius: float, rng: Rng, has
         way = cmath.rect(1.0, cmath.phase(complex(*side)) + rng.uniform(-LEANING, LEANING) * pi / 180)
         node = draft.nodes[numbers[cell]]
         draft.add(DraftNode(node.z + way * (CONTACT + drawn_stub(rng, haste)), "end"), numbers[cell])
-    return draft if _finished(draft, least_radius, rng) else None
+    return draft if _finished(draft, least_radius, rng) and _signed(draft, asked.signed, rng) else None
 
 
 def drawn_count(asked: Amount | None, rng: Rng, most: int = 8, least: int = 1) -> int:
@@ -118,6 +119,20 @@ def _streets(count: int, asked: Amount | None, room: float, rng: Rng, haste: flo
     high = min(allowed.hi, 1.3 * low)
     usual = float(rng.uniform(low, high)) if high > low else low
     return [usual * (1 + float(rng.uniform(-ASKED, ASKED))) for _ in range(count)]
+
+
+def _signed(draft: MapDraft, asked: Sequence[JunctionCount], rng: Rng) -> bool:
+    """Gives random junctions of a draft the signs that are asked for; returns whether there are enough."""
+    free = [node for node in draft.nodes if node.is_junction]
+    for each in sorted(asked, key=lambda each: each.kind == "junction"):
+        fitting = [node for node in free if each.kind in ("junction", node.kind)]
+        if span(each.count).lo > len(fitting):
+            return False
+        count = drawn_count(each.count, rng, len(fitting), least=0)
+        for n in rng.permutation(len(fitting))[:count]:
+            fitting[n].control = each.control or "none"
+            free.remove(fitting[n])
+    return True
 
 
 def _finished(draft: MapDraft, least_radius: float, rng: Rng) -> bool:

@@ -6,15 +6,18 @@ built from the draft.
 """
 
 from collections import Counter
+from collections.abc import Sequence
 from functools import lru_cache
 from math import inf, sqrt
 
 import numpy as np
 
-from roadgpt.brief.amount import span
+from roadgpt.brief.amount import Amount, span
 from roadgpt.brief.map_clause import MapClause
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.brief.model import Brief
+from roadgpt.check.map_measures import measured_map
+from roadgpt.check.route_promises import length_range
 from roadgpt.design.advice import larger_map
 from roadgpt.design.first_accepted import first_accepted
 from roadgpt.design.grid_draft import LEAST_BLOCK, draft_grid
@@ -35,6 +38,8 @@ TRIALS = (1, 2)  # seeds of these searches
 NO_HASTE = 8  # drafts without haste
 HURRIED = 0.12  # least haste for each junction beyond the first ``FEW``
 FEW = 2.0  # number of junctions that need no haste on the usual map
+ACROSS = 0.2  # side of the smallest map that is tried, as a share of the length of all its roads
+WITHIN = 0.9  # where only one limit of a length is given, the other one is this share of it
 PARTS = 250.0  # m, side of the usual map
 LEANING = 14.0  # degrees, greatest rotation of a grid; its columns still run from south to north
 TURNS = 24  # number of rotations that are tried
@@ -98,6 +103,9 @@ class MapSearch:
         if draft is None:
             self.failed["its roads would overlap or bend too much"] += 1
             return None
+        if self.brief.length is not None and not self._stretch(draft, self.brief.length):
+            self.failed["its roads would overlap or bend too much"] += 1
+            return None
         if not self._place(draft, turns, room):
             self.failed[TOO_LARGE] += 1
             return None
@@ -107,12 +115,30 @@ class MapSearch:
             which = f"no route {', '.join(ways)}" if ways else "no route"
             self.failed[f"{which} leads through it"] += 1
             return None
-        heights = self._heights(draft, haste)
-        return MapDesign(
-            nodes=tuple(_node(node, height) for node, height in zip(draft.nodes, heights, strict=True)),
-            roads=tuple((one + 1, other + 1) for one, other in draft.roads),
-            route=tuple(number + 1 for number in route),
-        )
+        return _design(draft, self._heights(draft, haste), route)
+
+    def _stretch(self, draft: MapDraft, length: Amount) -> bool:
+        """Makes a draft larger or smaller, so that all its roads together have the required length.
+
+        Only the roads between its nodes change: junctions and the radii of bends stay as they are. Returns
+        whether the draft can be built, which shows how long its roads are.
+        """
+        route = drawn_route(draft, self.rng)
+        if route is None:
+            return False
+        try:
+            flat = _design(draft, [0.0] * len(draft.nodes), route)
+            built = measured_map(build_map(flat, self.world).network).length
+        except UsageError:
+            return False
+        asked = length_range(length)
+        if built not in asked:
+            low = asked.lo if asked.lo > 0 else WITHIN * asked.hi
+            wanted = (low + min(asked.hi, low / WITHIN)) / 2
+            between = sum(abs(draft.nodes[one].z - draft.nodes[other].z) for one, other in draft.roads)
+            for node in draft.nodes:
+                node.z *= (between + wanted - built) / between
+        return True
 
     def _place(self, draft: MapDraft, turns: np.ndarray, room: float) -> bool:
         """Turns and moves a draft onto the map; returns whether it fits.
@@ -160,6 +186,14 @@ class MapSearch:
         return f"no draft of this map was accepted: {why}; leave something out or give other numbers"
 
 
+def _design(draft: MapDraft, heights: Sequence[float], route: Sequence[int]) -> MapDesign:
+    return MapDesign(
+        nodes=tuple(_node(node, height) for node, height in zip(draft.nodes, heights, strict=True)),
+        roads=tuple((one + 1, other + 1) for one, other in draft.roads),
+        route=tuple(number + 1 for number in route),
+    )
+
+
 def _node(node: DraftNode, height: float) -> MapNode:
     at = (node.z.real, node.z.imag, height)
     if not node.is_junction:
@@ -190,7 +224,7 @@ def room_for_map(brief: Brief, world: World) -> float | None:
     Returns None if the World's map is large enough, or if no larger map would help.
     """
     assert brief.map is not None
-    likely = _likely_room(brief.map)
+    likely = max(_likely_room(brief.map), ACROSS * max(span(brief.length).lo, 0.0))
     try:
         failed = _failed(brief, world) if likely <= world.site.map_size else None
         if likely <= world.site.map_size and (failed is None or not failed.failed[TOO_LARGE]):

@@ -32,6 +32,7 @@ from roadgpt.design.layout import MapPose, PlacedPlan, PlanLine, place
 from roadgpt.design.network_heights import climbing
 from roadgpt.design.network_sketch import is_clear, sketched
 from roadgpt.design.road_search import DraftSearch
+from roadgpt.design.unbuilt import check_lanes_across
 from roadgpt.design.variety import Shapes
 from roadgpt.design.writing import start_height
 from roadgpt.errors import DesignError, UsageError
@@ -84,6 +85,7 @@ class NetworkSearch:
 
         Raises:
             BriefError: a junction cannot meet its requirements.
+            DesignError: lanes of a road would lead nowhere at a junction.
         """
         for clause in brief.junctions:
             check_junction(clause)
@@ -92,6 +94,7 @@ class NetworkSearch:
         self.usual = LanesDesign(width=world.section.lane_width)
         self.lanes = lanes_of_roads(brief, world.section.lane_width)
         self.others = Shapes().of(())
+        check_lanes_across(brief.junctions, self.lanes)
         self.failed: Counter[str] = Counter()
 
     def run(self, drafts: int = DRAFTS) -> NetworkDesign:

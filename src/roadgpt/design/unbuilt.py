@@ -1,12 +1,18 @@
 """Names features that a Brief can ask for but no designer can build yet."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 from roadgpt.brief.amount import span
-from roadgpt.brief.junctions import RAMPS, JunctionClause
+from roadgpt.brief.junctions import RAMPS, JunctionClause, JunctionKind
 from roadgpt.brief.model import Brief
 from roadgpt.errors import DesignError
+from roadgpt.network.lane_design import LanesDesign
 from roadgpt.network.ring import MOST_LANES as MOST_RING_LANES
+from roadgpt.plural import plural
+
+TURNING_LANES: Mapping[JunctionKind, int] = {"t_junction": 1, "crossroads": 2}
+"""How many lanes of a road can end or begin at a junction: they lead to the side or come from there."""
 
 
 def check_built(brief: Brief) -> None:
@@ -26,6 +32,32 @@ def check_built(brief: Brief) -> None:
         *others, last = found
         named = f"{', '.join(others)} and {last}" if others else last
         raise DesignError(f"{named} cannot be built yet; leave {'them' if others else 'it'} out")
+
+
+def check_lanes_across(places: Sequence[JunctionClause], lanes: Sequence[LanesDesign]) -> None:
+    """Checks that no lane of a road leads nowhere at a junction where a route goes straight on.
+
+    Lanes that do not continue there turn off, or come from the side: one to the left and one to the right at
+    most.
+
+    Args:
+        places: the junctions, ramps and lane changes that the route passes, in order.
+        lanes: the lanes of each road before, between and behind them.
+
+    Raises:
+        DesignError: The roads before and behind a junction differ by more lanes than can turn there.
+    """
+    for place, (before, behind) in zip(places, pairwise(lanes), strict=True):
+        most = TURNING_LANES.get(place.kind) if place.take == "straight" else None
+        pairs = (before.forward, behind.forward), (before.backward, behind.backward)
+        more = max((abs(one - other) for one, other in pairs if one and other), default=0)
+        if most is not None and more > most:
+            raise DesignError(
+                f"straight on over a {place.name}, the roads before and behind it can differ by "
+                f"{plural(most, 'lane')} in each direction, which turn off or join there, and not by {more}; "
+                "give the roads more equal numbers of lanes, or let lanes end before it (lane_drop) or begin "
+                "behind it (lane_gain)"
+            )
 
 
 def _unbuilt(brief: Brief) -> Iterator[str]:

@@ -2,8 +2,9 @@
 
 Traffic that turns right to the rightmost arm uses the rightmost lane. Traffic that turns left to the leftmost
 arm uses the leftmost lane. If there is one arm between these two, all lanes lead to it, as far as it has
-lanes for them; two or more arms between them divide the lanes. If there is no arm between them, the left and
-the right turn divide the lanes. There are two exceptions:
+lanes for them; if it has two more, they lead to its inner lanes, and traffic that turns to it uses the outer
+ones. Two or more arms between them divide the lanes. If there is no arm between them, the left and the right
+turn divide the lanes. There are two exceptions:
 
 - If a lane would then lead to no arm, the lanes are divided so that no lane leads to two arms.
 - If an arm has more than two lanes and no arm leads straight on to it, several lanes turn to it side by side.
@@ -14,7 +15,7 @@ The ways from one arm never cross each other.
 import math
 from collections.abc import Iterator, Sequence
 
-from roadgpt.brief.junctions import side_of
+from roadgpt.brief.junctions import Way, side_of
 from roadgpt.geometry.curve import wrapped
 from roadgpt.network.building import Stub
 
@@ -50,13 +51,12 @@ def lane_ways(stubs: Sequence[Stub], start: int) -> Iterator[tuple[int, LaneWay]
         spans, left = _spans_of_their_own(into, room, turns_right, turns_left), 1
     for n, j in enumerate(exits):
         lanes = spans[n]
-        spare = room[n] - len(lanes)
+        spare, is_straight = room[n] - len(lanes), turns[n] == "straight"
         beside = min(left - 1, spare) if turns_left and n < len(exits) - 1 else 0
-        is_rightmost = (turns_right and n == 0) or (
-            spare and turns[n] == "straight" and _is_joined_from_the_left_only(stubs, j)
-        )
-        if is_rightmost:
+        if (turns_right and n == 0) or (spare and is_straight and _is_joined_from_the_left_only(stubs, j)):
             beside = spare
+        elif spare == 2 and is_straight and _joining(stubs, j) >= {"left", "right"}:
+            beside = 1  # one lane on each side of these is that of traffic which turns to the arm
         yield j, tuple((i, beside + k) for k, i in enumerate(lanes))
 
 
@@ -65,8 +65,13 @@ def _is_joined_from_the_left_only(stubs: Sequence[Stub], end: int) -> bool:
 
     Then traffic that goes straight on to the arm uses its right lanes, because the others do not lead there.
     """
-    turns = {side_of(_turn(stub, stubs[end])) for n, stub in enumerate(stubs) if n != end and stub.into}
+    turns = _joining(stubs, end)
     return "left" in turns and "right" not in turns
+
+
+def _joining(stubs: Sequence[Stub], end: int) -> set[Way]:
+    """Returns the ways that lead to an arm from the others."""
+    return {side_of(_turn(stub, stubs[end])) for n, stub in enumerate(stubs) if n != end and stub.into}
 
 
 def _turning_lanes(stubs: Sequence[Stub], end: int) -> tuple[int, int]:
@@ -96,9 +101,10 @@ def _usual_spans(into: int, room: Sequence[int], turns_right: int, turns_left: i
         turns_left: The number of lanes that lead to the last exit, if traffic turns left to it; or else 0.
     """
     through = len(room) - bool(turns_right) - bool(turns_left)
-    # without a way straight on, those to the left and to the right share all lanes
-    left = turns_left if through else max(into - into // 2, 1)
-    right = turns_right if through else max(into // 2, 1)
+    left, right = turns_left, turns_right
+    if not through:  # those to the left and to the right share all lanes
+        left, right = (into - into // 2, into // 2) if max(left, right) <= 1 else (left, right)
+        left, right = max(left, into - right, 1), max(right, into - left, 1)
     # each of them shares one lane with the ways between them
     inner, outer = max(left - 1, 0), into - max(right, 1)
     found = []

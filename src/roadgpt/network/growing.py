@@ -186,11 +186,10 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     - An arm opposite the arm that the route takes has as many lanes as the arm taken, if that arm has more
       than two lanes in a direction, or more than one and the road of arrival is one-way. With fewer lanes
       opposite, some lanes of the arm taken would lead nowhere. For the same reason it has as many lanes as
-      the road of arrival, if that road has more than two in a direction and no arm is straight ahead.
+      the road of arrival, if that road has more than two in a direction and no arm is straight ahead; but at
+      a fork not more than the arm taken.
     - An arm straight ahead has as many lanes as the road of arrival.
-    - Any other arm has one lane.
-
-    A one-way arm has only the lanes of its direction.
+    - Any other arm has one lane. A one-way arm has only the lanes of its direction.
 
     Args:
         junction: The junction.
@@ -212,7 +211,8 @@ def profiles_of_arms(junction: JunctionDesign, before: Profile, after: Profile) 
     fed = USUALLY_FED if before.count[1] else 1  # no lane leads to a one-way road of arrival
     needed = [after.count[::-1]] if max(after.count) > fed else []
     if max(before.count) > USUALLY_FED and all(side_of(arm.angle) != "straight" for arm in arms):
-        needed.append(before.count)
+        most = after.count if junction.kind == "y_junction" else before.count
+        needed.append((min(before.count[0], most[0]), min(before.count[1], most[1])))
     if opposite is not None and needed:
         out, into = (max(1, *counts) for counts in zip(*needed, strict=True))
         found[opposite] = Profile.of(out, into, width, shoulder)

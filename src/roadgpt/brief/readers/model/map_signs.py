@@ -1,4 +1,4 @@
-"""Finds at how many junctions of a map there are traffic lights, where the words count them.
+"""Gives the junctions of a map signs and lights of their own, where the words count them.
 
 The neural network writes one sign for all junctions of a map. For "six junctions, two with lights", the
 number before "with lights" says that only two of them have lights.
@@ -6,150 +6,181 @@ number before "with lights" says that only two of them have lights.
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
-from roadgpt.brief.amount import exactly
-from roadgpt.brief.junctions import MapJunctionKind
+from roadgpt.brief.amount import Amount, exactly
+from roadgpt.brief.junctions import Control, MapJunctionKind
 from roadgpt.brief.map_clause import JunctionCount, MapClause
 from roadgpt.brief.model import Brief
-from roadgpt.brief.readers.model.alike_junctions import NOUN
 from roadgpt.brief.readers.model.map_words import (
     ALL_KINDS,
-    ANY_KIND,
     KINDS_IN_PLURAL,
-    TAKEN_BACK,
+    KINDS_IN_SINGULAR,
     is_counted,
     one_number,
     said_of,
 )
+from roadgpt.brief.readers.model.sign_words import SIGN_WORDS, CountedSigns, SignsInWords, signs_in_words
 from roadgpt.brief.readers.model.slots import SlottedText
 
-LIGHTS = (
-    r"(?:(?:traffic )?(?:lights|signals)|ampeln?(?:anlagen?)?|lichtsignal\w*|feux(?: tricolores)?|semafor\w*)"
-)
-NOUNS = rf"(?:{NOUN}|{ANY_KIND}|stars|sterne|etoiles|estrellas|stelle)"
-OF = (
-    r"(?:others?|of|them|which|these|those|the|davon|von|ihnen|denen|dont|d|'|entre|elles|eux|de|ellos|ellas|los|las|"
-    r"cuales|di|dei|delle|quali|queste|questi|esse|essi|loro)"
-)
-BETWEEN = rf"((?: (?:{OF}|{NOUNS})\b){{0,5}})"
-"""The words that may stand between a number of junctions and their lights."""
-HAVE = r"(?:with|have|has|having|get|mit|haben|bekommen|avec|ont|con|tienen?|llevan?|hanno)"
-ARTICLE = r"(?:the |a set of |eine[rn]? |des |les |un |los |i |il |el |le |dei )?"
-COUNTED = re.compile(rf"\b(\d+){BETWEEN},? {HAVE} {ARTICLE}{LIGHTS}\b")
-"""A number, words for junctions, and a word such as "have" before lights: "two of them have lights"."""
-SIGNALLED = re.compile(rf"\b(\d+){BETWEEN} (?:are )?(?:signalled|signalised|signalized|semaforizad\w+)\b")
-AT = re.compile(
-    rf"\b{LIGHTS} (?:at|on|an|bei|aux?|a|en|in) (?:just |only |exactly |nur |seulement |solo )?(\d+){BETWEEN}"
-    r"(?! \w+s\b(?<! others))"
-)
-"""Lights, a preposition and a number: "lights at two of them"."""
-ONE = re.compile(
-    r"\b(?:(?:only|just|exactly) one(?: other)?|(?<!every )(?<!each )one of (?:them|these|which)|"
-    r"(?:nur|genau) eine[rs]?|"
-    r"eine[rs]? davon|exactement une?|exactamente un[oa]|esattamente un[oa]|un seul|une seule|dont une?|"
-    r"solo un[oa]|un[oa] solo|un[oa] de (?:ellos|ellas|los cuales|las cuales)|un[oa] di (?:essi|esse|loro)) "
-    rf"{HAVE} {ARTICLE}{LIGHTS}\b"
-)
-BOUND = re.compile(
-    r"(?:\b(?:at least|at most|no more than|up to|about|mindestens|hochstens|bis zu|etwa|au moins|au plus|"
-    r"al menos|como mucho|almeno|al massimo|but|except|bis auf|sauf|salvo|menos|tranne|eccetto|or|oder|ou|o|"
-    r"to|bis|a))$"
-)
-"""Words before a number with which it is no number of lights, or not an exact one."""
-NONE = re.compile(
-    r"\b(?:no|not|without|kein\w*|ohne|sans|pas|aucun\w*|sin|ningun\w*|non|senza|nessun\w*) "
-    rf"(?:\w+ )?{LIGHTS}\b"
-)
 CROSSING = re.compile(r"cross|inters|kreuz|croisement|carrefour|cruce|incroc")
 """Nouns of junctions that may mean crossroads, or junctions of any kind."""
+SIDE_ROAD = re.compile(r"t - junction|einmundung")
 OF_ANY_KIND: tuple[MapJunctionKind, ...] = ("crossroads", "junction")
 
 
-def with_counted_lights(brief: Brief, text: SlottedText) -> Brief:
-    """Returns the Brief of a map with lights at as many of its junctions as the words say.
+def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
+    """Returns the Brief of a map with signs and lights at as many of its junctions as the words say.
 
-    The Brief is returned unchanged if it has no map of junctions, if some kinds have signs of their own, or
-    if the words do not give one exact number of junctions with lights that is smaller than that of all.
+    The Brief is returned unchanged if it has no map, if some of its junctions have signs of their own, or if
+    the words do not say which junctions have which sign.
     """
     asked = brief.map
+    if asked is None or asked.signed or any(each.control for each in asked.junctions):
+        return brief
     said = said_of(text)
-    if asked is None or not asked.junctions or asked.control not in (None, "lights", "none"):
+    signs = signs_in_words(said)
+    if not signs.counted and signs.all_but is None:
         return brief
-    are_exact = all(each.count.exact and each.control is None for each in asked.junctions)
-    found = None if TAKEN_BACK.search(said) or NONE.search(said) else _lit(said)
-    if found is None or not are_exact:
-        return brief
-    kinds = _split(asked, said, *found)
-    if kinds is None:
-        return brief
-    control = None if asked.control == "lights" else asked.control
-    return brief.model_copy(update={"map": asked.model_copy(update={"junctions": kinds, "control": control})})
+    found = _in_village(asked, said, signs) if asked.junctions else _in_grid(asked, said, signs)
+    return brief if found is None else brief.model_copy(update={"map": asked.model_copy(update=found)})
 
 
-def _lit(said: str) -> tuple[int, str] | None:
-    """Returns how many junctions have lights, and the words for them behind the number.
+def _others(asked: MapClause, said: str, signs: SignsInWords) -> Control | None:
+    """Returns the sign of the junctions that are not counted; None if they have none.
 
-    Returns None if the words do not give one exact number.
+    That of the map holds for them only if the words name it.
     """
-    at = [*AT.finditer(said)]
-    found = at or [*COUNTED.finditer(said), *SIGNALLED.finditer(said)]
-    ones = ONE.findall(said)
-    if len(ones) == 1 and not found:
-        return 1, ""
-    if len(found) != 1 or ones:
+    sign = None if asked.control is None else SIGN_WORDS.get(asked.control)
+    is_counted = asked.control in {each.control for each in signs.counted}
+    is_unsaid = sign is not None and re.search(rf"\b{sign}\b", said) is None
+    return signs.others or (None if is_counted or is_unsaid else asked.control)
+
+
+def _in_grid(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, object] | None:
+    """Returns the signs of a grid; None if they are not clear."""
+    kinds = [_of(_kind_in_grid(each), each.amount, each.control) for each in signs.counted]
+    if signs.all_but is None:
+        return {"signed": tuple(kinds), "control": _others(asked, said, signs)}
+    left = signs.all_but.number - sum(each.number for each in signs.counted)
+    if left < 0:
         return None
-    number = found[0]
-    is_bound = BOUND.search(said[: number.start(1)].strip())
-    return None if is_bound else (int(number[1]), number[2])
+    if left:
+        kinds.append(_of("junction", exactly(left), signs.others or "none"))
+    return {"signed": tuple(kinds), "control": signs.all_but.control}
 
 
-def _split(asked: MapClause, said: str, lit: int, between: str) -> tuple[JunctionCount, ...] | None:
-    """Returns the junctions of the map, those with lights apart; None if the words do not say which.
+def _kind_in_grid(signs: CountedSigns) -> MapJunctionKind:
+    """Returns the kind of the counted junctions: the crossings of a grid may be of any kind."""
+    return "t_junction" if SIDE_ROAD.search(signs.nouns) else "junction"
 
-    Args:
-        asked: the map.
-        said: the words.
-        lit: the number of junctions with lights.
-        between: the words for these junctions, behind their number.
-    """
+
+def _in_village(asked: MapClause, said: str, signs: SignsInWords) -> dict[str, object] | None:
+    """Returns the junctions of a map, those with signs apart; None if the words do not say which they are."""
+    if not all(each.count.exact for each in asked.junctions):
+        return None
     counts = Counter[MapJunctionKind]()
     for each in asked.junctions:
         counts[each.kind] += int(each.count.lo or 0)
     total = one_number(ALL_KINDS.findall(said)) or counts.total()
-    if not 0 < lit < total:
+    counted, others = signs.counted, _others(asked, said, signs)
+    if len(counted) > 1:  # "six junctions with stop signs, but one of them has lights"
+        others = next((each.control for each in counted if each.number == total), others)
+        counted = tuple(each for each in counted if each.number < total)
+    if signs.all_but is not None:
+        sign = signs.all_but
+        counted = (*counted, CountedSigns(sign.control, total - sign.number, sign.amount, ""))
+        others = signs.others
+    if any(_names_another_kind(each, counts) for each in counted):
         return None
-    kind = _kind(between, lit, counts)
+    numbers = [each.number for each in counted]
+    if not numbers or min(numbers) < 1 or sum(numbers) > total or (len(counted) == 1 and numbers[0] == total):
+        return None
+    kinds = (
+        _split(counts, said, counted[0], total) if len(counted) == 1 else _all_split(counts, counted, total)
+    )
+    if kinds is None:
+        return None
+    if all(each.control for each in kinds):
+        return {
+            "junctions": (*kinds[:-1], _of(kinds[-1].kind, kinds[-1].count)),
+            "control": kinds[-1].control,
+        }
+    return {"junctions": kinds, "control": others}
+
+
+def _names_another_kind(signs: CountedSigns, counts: Mapping[MapJunctionKind, int]) -> bool:
+    """Returns whether the words for the junctions with a sign name a kind that the map lacks."""
+    named = {kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"{signs.number}{signs.nouns}")}
+    named |= {kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(signs.nouns)}
+    may_be_any = CROSSING.search(signs.nouns) is not None and bool({*OF_ANY_KIND} & {*counts})
+    return bool(named) and not named & {*counts} and "junction" not in counts and not may_be_any
+
+
+def _all_split(
+    counts: Mapping[MapJunctionKind, int], counted: Sequence[CountedSigns], total: int
+) -> tuple[JunctionCount, ...] | None:
+    """Returns the junctions with several signs, each apart; None if the words do not name their kinds."""
+    rest = {next(iter(counts)): total} if len(counts) == 1 else dict(counts)
+    out = []
+    for each in counted:
+        kind = next(iter(rest)) if len(rest) == 1 else _kind(each, rest)
+        if kind is None or rest[kind] < each.number:
+            return None
+        rest[kind] -= each.number
+        out.append(_of(kind, exactly(each.number), each.control))
+    return (*out, *(_of(kind, exactly(number)) for kind, number in rest.items() if number))
+
+
+def _split(
+    counts: Counter[MapJunctionKind], said: str, signs: CountedSigns, total: int
+) -> tuple[JunctionCount, ...] | None:
+    """Returns the junctions with one sign apart; None if the words do not say which they are."""
+    kind = _kind(signs, counts)
     if kind is not None:
-        return _apart(counts, kind, lit)
+        return _apart(counts, {kind: signs.number}, signs.control)
     if len(counts) == 1:
         only = next(iter(counts))
-        return _apart({only: total}, only, lit)
-    named = [each for one, number in counts.items() if is_counted(each := _of(one, number), said)]
-    rest = total - lit - int(sum(each.count.lo or 0 for each in named))
+        return _apart({only: total}, {only: signs.number}, signs.control)
+    named = [each for one, number in counts.items() if is_counted(each := _of(one, exactly(number)), said)]
+    rest = total - signs.number - int(sum(each.count.lo or 0 for each in named))
+    if rest < 0 and total == counts.total():
+        return _apart(counts, _first(counts, signs.number), signs.control)
     if rest < 0 or {*counts} - {each.kind for each in named} - {*OF_ANY_KIND}:
         return None
-    return (_of("junction", lit, True), *named, *([_of("junction", rest)] if rest else []))
+    others = [_of("junction", exactly(rest))] if rest else []
+    return (_of("junction", exactly(signs.number), signs.control), *named, *others)
 
 
-def _kind(between: str, lit: int, counts: Mapping[MapJunctionKind, int]) -> MapJunctionKind | None:
-    """Returns the kind of the junctions with lights, if words between the number and the lights name it."""
-    kinds = [kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"{lit}{between}")]
-    if not kinds and CROSSING.search(between):
-        kinds = [kind for kind in OF_ANY_KIND if counts.get(kind, 0) >= lit]
-    return kinds[0] if kinds and counts.get(kinds[0], 0) >= lit else None
+def _first(counts: Mapping[MapJunctionKind, int], number: int) -> dict[MapJunctionKind, int]:
+    """Returns the first ``number`` of some junctions, in the order of their kinds."""
+    out: dict[MapJunctionKind, int] = {}
+    for kind, here in counts.items():
+        taken = min(here, number - sum(out.values()))
+        out |= {kind: taken} if taken else {}
+    return out
+
+
+def _kind(signs: CountedSigns, counts: Mapping[MapJunctionKind, int]) -> MapJunctionKind | None:
+    """Returns the kind of the junctions with a sign, if the words behind their number name it."""
+    number = signs.number
+    kinds = [kind for kind, noun in KINDS_IN_PLURAL.items() if noun.search(f"{number}{signs.nouns}")]
+    kinds = kinds or [kind for kind, noun in KINDS_IN_SINGULAR.items() if noun.search(signs.nouns)]
+    if (not kinds or counts.get(kinds[0], 0) < number) and CROSSING.search(signs.nouns):
+        kinds = [kind for kind in OF_ANY_KIND if counts.get(kind, 0) >= number]
+    return kinds[0] if kinds and counts.get(kinds[0], 0) >= number else None
 
 
 def _apart(
-    counts: Mapping[MapJunctionKind, int], kind: MapJunctionKind, lit: int
+    counts: Mapping[MapJunctionKind, int], taken: Mapping[MapJunctionKind, int], control: Control
 ) -> tuple[JunctionCount, ...] | None:
-    """Returns the junctions with ``lit`` of one kind apart; None if all junctions would have lights."""
-    rest = dict(counts)
-    rest[kind] -= lit
+    """Returns the junctions with some of each kind apart; None if none would be left."""
+    rest = {kind: number - taken.get(kind, 0) for kind, number in counts.items()}
     if not any(rest.values()):
         return None
-    return (_of(kind, lit, True), *(_of(each, number) for each, number in rest.items() if number))
+    apart = [_of(kind, exactly(number), control) for kind, number in taken.items()]
+    return (*apart, *(_of(kind, exactly(number)) for kind, number in rest.items() if number))
 
 
-def _of(kind: MapJunctionKind, number: int, has_lights: bool = False) -> JunctionCount:
-    return JunctionCount(kind=kind, count=exactly(number), control="lights" if has_lights else None)
+def _of(kind: MapJunctionKind, count: Amount, control: Control | None = None) -> JunctionCount:
+    return JunctionCount(kind=kind, count=count, control=control)

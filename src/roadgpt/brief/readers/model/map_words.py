@@ -49,7 +49,8 @@ BLOCKS = re.compile(
     rf"\b(\d+|{NONE}|{ONE}) (?:\w+ )?(?:blocks?|(?:hauser)?blocke?|ilots?|manzanas?|isolat[oi])\b"
 )
 BY = re.compile(
-    r"\b(\d+) (?:by|x|mal|auf|per|por|sur) (\d+)\b(?! (?:lanes?|spuren|streifen|voies|carriles|corsie))"
+    r"\b(\d+) (?:blocks? |(?:hauser)?blocke? |ilots? |manzanas? |isolati )?"
+    r"(?:by|x|mal|auf|per|por|sur) (\d+)\b(?! (?:lanes?|spuren|streifen|voies|carriles|corsie))"
 )
 SIDE_OF_BLOCK = re.compile(
     r"\b(?:blocks?|(?:hauser)?blocken?|ilots|manzanas|isolati) (?:of|von|de|di) \[unused(\d+)\] metres\b"
@@ -139,6 +140,11 @@ NOT_A_TREE = re.compile(
 def asks_for_map(text: SlottedText) -> bool:
     """Returns whether a description says that it wants a map without a route."""
     return says(ONLY_A_MAP, said_of(text))
+
+
+def asks_for_grid(text: SlottedText) -> bool:
+    """Returns whether a map can only be a grid, because its words give columns and rows: "two by three"."""
+    return len(BY.findall(said_of(text))) == 1
 
 
 def with_counted_map(brief: Brief, text: SlottedText) -> Brief:
@@ -305,7 +311,8 @@ def _around_blocks(asked: MapClause, said: str) -> int | None:
     found = BLOCKS.findall(said)
     is_tree = not found and SIDE_STREETS.search(said) and TREE.search(said) and not NOT_A_TREE.search(said)
     blocks = 0 if is_tree else one_number(found)
-    if blocks is None or not asked.junctions or not has_fixed_arms(asked):
+    is_bounded = asked.blocks is not None and not asked.blocks.exact  # "more than one block"
+    if blocks is None or is_bounded or not asked.junctions or not has_fixed_arms(asked):
         return None
     enclosing = asked.model_copy(update={"blocks": exactly(blocks), "dead_ends": None})
     dead_ends = enclosing.ends_of_tree(most_ends(asked)).lo

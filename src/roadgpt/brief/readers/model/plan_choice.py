@@ -17,8 +17,9 @@ from roadgpt.brief.readers.model.count_correction import with_checked_counts
 from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp, with_stay_on_motorway
 from roadgpt.brief.readers.model.from_start import with_distances_from_start
 from roadgpt.brief.readers.model.listed_sides import listed_sides, sides_of
-from roadgpt.brief.readers.model.map_signs import with_counted_lights
-from roadgpt.brief.readers.model.map_words import with_counted_map
+from roadgpt.brief.readers.model.map_lengths import with_whole_length
+from roadgpt.brief.readers.model.map_signs import with_counted_signs
+from roadgpt.brief.readers.model.map_words import asks_for_grid, with_counted_map
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
@@ -66,18 +67,21 @@ def most_plausible(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan
 
 
 def _as_counted(found: Sequence[ScoredPlan], text: SlottedText) -> ScoredPlan | None:
-    """Returns the likeliest plan without more junctions of a kind than the words can mean; None if there is
-    none that is likely.
+    """Returns the likeliest plan without more junctions of a kind than the words can mean, and with a grid if
+    the words can only mean one as a map; None if there is none that is likely.
     """
     most, listed = most_of_kinds(text), number_of_listed(text)
     near = (draft for draft in found if not draft.is_refusal and draft.score > found[0].score - LIKELY)
     kept = (draft for draft in near if is_of_junctions(draft.line) and can_be_kept(draft.line))
     plans = ((draft, read_plan(draft.line)) for draft in kept)
+    no_village = asks_for_grid(text)
     return next(
         (
             draft
             for draft, brief in plans
-            if has_told_kinds(brief, most) and listed in (None, len(brief.junctions))
+            if has_told_kinds(brief, most)
+            and listed in (None, len(brief.junctions))
+            and not (no_village and brief.map is not None and brief.map.junctions)
         ),
         None,
     )
@@ -104,7 +108,8 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_words_of_all_turns(_with_length_of_road(_level_at_zero(read_plan(line)), text), text)
     brief = with_told_total(with_checked_counts(brief, text), text)
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
-    brief = _with_listed_hills(with_each_lane(with_counted_lights(with_counted_map(brief, text), text)))
+    brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
+    brief = _with_listed_hills(with_each_lane(brief))
     brief = _with_turns_by_degrees(with_told_arms(brief, text))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_motorway_behind_ramp(brief, words)
