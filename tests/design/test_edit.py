@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from edit_truth import changed_besides, roads
 from roadgpt import check
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments

@@ -70,6 +70,12 @@ class RoadElement:
         """Whether the element is a turn."""
         return self.kind == "turn"
 
+    @property
+    def may_bend(self) -> bool:
+        """Whether its plan may change: it has a requirement, and not only for its grade."""
+        asked = self.asked
+        return asked is not None and bool(asked.degrees or asked.radius or asked.length or not asked.grade)
+
     def with_segments(self, segments: Iterable[Segment]) -> "RoadElement":
         """Returns a copy of the element that has these segments."""
         return replace(self, segments=tuple(segments))

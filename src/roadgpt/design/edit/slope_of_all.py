@@ -5,8 +5,8 @@ from math import inf
 
 import numpy as np
 
+from roadgpt.brief.change.request import Way
 from roadgpt.check.measures import way
-from roadgpt.design.edit.request import Way
 from roadgpt.design.edit.stretches import RoadStretch, pieces
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.design.vertical import with_inclines

@@ -5,9 +5,9 @@ from dataclasses import replace
 from math import inf
 from typing import NamedTuple
 
+from roadgpt.brief.change.request import Change, Steepness
 from roadgpt.brief.words import PERCENT_SLACK, Range
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.request import Change, Steepness
 from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
 from roadgpt.design.edit.stretches import RoadStretch, within
@@ -40,15 +40,9 @@ AIMS: dict[Steepness | None, SlopeAim] = {
 """Aims of "uphill", "gently uphill" and "steeply uphill", inside the meanings in ``brief.words``."""
 
 
-def is_outside(change: Change, now: float) -> bool:
-    """Returns whether a value violates the limit that a change sets."""
-    assert change.to is not None
-    return (now - change.to) * change.bound < 0
-
-
 def is_too_steep_or_flat(change: Change, element: RoadElement) -> bool:
     """Returns whether a segment of an element violates the limit that a change sets for slopes."""
-    return any(is_outside(change, abs(segment.incline)) for segment in element.segments)
+    return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
 
 
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
