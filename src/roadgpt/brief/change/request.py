@@ -157,6 +157,11 @@ class Change:
         return cast(Slope, f"{self.steepness}_{self.way}") if self.steepness else self.way
 
     @property
+    def sign(self) -> int:
+        """1 if the new slope goes uphill, -1 if downhill, 0 if level or if the request does not say."""
+        return {"up": 1, "down": -1}.get(self.way or "", 0)
+
+    @property
     def is_hill(self) -> bool:
         """Whether the change adds a crest or a dip."""
         return self.what == "add" and self.kind in HILLS

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from roadgpt.brief.change.request import HILLS
 from roadgpt.design.edit.placing import LEAST_FOR_HILL, PlacedChange
-from roadgpt.design.edit.slope_of_all import SlopeOfAll
+from roadgpt.design.edit.slopes import SlopeOfAll
 from roadgpt.design.edit.steps import EditCandidate
 from roadgpt.design.edit.stretches import RoadStretch
 from roadgpt.design.road_elements import RoadElements

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 from math import radians
 
 from roadgpt.brief.change.request import Change
-from roadgpt.brief.model import OTHER_SIDE, Side, Slope
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 from roadgpt.design.edit.placing import PlacedChange
+from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (
     FREE_STRAIGHT,
     HIDDEN,
@@ -48,16 +49,6 @@ PREFERRED = {
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
 MOST_NEW = 12
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
-SLOPED: dict[Slope, float] = {
-    "up": 5.0,
-    "down": -5.0,
-    "flat": 0.0,
-    "gently_up": 3.0,
-    "gently_down": -3.0,
-    "steeply_up": 9.5,
-    "steeply_down": -9.5,
-}
-"""The grade in percent at which a new turn or straight aims."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -298,7 +289,7 @@ def _incline_asked(change: Change, incline: float) -> float:
     """Returns the incline of a new element in percent: as requested, or else ``incline``."""
     if change.grade is not None:
         return change.grade
-    return SLOPED[change.slope] if change.slope else incline
+    return change.sign * AIMS[change.steepness].grade if change.way else incline
 
 
 def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:

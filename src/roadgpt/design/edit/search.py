@@ -19,7 +19,7 @@ from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
 from roadgpt.design.edit.candidates import ChangeCandidates, is_beyond
 from roadgpt.design.edit.reordering import Reverse
-from roadgpt.design.edit.slope_of_all import SlopeOfAll
+from roadgpt.design.edit.slopes import SlopeOfAll
 from roadgpt.design.edit.steps import (
     EditCandidate,
     EditStep,
