@@ -103,7 +103,7 @@ def _ways(
 ) -> tuple[EditCandidate, ...]:
     """Returns the candidates of one change, the preferred one first; none if the road already is so."""
     match placed.change.what:
-        case "mirror":
+        case "mirror" if placed.change.target is None:
             if not any(element.is_turn for element in elements):
                 raise EditError("the road has no turn, so its mirror image is the same")
             return ((Mirror(),),)
@@ -223,7 +223,7 @@ def _change_candidates(
         case "climb":  # "every straight": each of them
             ways = [climb_candidates(change, [element], world) for element in elements]
             return (tuple(step for ((step,),) in ways),)
-        case "side":
+        case "side" | "mirror":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in elements if change.side is None or b.side != change.side]

@@ -47,7 +47,7 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         place = change.place
         if change.like is not None:
             out.append(_like_its_model(change, changes, elements))
-        elif change.what in ("mirror", "reverse"):
+        elif change.what in ("mirror", "reverse") and change.target is None:  # the whole road
             out.append(PlacedChange(change, elements))
         elif change.what == "count":
             out.append(_counted(change, elements))

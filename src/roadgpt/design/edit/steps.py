@@ -115,6 +115,8 @@ class Adjust:
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
+        if self.element.is_turn and not self.element.segments:  # a spline bends before and behind its turns
+            raise UsageError(f"{self.element.name} is made by no segment of the road, but by its spline")
         if now.kind != self.element.kind:
             raise UsageError(f"{self.element.name} is to go and to be changed at once")
         if self.grade:
