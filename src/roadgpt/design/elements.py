@@ -97,6 +97,19 @@ def cut(element: Element) -> list[Segment]:
     return out
 
 
+def straight(length: float, incline: float) -> Segment:
+    """Returns a straight segment with numbers rounded to the precision of design files."""
+    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
+
+
+def turn_segments(
+    degrees: float, hand: int, radius: float, transition: float, incline: float
+) -> tuple[Segment, ...]:
+    """Returns the segments into which a turn with these values is cut."""
+    turn = turn_element(degrees, hand, radius, transition)
+    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
+
+
 def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:
     """Returns the elements that these segments form, in driving order; neighbouring straights with the same
     incline become one element.

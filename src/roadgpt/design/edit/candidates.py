@@ -38,8 +38,8 @@ from roadgpt.design.edit.steps import (
     EditStep,
     Mirror,
     Wanted,
-    straight,
 )
+from roadgpt.design.elements import straight
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
@@ -89,12 +89,19 @@ def candidates_of(
             part already is as another change asks.
     """
     ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
+    told = [
+        hill_sentence(placed, elements, len(changes) == 1)
+        if placed.change.is_hill
+        else reordering_sentence(placed, elements)
+        if placed.change.what in (*REORDERS, "reverse")
+        else ""
+        for placed in changes
+    ]
     own = _without_what_is_so(changes, ways)
     ways = [
         its if placed is before else _ways(placed, elements, found, world, number)
         for number, (placed, before, its) in enumerate(zip(own, changes, ways, strict=True), 1)
     ]
-    told = [_sentence(placed, elements, len(changes) == 1) for placed in changes]
     return tuple(map(ChangeCandidates, changes, _agreed([placed.change for placed in changes], ways), told))
 
 
@@ -174,13 +181,6 @@ def _agreed(
         tuple(tuple(own(step, change.what) for step in way) for way in its)
         for change, its in zip(changes, ways, strict=True)
     ]
-
-
-def _sentence(placed: PlacedChange, elements: RoadElements, is_alone: bool) -> str:
-    """Returns what a change does that its measurements alone would not tell; empty for other changes."""
-    if placed.change.is_hill:
-        return hill_sentence(placed, elements, is_alone)
-    return reordering_sentence(placed, elements) if placed.change.what in (*REORDERS, "reverse") else ""
 
 
 def _change_candidates(

@@ -11,7 +11,6 @@ from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (
-    FREE_STRAIGHT,
     HIDDEN,
     MILLIMETRE,
     SEPARATE,
@@ -20,11 +19,9 @@ from roadgpt.design.edit.steps import (
     EditCandidate,
     EditStep,
     Wanted,
-    gap,
-    straight,
-    turn_segments,
 )
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.elements import straight, turn_segments
+from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -258,21 +255,19 @@ def _turns(
         first = sum(s.distance for s in own[:index]) if index else elements[at].length / 2
         gap_before, gap_after = gap_before + first, gap_after - first
     incline = _incline(elements, at)
-    new: list[RoadElement] = []
     lead = _lead(turn_before, sides[0], gap_before) + spare
-    if lead:
-        new.append(gap(f"new {number} lead", lead, incline))
+    tail = _lead(turn_after, sides[-1], gap_after) + spare
     (degrees, angles), (radius, radii) = shape
     asked = Feature("turn", "turn", None, angles, radii, None, _grade(change))
+    slope = _incline_asked(change, incline)
     transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
+    new = [gap(f"new {number} lead", lead, incline)] if lead else []
     for i, side in enumerate(sides):
         if i:
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
-        slope = _incline_asked(change, incline)
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
         new.append(RoadElement(name, "turn", segments, side, asked=asked))
-    tail = _lead(turn_after, sides[-1], gap_after) + spare
     if tail:
         new.append(gap(f"new {number} tail", tail, incline))
     return Insert(before, tuple(new), *split)

@@ -12,8 +12,7 @@ from roadgpt.brief.words import PERCENT_SLACK, Range
 from roadgpt.check.measures import Measures, way
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
 from roadgpt.design.edit.stretches import RoadStretch, pieces, within
-from roadgpt.design.road_elements import RoadElement, RoadElements
-from roadgpt.design.vertical import with_inclines
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines
 from roadgpt.errors import EditError
 from roadgpt.road import World
 

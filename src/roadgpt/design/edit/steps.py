@@ -16,9 +16,8 @@ import numpy as np
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.words import Range
-from roadgpt.design.elements import cut, turn_element
-from roadgpt.design.road_elements import RoadElement, RoadElements, joined
-from roadgpt.design.vertical import with_inclines
+from roadgpt.design.elements import turn_segments
+from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap, joined, with_inclines
 from roadgpt.errors import UsageError
 from roadgpt.road import Design, Segment, World, build
 from roadgpt.road.design import MAX_TURN
@@ -32,7 +31,6 @@ SEPARATE = 18.0  # m between turns to the same side, so that they are seen as tw
 HIDDEN = 9.0  # m between turns to the same side at which they are measured as two, without a straight
 WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 CLEARLY, FURTHER = 0.45, 1.6  # least and greatest accepted share of a change without a number ('sharper')
-FREE_STRAIGHT = Feature("straight", "straight")
 
 
 class EditStep(Protocol):
@@ -115,7 +113,7 @@ class Adjust:
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
-        if self.element.is_turn and not self.element.segments:  # a spline bends before and behind its turns
+        if self.element.is_turn and not self.element.degrees:  # a spline bends before and behind its turns
             raise UsageError(f"{self.element.name} is made by no segment of the road, but by its spline")
         if now.kind != self.element.kind:
             raise UsageError(f"{self.element.name} is to go and to be changed at once")
@@ -199,16 +197,6 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
     )
 
 
-def straight(length: float, incline: float) -> Segment:
-    """Returns a straight segment with numbers rounded to the precision of design files."""
-    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
-
-
-def gap(name: str, length: float, incline: float) -> RoadElement:
-    """Returns a new gap that consists of one straight, whose length may be changed."""
-    return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
-
-
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
     """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
     transitions = [s.transition for s in element.segments if s.transition]
@@ -217,14 +205,6 @@ def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElemen
         degrees, 1 if element.side == "left" else -1, radius, transition, element.incline
     )
     return element.with_segments(segments)
-
-
-def turn_segments(
-    degrees: float, hand: int, radius: float, transition: float, incline: float
-) -> tuple[Segment, ...]:
-    """Returns the segments into which the planner divides a turn with these values."""
-    turn = turn_element(degrees, hand, radius, transition)
-    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:

@@ -25,6 +25,7 @@ from roadgpt.design.road_elements import (
     RoadElements,
     features_of,
     shows_turns,
+    with_inclines,
 )
 from roadgpt.design.vertical import (
     EASES,
@@ -33,7 +34,6 @@ from roadgpt.design.vertical import (
     made_to_fit,
     too_abrupt,
     widened,
-    with_inclines,
     with_new_parabolas,
 )
 from roadgpt.errors import DesignError
