@@ -16,9 +16,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
 from edit_truth import changed_besides, misses, ours, requests, roads
 from roadgpt.brief import read
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World
 

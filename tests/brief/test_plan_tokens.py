@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 
 from random_plans import random_plan
 from roadgpt.brief.beside import BESIDE
+from roadgpt.brief.change import parser as language
+from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.request import HALVES, SUPERLATIVES
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
 from roadgpt.brief.readers.model.vocabulary import NUMBER_OF, TOKENS, plan_of, tokens_of
 from roadgpt.brief.refusal import OF_CAUSES, refused
-from roadgpt.design.edit import change_parser as language
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
-from roadgpt.design.edit.request import HALVES, SUPERLATIVES
 
 CHANGES = sorted((Path(__file__).resolve().parents[2] / "data" / "changes").rglob("*.jsonl"))
 

@@ -11,9 +11,9 @@ from click.testing import CliRunner, Result
 from chat.stub_server import StubServer, says, serving
 from edit_truth import roads
 from fake_chat import FakeChat
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.cli import app
 from roadgpt.design import edit as edit_room
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.run import read_run
 
 WORDS = "make the second turn sharper"

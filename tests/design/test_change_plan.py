@@ -8,11 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from edit_truth import requests, roads
+from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.request import Change, EditRequest, Place, Target, Way
 from roadgpt.brief.model import Sharpness, Side
 from roadgpt.check.measures import measure
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
-from roadgpt.design.edit.request import Change, EditRequest, Place, Target, Way
 from roadgpt.errors import EditError
 from roadgpt.road import World, build
 
@@ -76,7 +76,7 @@ CHANGES = (
     | st.builds(
         Change,
         st.just("add"),
-        st.just(Target("turn", indefinite=True)),
+        st.just(Target("turn")),
         side=st.none() | SIDES,
         kind=st.none() | st.sampled_from(["hairpin", "s_bend"]),
         sharpness=st.none() | SHARPNESS,

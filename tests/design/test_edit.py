@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from edit_truth import changed_besides, roads
 from roadgpt import check
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.model import Brief
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import Measures, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.road_elements import elements_on_road, joined
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Geometry, Segment, Site, World, build, in_short_segments
@@ -80,6 +80,21 @@ def test_the_mirror_image_of_the_mirror_image_is_the_road() -> None:
         assert twice.segments == ROADS[name].segments
         assert twice.theta == pytest.approx(ROADS[name].theta)
         assert twice.starting_point == pytest.approx(ROADS[name].starting_point)
+
+
+def test_the_mirror_image_of_one_turn_leaves_all_others_as_they_are() -> None:
+    after = changed("r01", "turn 2: mirror")
+    assert [turn.side for turn in seen(after).turns] == ["right", "right", "left"]
+    assert changed_besides(ROADS["r01"], after, [5]) == []
+    with pytest.raises(EditError, match="name a turn"):
+        changed("r01", "straight 1: mirror")
+
+
+def test_a_bend_that_only_the_spline_makes_cannot_be_changed() -> None:
+    turns = [element for element in elements_on_road(ROADS["r01"], "spline")[0] if element.is_turn]
+    assert [bool(turn.segments) for turn in turns] == [True, True, True, False]
+    with pytest.raises(EditError, match="turn 4 is made by no segment of the road"):
+        edited(ROADS["r01"], "turn 4: angle more", geometry="spline")
 
 
 def test_what_is_added_can_be_removed_again() -> None:

@@ -9,10 +9,10 @@ import pytest
 from edit_truth import changed_besides, roads
 from fake_chat import FakeChat
 from roadgpt import check
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.chat import BudgetError, ChatSettings, UnparsableError
 from roadgpt.check.measures import measure
 from roadgpt.design.edit import EditRequest, edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 
@@ -86,7 +86,7 @@ def test_where_the_request_cannot_be_read_the_model_says_what_it_is_about(
     def refuse(words: str) -> EditRequest:
         raise EditError("not understood")
 
-    monkeypatch.setattr("roadgpt.design.edit.read_request", refuse)
+    monkeypatch.setattr("roadgpt.brief.change.read_request", refuse)
     design, _ = edited(FakeChat(answer([5], SHARPER)), "spice up the second turn, would you")
     assert changed_besides(OLD, design, [5]) == []
     assert design.segments[4] != OLD.segments[4]

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 

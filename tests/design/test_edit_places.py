@@ -5,11 +5,11 @@ import pytest
 
 from edit_truth import roads
 from roadgpt import check
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.plan import read_plan
 from roadgpt.check.measures import MeasuredFeature, measure
 from roadgpt.design import draft
 from roadgpt.design.edit import Edited, edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, Segment, World, build
 

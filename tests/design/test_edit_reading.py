@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 
 from edit_truth import requests
 from roadgpt.brief import SURE as SURE_ENOUGH
+from roadgpt.brief.change import read_request
+from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.request import Change, EditRequest, Target
 from roadgpt.brief.readers.model.height_words import height_wish
 from roadgpt.brief.readers.model.reverse_words import asks_to_reverse
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.swap_words import exchanged_values, turns_to_swap
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
-from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.request import Change, EditRequest, Target
 from roadgpt.errors import EditError
 
 TRAINING = Path(__file__).resolve().parents[2] / "data" / "changes" / "train"

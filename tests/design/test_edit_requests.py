@@ -11,8 +11,8 @@ import pytest
 
 from edit_truth import changed_besides, misses, ours, requests, roads, theirs
 from roadgpt import check
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.errors import EditError
 from roadgpt.road import Design, World, build
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from roadgpt.brief import read
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.check import inspect
 from roadgpt.design import draft
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.repair import repair
 from roadgpt.road import CrossSection, Design, Segment, World, build
 

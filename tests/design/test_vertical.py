@@ -11,13 +11,13 @@ from hypothesis import strategies as st
 from design.short_searches import short_searches
 from llm_like import random_lists
 from roadgpt import check, read
+from roadgpt.brief.change.plan import read_change_plan
 from roadgpt.brief.model import Brief, Clause, at_least, exactly
 from roadgpt.brief.plan import read_plan
 from roadgpt.campaign.variation import VariationContext, VariationTask, make_candidate
 from roadgpt.check.measures import measure
 from roadgpt.design import draft, road_search
 from roadgpt.design.edit import edit
-from roadgpt.design.edit.change_plan import read_change_plan
 from roadgpt.design.elements import elements_of
 from roadgpt.design.layout import MapPose
 from roadgpt.design.repair import repair

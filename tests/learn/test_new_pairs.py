@@ -8,10 +8,10 @@ from typing import Any
 
 import pytest
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.plan import PlanReader
 from roadgpt.brief.refusal import refused
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.learn.near_duplicates import near_duplicates
 
 DATA = Path(__file__).resolve().parents[2] / "data"

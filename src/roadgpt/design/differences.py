@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from roadgpt.check.measures import MeasuredFeature, Measures
 from roadgpt.design.fit import Look
 from roadgpt.design.road_elements import RoadElement, RoadElements, features_of
-from roadgpt.road import Design, Segment
+from roadgpt.road import Design, Geometry, Segment, build
 
 ALL_LISTED = 60  # changed segments; of more, only the number is given
 MOVED = 0.005  # m
@@ -36,6 +36,26 @@ def sentences(
     besides = "; ".join(_changed_segments(draft, after.design))
     valid = [f"to keep it valid: {besides}"] if besides else []
     return (*things, whole, *_placing(before, after.design), *valid)
+
+
+def grades_changed(
+    before: Design, after: Design, stretches: Sequence[tuple[float, float]], geometry: Geometry
+) -> Iterator[str]:
+    """Yields a sentence on the mean grade of each stretch of a road before and after an edit.
+
+    Args:
+        before: the road before the edit.
+        after: the road after the edit; the stretches must have the same stations on both.
+        stretches: the stations in metres at which each stretch starts and ends; one named twice counts once.
+        geometry: the kind of geometry that the roads are built with.
+    """
+    for start, end in dict.fromkeys(stretches):
+        grades = []
+        for design in (before, after):
+            road = build(design, geometry)
+            low, high = (float(road.at(min(station, road.length))[2]) for station in (start, end))
+            grades.append(100 * (high - low) / (end - start))
+        yield f"from {start:.0f} to {end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
 
 
 def _counted(before: Measures, after: Measures) -> Iterator[str]:

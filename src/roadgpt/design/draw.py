@@ -12,7 +12,7 @@ from roadgpt.brief.element import Element
 from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import KINDS, SHARPNESS, Range, overlap
 from roadgpt.check.measures import LEAST_TURN
-from roadgpt.design.elements import MOST_TRANSITION, least_radius, segments_of_turn, turn_element
+from roadgpt.design.elements import MOST_TRANSITION, segments_of_turn, turn_element
 from roadgpt.design.heights import Windows
 from roadgpt.errors import DesignError
 from roadgpt.road import World
@@ -50,7 +50,7 @@ def narrowed_turns(
 
 
 def _narrowed(turn: Feature, outline: Outline, world: World) -> Feature:
-    least = max(least_radius(world), 0.8 * world.section.road_width)
+    least = max(world.limits.design_radius, 0.8 * world.section.road_width)
     promised = overlap(turn.radius, outline.each_turn.radius)
     radius = overlap(_inside(promised, 0.04), Range(least, inf)) if promised else Range(least, inf)
     assert radius is not None

@@ -11,7 +11,7 @@ from math import ceil, floor, radians
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.words import Range
-from roadgpt.road import Segment, World
+from roadgpt.road import Segment
 from roadgpt.road.alignment import LONGEST_TRANSITION, TRANSITION_SHARE
 from roadgpt.road.design import MAX_TURN
 
@@ -19,7 +19,6 @@ MILLIMETRE = 1000.0  # per metre: distances are written to the millimetre
 TENTH = 10.0  # per unit: angles, transitions and inclines are written to the tenth
 HUNDREDTH = 100.0  # per metre: radii are written to the centimetre
 MOST_TRANSITION = 0.55  # of a segment's arc: with more it could not keep its radius (see road.alignment)
-OVER_LEAST_RADIUS = 1.055  # of the world's least: a spline through control points 2 m apart loses 3 %
 SHORTEST = 0.5  # m, of a straight that is written
 SPARE = 1.0  # m: a turn longer than its radius needs by more than this is a turn between two straights
 
@@ -47,13 +46,6 @@ def turn_element(
     return Element(
         turn=hand * share * parts, radius=radius, transition=transition, required_grade=required_grade
     )
-
-
-def least_radius(world: World) -> float:
-    """Returns the smallest radius in metres that a designed turn may have. It is slightly larger than the
-    smallest radius that the rules allow.
-    """
-    return world.limits.min_radius * OVER_LEAST_RADIUS
 
 
 def as_written(element: Element) -> Element:
@@ -103,6 +95,19 @@ def cut(element: Element) -> list[Segment]:
             )
         )
     return out
+
+
+def straight(length: float, incline: float) -> Segment:
+    """Returns a straight segment with numbers rounded to the precision of design files."""
+    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
+
+
+def turn_segments(
+    degrees: float, hand: int, radius: float, transition: float, incline: float
+) -> tuple[Segment, ...]:
+    """Returns the segments into which a turn with these values is cut."""
+    turn = turn_element(degrees, hand, radius, transition)
+    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 def elements_of(segments: Sequence[Segment]) -> tuple[Element, ...]:

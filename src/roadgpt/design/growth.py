@@ -20,9 +20,10 @@ from roadgpt.brief.words import Range
 from roadgpt.design.compose import asked_length, gap_between
 from roadgpt.design.draw import ANY_TURN, drawn_turn, hand_of, longest_turn, narrowed_turns
 from roadgpt.design.heights import Windows
-from roadgpt.design.layout import COARSENESS, SPARE, Complex, MapPose, PlacedPlan, PlanLine, meeting, walk
+from roadgpt.design.layout import COARSENESS, NEIGHBOURS, SPARE, MapPose, PlacedPlan, PlanLine, walk
 from roadgpt.design.sequence import TurnSequence
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.road import World
 from roadgpt.road.road import CONTROL_SPACING, MOST_CONTROL_POINTS
 
@@ -229,7 +230,7 @@ class _Growth:
         low, high = border, self.world.site.map_size - border
         if min(z.real.min(), z.imag.min()) < low or max(z.real.max(), z.imag.max()) > high:
             return False
-        return not len(meeting(z, s, way.z, way.s, self.apart)[0])
+        return not len(meeting(z, s, way.z, way.s, self.apart, NEIGHBOURS)[0])
 
 
 def _stretched(elements: Sequence[Element], metres: float) -> list[Element]:

@@ -10,13 +10,13 @@ from math import cos, radians, sin
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from roadgpt.brief.element import Element
 from roadgpt.brief.map_fit import EDGE
 from roadgpt.check.ribbon import sides
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Complex, meeting
 from roadgpt.road import Design, Road, World, build
 
 STEP = 1.0  # m between points of the walked line
@@ -32,9 +32,6 @@ BEYOND = 1.05  # m by which SBFT's spline may run on behind either end
 CENTIMETRE, HUNDREDTH = 100.0, 100.0  # per metre, per degree: starts are rounded to these units
 TURNS = np.array(sorted(range(-4500, 4501), key=abs)) / HUNDREDTH  # degrees, the smallest first
 PORTIONS = 60  # parts into which these turns are divided, tried one after another
-
-Complex = NDArray[np.complex128]
-Indices = NDArray[np.intp]
 
 
 class PlanLine(NamedTuple):
@@ -106,33 +103,7 @@ def keeps_clear(line: PlanLine, world: World, with_shoulders: bool) -> bool:
     """
     apart = world.section.road_width + (world.section.shoulder if with_shoulders else SPARE) + COARSENESS
     s, z = line.s[::COARSE], line.z[::COARSE]
-    return not len(meeting(z, s, z, s, apart)[0])
-
-
-def meeting(
-    z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float
-) -> tuple[Indices, Indices]:
-    """Returns the pairs of points, one on a road and one on its earlier part, that are closer than ``apart``.
-
-    Only pairs count in which the point of ``z`` is more than 26 m farther along the road.
-
-    Args:
-        z: points as x + iy in metres, ``(n,)``.
-        s: stations of these points in metres, ``(n,)``.
-        earlier: points of the earlier part, ``(m,)``; ``z`` again to compare a road with itself.
-        earlier_s: stations of the earlier points in metres, ``(m,)``.
-        apart: distance in metres.
-
-    Returns:
-        Indices of the points of ``z`` and of the points of ``earlier``, both of shape ``(number of pairs,)``.
-    """
-    x, y = earlier.real, earlier.imag
-    near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
-    here = np.flatnonzero(near_x & (y > z.imag.min() - apart) & (y < z.imag.max() + apart))
-    dx, dy = z.real[:, None] - x[here], z.imag[:, None] - y[here]
-    near = dx * dx + dy * dy < apart * apart
-    of_z, of_earlier = np.nonzero(near & (s[:, None] - earlier_s[here] > NEIGHBOURS))
-    return of_z, here[of_earlier]
+    return not len(meeting(z, s, z, s, apart, NEIGHBOURS)[0])
 
 
 def place(line: PlanLine, world: World, rng: np.random.Generator, reach: float = 0.0) -> MapPose | None:

@@ -20,9 +20,12 @@ import numpy as np
 from roadgpt.brief.model import Side
 from roadgpt.brief.outline import Feature
 from roadgpt.check.measures import LEAST_TURN, MeasuredFeature, Measures, measure, way
+from roadgpt.design.elements import straight
 from roadgpt.geometry.curve import Array
 from roadgpt.road import Design, Geometry, Segment, build
 
+TENTH = 10.0  # per percent: inclines are written to the tenth
+FREE_STRAIGHT = Feature("straight", "straight")
 LEAST_SHARED = 1.5  # m of a segment within a turn, at least, for it to be a part of the turn
 
 
@@ -69,6 +72,12 @@ class RoadElement:
     def is_turn(self) -> bool:
         """Whether the element is a turn."""
         return self.kind == "turn"
+
+    @property
+    def may_bend(self) -> bool:
+        """Whether its plan may change: it has a requirement, and not only for its grade."""
+        asked = self.asked
+        return asked is not None and bool(asked.degrees or asked.radius or asked.length or not asked.grade)
 
     def with_segments(self, segments: Iterable[Segment]) -> "RoadElement":
         """Returns a copy of the element that has these segments."""
@@ -199,9 +208,26 @@ def with_segments(elements: RoadElements, segments: Sequence[Segment]) -> RoadEl
     return tuple(element.with_segments(segments[i] for i in element.members) for element in elements)
 
 
+def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
+    """Returns copies of the segments with the given inclines, in percent and rounded to a tenth.
+
+    A segment whose incline would change by less than 0.05 percentage points is returned as it is.
+    """
+    pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
+    return tuple(
+        segment if abs(incline - segment.incline) < 0.05 else segment.model_copy(update={"incline": incline})
+        for segment, incline in pairs
+    )
+
+
 def joined(elements: Sequence[RoadElement]) -> tuple[Segment, ...]:
     """Returns the segments of all elements in driving order."""
     return tuple(segment for element in elements for segment in element.segments)
+
+
+def gap(name: str, length: float, incline: float) -> RoadElement:
+    """Returns a new gap that consists of one straight, whose length may be changed."""
+    return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
 
 
 def is_turn(degrees: float) -> bool:

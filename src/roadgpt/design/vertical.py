@@ -238,18 +238,6 @@ def joined(
     return tuple(out)
 
 
-def with_inclines(segments: Sequence[Segment], grades: Array) -> tuple[Segment, ...]:
-    """Returns copies of the segments with the given inclines, in percent and rounded to a tenth.
-
-    A segment whose incline would change by less than 0.05 percentage points is returned as it is.
-    """
-    pairs = zip(segments, (np.round(grades * TENTH) / TENTH).tolist(), strict=True)
-    return tuple(
-        segment if abs(incline - segment.incline) < 0.05 else segment.model_copy(update={"incline": incline})
-        for segment, incline in pairs
-    )
-
-
 def with_new_parabolas(
     segments: tuple[Segment, ...], before: Sequence[Segment], pace: Pace, ease: float, is_widened: bool
 ) -> tuple[Segment, ...]:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.normal import normal
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model import ModelReader, UncalibratedReading
 from roadgpt.brief.readers.model.ensemble import Ensemble
 from roadgpt.brief.readers.model.test_time_augmentation import refusal
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.learn.data import NETWORK
 from roadgpt.learn.generator import Pair
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import read_plan
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.errors import BriefError, EditError
 from roadgpt.learn.compositions import composed
 from roadgpt.learn.grammar import Discarded, Speaker, grammar_of

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.vocabulary import REFUSALS
 from roadgpt.brief.refusal import refused
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
 from roadgpt.errors import LearnError, RoadGPTError
 from roadgpt.learn.generator import Pair
 from roadgpt.learn.held_out import is_held_out

@@ -130,6 +130,12 @@ class CrossSection(BaseModel):
         return 2 * count * max(self.lane_width, self.lane_width_end or 0.0)
 
 
+OVER_LEAST_RADIUS = 1.055
+"""Ratio of the smallest designed radius to ``min_radius``: a spline through control points 2 m apart is 3 %
+tighter than its turn.
+"""
+
+
 class Limits(BaseModel):
     """Defines what the validity rules allow, and when a test fails.
 
@@ -153,6 +159,11 @@ class Limits(BaseModel):
     """Steepest grade, uphill or downhill, that the validity rules allow, as a ratio."""
     min_length: NotNegative = 20.0
     """Minimum length of a road in metres."""
+
+    @property
+    def design_radius(self) -> float:
+        """The smallest radius in metres that a designed turn may have, a little above ``min_radius``."""
+        return self.min_radius * OVER_LEAST_RADIUS
 
 
 FIELDS = {

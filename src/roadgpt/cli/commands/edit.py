@@ -150,8 +150,8 @@ def _planned(line: str, designer: str) -> "EditRequest":
         UsageError: The plan cannot be read, or the designer asks a language model.
     """
     from roadgpt import plugins
+    from roadgpt.brief.change.plan import read_change_plan
     from roadgpt.chat import asks_a_model
-    from roadgpt.design.edit.change_plan import read_change_plan
 
     if asks_a_model(plugins.find("designers", designer)):
         raise UsageError(f"--plan needs no language model; leave out --designer {designer}")

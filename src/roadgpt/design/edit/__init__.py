@@ -1,7 +1,7 @@
-"""Edits a Design as a change request asks, and leaves the rest unchanged. Main functions: ``read_request``,
-``edit``.
+"""Edits a Design as a change request asks, and leaves the rest unchanged. Main function: ``edit``.
 
-    words --read_request--> EditRequest --placed--> elements --made--> Look --sentences--> Edited
+    words --checked_request--> EditRequest --placed--> PlacedChanges --candidates_of--> ChangeCandidates
+          --made--> Look --sentences--> Edited
 
 A Look is a Design with the road that was built from it, the findings of the rules, and measurements.
 Turns and straights are those that ``check.measures`` finds on the finished road. They are numbered as on the
@@ -9,25 +9,22 @@ road before the edit. Elements that the request does not name keep all their val
 may be shifted or rotated, so that it stays inside the map.
 """
 
-from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from roadgpt import plugins
+from roadgpt.brief.change import EditRequest, checked_request, read_request
+from roadgpt.brief.change.request import OF_SLOPE
 from roadgpt.chat import ChatSettings, asks_a_model, configured, open_chat
-from roadgpt.design.differences import sentences
+from roadgpt.design.differences import grades_changed, sentences
+from roadgpt.design.edit.candidates import candidates_of
 from roadgpt.design.edit.chatting import edited_by_chat
-from roadgpt.design.edit.combinations import REORDERS, is_hill
-from roadgpt.design.edit.hills import hill_of
-from roadgpt.design.edit.placing import PlacedChange, placed
-from roadgpt.design.edit.reading import read_request
-from roadgpt.design.edit.request import OF_SLOPE, Change, EditRequest
+from roadgpt.design.edit.placing import placed
 from roadgpt.design.edit.search import made
 from roadgpt.design.road_elements import RoadElements, elements_on_road
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Geometry, World, build
+from roadgpt.road import Design, Geometry, World
 
 MOST_CHANGES = 12
-REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
 class Edited(NamedTuple):
@@ -66,80 +63,44 @@ def edit(
         PartError: there is no designer of that name.
         ChatError: the language model could not be asked.
     """
-    asks = asks_a_model(plugins.find("designers", designer))
     elements, found = elements_on_road(design, geometry)
-    allowed: set[int] | None = None
-    try:
-        request = read_request(words) if isinstance(words, str) else words
-        changes = placed(request.changes, elements)
-        if not request.unused:
-            hills = {hill_of(change, elements).name for change in changes if is_hill(change.change)}
-            named = [element for element in elements if element.name in hills]
-            named += [element for change in changes for element in change.elements]
-            allowed = {i + 1 for element in named for i in element.members}
-    except EditError:  # a model may understand it all the same
-        if not asks:
-            raise
-    idle: tuple[Change, ...] = ()
-    unused: tuple[str, ...] = ()
-    sure = 1.0
-    if asks:
+    if asks_a_model(plugins.find("designers", designer)):
         model, said = chat or configured(), words if isinstance(words, str) else words.words
+        allowed = _allowed(words, elements)
         road = edited_by_chat(
             open_chat(model), model, design, said, elements, found, allowed, world, geometry
         )
-        draft = road.design
-    elif len(changes) > MOST_CHANGES:
+        return Edited(road.design, sentences(design, elements, found, road, road.design))
+    request = checked_request(words)
+    changes = placed(request.changes, elements)
+    if len(changes) > MOST_CHANGES:
         raise EditError(f"{len(changes)} changes at once are too many; ask for {MOST_CHANGES} or fewer")
-    else:
-        road, draft, idle = made(design, elements, found, changes, world, geometry)
-        unused, sure = request.unused, request.confidence
-    told = sentences(design, elements, found, road, draft)
-    if not asks:
-        made_so = [change for change in changes if change.change not in idle]
-        told = (*_announced(made_so, elements), *_sloped(changes, design, road.design, geometry), *told)
-    told = (*told, *(f"'{change.words}' was so already" for change in idle))
-    return Edited(road.design, told, unused, sure)
+    proposed = candidates_of(changes, elements, found, world)
+    road, draft = made(design, elements, proposed, world, geometry)
+    is_of_slope = all(change.change.what in OF_SLOPE for change in changes)
+    stretches = [change.stretch for change in changes if change.stretch and is_of_slope]
+    told = [
+        *(each.sentence for each in proposed if each.ways and each.sentence),
+        *grades_changed(design, road.design, stretches, geometry),
+        *sentences(design, elements, found, road, draft),
+        *(f"'{each.change.words}' was so already" for each in proposed if not each.ways),
+    ]
+    return Edited(road.design, tuple(told), request.unused, request.confidence)
 
 
-def _announced(changes: Sequence[PlacedChange], elements: RoadElements) -> Iterator[str]:
-    """Yields a sentence on each change that its measurements alone would not tell."""
-    for change in changes:
-        if change.change.what in (*REORDERS, "reverse"):
-            yield _reordering(change, elements)
-        elif is_hill(change.change):
-            hill = hill_of(change, elements)
-            where = f", its middle at {hill.middle:.0f} m" if len(changes) == 1 else ""
-            yield f"a {change.change.kind} of {2 * hill.half:.0f} m is new{where}"
+def _allowed(words: str | EditRequest, elements: RoadElements) -> set[int] | None:
+    """Returns the numbers, from 1, of the segments that a request refers to.
 
-
-def _sloped(
-    changes: Sequence[PlacedChange], before: Design, after: Design, geometry: Geometry
-) -> Iterator[str]:
-    """Yields a sentence on the mean grade of each stretch before and after its change; none if other
-    changes may have moved it.
+    Returns None if it cannot be read, or not all of it: a language model may understand it all the same.
     """
-    if any(change.change.what not in OF_SLOPE for change in changes):
-        return
-    for start, end in dict.fromkeys(change.stretch for change in changes if change.stretch):
-        grades = []
-        for design in (before, after):
-            road = build(design, geometry)
-            low, high = (float(road.at(min(station, road.length))[2]) for station in (start, end))
-            grades.append(100 * (high - low) / (end - start))
-        yield f"from {start:.0f} to {end:.0f} m: grade {grades[0]:+.1f} -> {grades[1]:+.1f} %"
-
-
-def _reordering(change: PlacedChange, elements: RoadElements) -> str:
-    """Returns a sentence on a change that only reorders elements."""
-    if change.change.what == "reverse":
-        return REVERSED
-    turns = [element.name for element in elements if element.is_turn]
-    numbers = [str(turns.index(element.name) + 1) for element in change.elements]
-    if change.change.what == "move":
-        told = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
-        return f"{told} moved; the turns are named as before"
-    return f"turn {numbers[0]} and turn {numbers[1]} have changed places; they are named as before"
+    try:
+        request = checked_request(words)
+        changes = placed(request.changes, elements)
+    except EditError:
+        return None
+    if request.unused:
+        return None
+    return {i + 1 for change in changes for element in change.elements for i in element.members}
 
 
 __all__ = ["EditRequest", "Edited", "edit", "read_request"]

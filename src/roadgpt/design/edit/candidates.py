@@ -6,56 +6,184 @@ wider ranges, or lets more elements change.
 """
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from math import inf
+from typing import NamedTuple
 
+from roadgpt.brief.change.clashes import clash
+from roadgpt.brief.change.request import REORDERS, Change, What
 from roadgpt.brief.model import OTHER_SIDE
-from roadgpt.brief.words import KINDS, LEAST_STRAIGHT, Range
+from roadgpt.brief.words import KINDS, Range
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.hills import hill_candidates, hill_sentence
+from roadgpt.design.edit.insertion import insertion_candidates, removal_candidates
+from roadgpt.design.edit.lengths import length_steps, road_length_candidates
+from roadgpt.design.edit.placing import PlacedChange
+from roadgpt.design.edit.reordering import Reverse, move_of, reordering_sentence, swap_of
 from roadgpt.design.edit.slopes import (
     bounded_slopes,
     climb_candidates,
-    is_outside,
     is_too_steep_or_flat,
     only_parts,
     part_slope_candidates,
     road_slope_candidates,
     slope_steps,
+    stretch_candidates,
 )
 from roadgpt.design.edit.steps import (
+    WIDEST,
     Adjust,
     Become,
     EditCandidate,
     EditStep,
     Mirror,
-    RoadLength,
     Wanted,
-    near,
-    straight,
-    with_milder,
 )
-from roadgpt.design.elements import least_radius
-from roadgpt.design.road_elements import RoadElement
+from roadgpt.design.elements import straight
+from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
 SHARPER, GENTLER = (1.25, 0.75), (0.75, 1.33)  # shares of angle and radius to aim at
 TIGHTER, WIDER = 0.7, 1.4  # shares of the radius
-LONGER, SHORTER = 1.4, 0.65  # shares of a length
-ROAD_LONGER, ROAD_SHORTER = 1.3, 0.75  # shares of the length of a road
 FLIPPED = Range(0.65, 1.25)  # shares of angle and radius that a turn may have when it goes the other way
-CLEARLY, FURTHER = 0.45, 1.6  # least and greatest accepted share of a change without a number ('sharper')
 LEAST_STEP = 10.0  # degrees that 'sharper' adds at least
 SEEN_STEP = 9.0  # degrees: a smaller change of angle is hardly seen
-WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
 LEAST_ANGLE = 13.0  # degrees: a turn of a smaller angle would not be seen
 MOST_ANGLE = 210.0
-SEEN = 10.6  # m: the shortest straight that is seen
-KEPT = 17.5  # m that remain of each straight when the road is shortened
-ROAD_SLACK = 0.02  # of the length of a road
 
 
-def change_candidates(
+class ChangeCandidates(NamedTuple):
+    """The ways in which one change of a request can be made."""
+
+    placed: PlacedChange
+    """The change, and the elements that it refers to."""
+    ways: tuple[EditCandidate, ...]
+    """All candidates, the preferred one first; none if the road already is as requested."""
+    sentence: str = ""
+    """What the change does to the road, if measurements alone would not tell; else empty."""
+
+    @property
+    def change(self) -> Change:
+        """The change."""
+        return self.placed.change
+
+
+def candidates_of(
+    changes: Sequence[PlacedChange], elements: RoadElements, found: Measures, world: World
+) -> tuple[ChangeCandidates, ...]:
+    """Returns the ways to make each change of a request.
+
+    What already has the value that one of the changes asks for is left out of the others: "everything uphill,
+    the first straight level" leaves a level first straight alone. If one change gives the angle of a turn and
+    another its radius, each sets only its own value.
+
+    Args:
+        changes: the changes, each with the elements that it refers to.
+        elements: the elements of the road before the edit.
+        found: the measurements of that road.
+        world: the limits that the rules check, such as the steepest grade.
+
+    Raises:
+        EditError: no road can have the requested values, or a change names a stretch of the road, of which a
+            part already is as another change asks.
+    """
+    ways = [_ways(placed, elements, found, world, number) for number, placed in enumerate(changes, 1)]
+    told = [
+        hill_sentence(placed, elements, len(changes) == 1)
+        if placed.change.is_hill
+        else reordering_sentence(placed, elements)
+        if placed.change.what in (*REORDERS, "reverse")
+        else ""
+        for placed in changes
+    ]
+    own = _without_what_is_so(changes, ways)
+    ways = [
+        its if placed is before else _ways(placed, elements, found, world, number)
+        for number, (placed, before, its) in enumerate(zip(own, changes, ways, strict=True), 1)
+    ]
+    return tuple(map(ChangeCandidates, changes, _agreed([placed.change for placed in changes], ways), told))
+
+
+def _ways(
+    placed: PlacedChange, elements: RoadElements, found: Measures, world: World, number: int
+) -> tuple[EditCandidate, ...]:
+    """Returns the candidates of one change, the preferred one first; none if the road already is so."""
+    match placed.change.what:
+        case "mirror" if placed.change.target is None:
+            if not any(element.is_turn for element in elements):
+                raise EditError("the road has no turn, so its mirror image is the same")
+            return ((Mirror(),),)
+        case "reverse":
+            return ((Reverse(),),)
+        case "swap":
+            return ((swap_of(placed.elements),),)
+        case "move":
+            return move_of(placed, elements)
+        case "count":
+            return ()  # there are as many as asked for
+        case "add" if placed.change.is_hill:
+            return hill_candidates(placed, elements)
+        case "add":
+            return insertion_candidates(placed, elements, world, number)
+        case "remove":
+            return removal_candidates(placed.elements, elements)
+        case "alternate":
+            return _alternating_candidates(placed.elements, world)
+        case _ if placed.stretch is not None:
+            return stretch_candidates(placed.change, elements, placed.stretch, world)
+        case _:
+            return _change_candidates(placed.change, placed.elements, found, world)
+
+
+def _without_what_is_so(
+    changes: Sequence[PlacedChange], ways: Sequence[Sequence[EditCandidate]]
+) -> list[PlacedChange]:
+    """Returns the changes; what already has the value that one of them asks for is left out of the others.
+
+    Raises:
+        EditError: such a change names a stretch of the road by distances, or as a half.
+    """
+    idle = [placed for placed, its in zip(changes, ways, strict=True) if not its and placed.change.is_state]
+    out = []
+    for placed in changes:
+        is_length_of_road = placed.change.what == "length" and placed.change.is_of_road
+        for other in idle if not is_length_of_road else ():
+            if other.change.what != placed.change.what or not {*other.elements} < {*placed.elements}:
+                continue
+            if placed.stretch is not None:
+                raise clash(placed.change, other.change)
+            own = tuple(each for each in placed.elements if each not in other.elements)
+            placed = placed._replace(elements=own)
+        out.append(placed)
+    return out
+
+
+def _agreed(
+    changes: Sequence[Change], ways: Sequence[Sequence[EditCandidate]]
+) -> list[tuple[EditCandidate, ...]]:
+    """Returns the candidates of all changes.
+
+    If one change gives the angle of a turn and another its radius, each sets only its own value.
+    """
+    said: dict[What, set[str]] = {"angle": set(), "radius": set()}
+    for change, its in zip(changes, ways, strict=True):
+        if change.what in said and its and (change.to or change.by or change.times):
+            said[change.what] |= {step.element.name for step in its[0] if isinstance(step, Adjust)}
+    both = said["angle"] & said["radius"]
+
+    def own(step: EditStep, what: What) -> EditStep:
+        if not isinstance(step, Adjust) or step.element.name not in both or what not in said:
+            return step
+        return replace(step, radius=None) if what == "angle" else replace(step, degrees=None)
+
+    return [
+        tuple(tuple(own(step, change.what) for step in way) for way in its)
+        for change, its in zip(changes, ways, strict=True)
+    ]
+
+
+def _change_candidates(
     change: Change, elements: Sequence[RoadElement], found: Measures, world: World
 ) -> tuple[EditCandidate, ...]:
     """Returns all candidates for a change, the preferred one first; none if the road already is as requested.
@@ -69,9 +197,9 @@ def change_candidates(
     Raises:
         EditError: No road can have the requested values.
     """
-    is_road = change.target is not None and change.target.noun == "road"
+    is_road = change.is_of_road
     if change.bound and change.what == "length" and is_road:
-        elements = elements if is_outside(change, found.length) else []
+        elements = elements if change.is_outside(found.length) else []
     elif change.bound:
         elements = [element for element in elements if is_beyond(change, element)]
         if change.what == "slope" and elements:
@@ -81,9 +209,9 @@ def change_candidates(
         case "angle" | "radius" | "shape":
             return _together(_bends(change, element, world) for element in elements)
         case "length" if is_road:
-            return _road_lengths(change, elements, world) if elements else ()
+            return road_length_candidates(change, elements, world) if elements else ()
         case "length":
-            return _together(_lengths(change, element, world) for element in elements)
+            return _together(length_steps(change, element, world) for element in elements)
         case "slope" if _is_of_parts(change, elements):
             return part_slope_candidates(change, elements, world)
         case "slope" if is_road:
@@ -95,7 +223,7 @@ def change_candidates(
         case "climb":  # "every straight": each of them
             ways = [climb_candidates(change, [element], world) for element in elements]
             return (tuple(step for ((step,),) in ways),)
-        case "side":
+        case "side" | "mirror":
             if any(element.kind != "turn" for element in elements):
                 raise EditError(f"'{change.words}' is said of a straight, which has no side; name a turn")
             wrong = [b for b in elements if change.side is None or b.side != change.side]
@@ -116,12 +244,12 @@ def is_beyond(change: Change, element: RoadElement) -> bool:
     if change.what == "slope":
         return is_too_steep_or_flat(change, element)
     seen = element.seen
-    return seen is not None and is_outside(
-        change, getattr(seen, "degrees" if change.what == "angle" else change.what)
+    return seen is not None and change.is_outside(
+        getattr(seen, "degrees" if change.what == "angle" else change.what)
     )
 
 
-def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
+def _alternating_candidates(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
     """Returns the candidates that make turns alternate between left and right; none if they already do.
 
     Raises:
@@ -138,50 +266,37 @@ def alternating_candidates(elements: Sequence[RoadElement], world: World) -> tup
 
 def _together(ways: Iterable[Sequence[EditStep]]) -> tuple[EditCandidate, ...]:
     """Returns one candidate of the first steps of all elements, one of their second steps, and so on."""
-    rows = [row for row in map(with_milder, ways) if row]
+    rows = [row for row in map(_with_milder, ways) if row]
     if not rows:
         return ()
     return tuple(tuple(row[min(i, len(row) - 1)] for row in rows) for i in range(max(map(len, rows))))
 
 
-def _aim(change: Change, now: float) -> float | None:
-    """Returns the requested value, given directly, as a difference or as a factor; None if none was given."""
-    if change.to is not None:
-        return change.to
-    if change.by is not None:
-        return now + change.more * change.by
-    return None if change.times is None else now * change.times
+def _with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
+    """Returns the alternative steps for one element.
 
-
-def _towards(now: float, aim: float) -> Wanted:
-    """Returns ``aim`` with a range from 0.45 to 1.6 times the change from ``now`` to ``aim``."""
-    ends = now + CLEARLY * (aim - now), now + FURTHER * (aim - now)
-    return Wanted(aim, Range(min(ends), max(ends)))
-
-
-def _not_away(now: float, aim: float) -> Wanted:
-    """Returns ``aim`` with a range from no change to 1.6 times the change from ``now`` to ``aim``."""
-    ends = now, now + FURTHER * (aim - now)
-    return Wanted(aim, Range(0.99 * min(ends), 1.01 * max(ends)))
+    If the only step is an Adjust, its milder version is appended as a second alternative.
+    """
+    return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
 
 
 def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]:
     seen = element.seen
     if element.kind != "turn" or seen is None:
         raise EditError(f"'{change.words}' is said of a straight, which does not bend; name a turn")
-    d, r, least = seen.degrees, seen.radius, least_radius(world)
+    d, r, least = seen.degrees, seen.radius, world.limits.design_radius
     if change.what == "shape":
         return _shaped(change, element, least)
-    aim = _aim(change, d if change.what == "angle" else r)
+    aim = change.aim(d if change.what == "angle" else r)
     if aim is not None:
         return [_bent_to(change, element, aim, world)]
     if change.what == "radius" and change.more < 0 and 0.93 * r < least:  # then it turns further
-        return [Adjust(element, _towards(d, 1.25 * d), near(r, 0.12 * r))]
+        return [Adjust(element, Wanted.towards(d, 1.25 * d), Wanted.near(r, 0.12 * r))]
     if change.what == "radius":
         aim = r * (1 + ((TIGHTER if change.more < 0 else WIDER) - 1) * min(change.dose, 1.4))
         aim = min(max(aim, min(least, r)), max(WIDEST, r))
         if abs(aim / r - 1) > 0.045:
-            return [Adjust(element, near(d, 3.0), _towards(r, aim))]
+            return [Adjust(element, Wanted.near(d, 3.0), Wanted.towards(r, aim))]
         raise _cannot(d, r)
     further, wider = SHARPER if change.more > 0 else GENTLER
     degrees = d * (1 + (further - 1) * change.dose)
@@ -194,8 +309,8 @@ def _bends(change: Change, element: RoadElement, world: World) -> list[EditStep]
     if degrees > MOST_ANGLE or (abs(degrees - d) <= 2.5 and abs(aim / r - 1) <= 0.045):
         raise _cannot(d, r)
     if abs(degrees - d) >= SEEN_STEP:
-        return [Adjust(element, _towards(d, degrees), _not_away(r, aim))]
-    return [Adjust(element, _not_away(d, degrees), _towards(r, aim))]
+        return [Adjust(element, Wanted.towards(d, degrees), Wanted.not_away(r, aim))]
+    return [Adjust(element, Wanted.not_away(d, degrees), Wanted.towards(r, aim))]
 
 
 def _cannot(degrees: float, radius: float) -> EditError:
@@ -213,18 +328,20 @@ def _bent_to(change: Change, element: RoadElement, aim: float, world: World) -> 
                 f"a turn of {aim:.0f} degrees cannot be made; "
                 f"ask for {LEAST_ANGLE:g} to {MOST_ANGLE:g} degrees"
             )
-        return Adjust(element, near(aim, 1.0), Wanted(seen.radius, Range(0.5 * seen.radius, 2 * seen.radius)))
+        return Adjust(
+            element, Wanted.near(aim, 1.0), Wanted(seen.radius, Range(0.5 * seen.radius, 2 * seen.radius))
+        )
     if aim < world.limits.min_radius:
         raise EditError(
             f"a radius of {aim:.1f} m is tighter than the {world.limits.min_radius:.1f} m that the rules "
-            f"allow; ask for {least_radius(world):.0f} m or more"
+            f"allow; ask for {world.limits.design_radius:.0f} m or more"
         )
     if aim > WIDEST:
         raise EditError(
             f"a turn with a radius of {aim:.0f} m is hardly seen as one; ask for {WIDEST:g} or less"
         )
-    aim = max(aim, least_radius(world))
-    return Adjust(element, near(seen.degrees, 4.0), near(aim, 0.05 * aim))
+    aim = max(aim, world.limits.design_radius)
+    return Adjust(element, Wanted.near(seen.degrees, 4.0), Wanted.near(aim, 0.05 * aim))
 
 
 def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep]:
@@ -257,60 +374,6 @@ def _shaped(change: Change, element: RoadElement, least: float) -> list[EditStep
     aim = min(max(d, 18.0), 115.0)
     radius = Wanted(max(bound * 1.12, r), Range(bound * 1.03, WIDEST))
     return [Adjust(element, Wanted(aim, Range(16.0, aim + 3)), radius)]
-
-
-def _lengths(change: Change, element: RoadElement, world: World) -> list[EditStep]:
-    seen = element.seen
-    before = seen.length if seen else element.length
-    aim = _aim(change, before)
-    share = 1 + ((LONGER if change.more > 0 else SHORTER) - 1) * change.dose
-    wished = before * share if aim is None else aim
-    if element.kind == "turn":
-        assert seen is not None
-        tight = least_radius(world)
-        if seen.radius * wished / before >= tight:
-            wanted = near(wished, 0.06 * wished) if aim is not None else _towards(before, wished)
-            return [Adjust(element, near(seen.degrees, 2.0), None, wanted)]
-        share = max(wished / before / (tight / seen.radius), 0.3)  # then it also turns less far
-        return [Adjust(element, near(seen.degrees * share, 4.0), near(tight, 0.12 * tight))]
-    if aim is None:
-        wished = max(wished, before + 15 if change.more > 0 else 0.0, min(SEEN + 1, before))
-        room = _towards(before, wished).room
-        room = Range(max(min(room.lo, wished - 0.5), LEAST_STRAIGHT), max(room.hi, wished + 0.5))
-        return [Adjust(element, length=Wanted(wished, room))]
-    if wished < SEEN - 0.6:
-        raise EditError(
-            f"a straight of {max(wished, 0):.0f} m is not seen as one; ask for 10 m or more, or remove it"
-        )
-    return [Adjust(element, length=near(max(wished, SEEN), max(1.0, 0.02 * wished)))]
-
-
-def _road_lengths(change: Change, elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:
-    """Returns candidates that change the road's length by its straights alone, or by its turns as well."""
-    own = sum(element.length for element in elements)
-    aim = _aim(change, own)
-    if aim is None:
-        aim = own * (1 + ((ROAD_LONGER if change.more > 0 else ROAD_SHORTER) - 1) * change.dose)
-    if aim < world.limits.min_length:
-        raise EditError(f"a road of {aim:.0f} m is too short; ask for {world.limits.min_length:g} m or more")
-    slack = max(2.0, ROAD_SLACK * aim)
-    whole = RoadLength(Range(aim - slack, aim + slack))
-    lengths = [(e, e.seen.length) for e in elements if e.kind == "gap" and e.seen is not None]
-    spare = [length if aim > own else max(length - KEPT, 0.0) for _, length in lengths]
-    share = (aim - own) / max(sum(spare), 1e-9)
-    straights: list[EditStep] = [
-        Adjust(element, length=Wanted(length + share * part, Range(SEEN)))
-        for (element, length), part in zip(lengths, spare, strict=True)
-    ]
-    everything: list[EditStep] = [
-        Adjust(element, length=Wanted(now, Range(SEEN))) for element, now in lengths
-    ]
-    for seen, element in ((e.seen, e) for e in elements if e.kind == "turn"):
-        assert seen is not None
-        radius = Range(min(least_radius(world), seen.radius), max(WIDEST, seen.radius))
-        everything.append(Adjust(element, near(seen.degrees, 2.0), Wanted(seen.radius, radius)))
-    can = sum(spare) and share > -1
-    return ((*straights, whole), (*everything, whole)) if can else ((*everything, whole),)
 
 
 def _flipped(elements: Sequence[RoadElement], world: World) -> tuple[EditCandidate, ...]:

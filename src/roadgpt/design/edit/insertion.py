@@ -1,31 +1,27 @@
 """Makes candidates that add or remove turns and straights; the elements around them keep all their values."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import radians
 
-from roadgpt.brief.model import OTHER_SIDE, Side, Slope
+from roadgpt.brief.change.request import Change
+from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature
 from roadgpt.brief.words import KINDS, SHARPNESS, SLOPES, Range
 from roadgpt.design.edit.placing import PlacedChange
-from roadgpt.design.edit.request import Change
+from roadgpt.design.edit.slopes import AIMS
 from roadgpt.design.edit.steps import (
-    FREE_STRAIGHT,
     HIDDEN,
+    MILLIMETRE,
     SEPARATE,
     Adjust,
     Become,
     EditCandidate,
     EditStep,
-    Insert,
     Wanted,
-    gap,
-    near,
-    straight,
-    turn_segments,
 )
-from roadgpt.design.elements import least_radius
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.elements import straight, turn_segments
+from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -50,16 +46,48 @@ PREFERRED = {
 """Angle in degrees and radius in metres of a new turn if the request does not give them."""
 MOST_NEW = 12
 FILLERS = (0.0, SEPARATE)  # m of straight road in the place of a removed turn
-SLOPED: dict[Slope, float] = {
-    "up": 5.0,
-    "down": -5.0,
-    "flat": 0.0,
-    "gently_up": 3.0,
-    "gently_down": -3.0,
-    "steeply_up": 9.5,
-    "steeply_down": -9.5,
-}
-"""The grade in percent at which a new turn or straight aims."""
+
+
+@dataclass(frozen=True, slots=True)
+class Insert:
+    """Inserts new elements before the element named ``before``, or at the end if the name is empty."""
+
+    before: str
+    elements: RoadElements
+    split: str = ""
+    """Name of a gap to split in two, so that the new elements are inserted between its halves; empty to
+    split none.
+    """
+    index: int = 0
+    """Number of segments in the first half of the split gap; 0 to split its longest segment in half."""
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements in driving order, with the new ones inserted."""
+        if self.split:
+            return tuple(
+                part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))
+            )
+        names = [element.name for element in elements]
+        at = names.index(self.before) if self.before else len(elements)
+        return (*elements[:at], *self.elements, *elements[at:])
+
+    def _halves(self, element: RoadElement) -> RoadElements:
+        segments, at = list(element.segments), self.index
+        if not at:
+            longest = max(range(len(segments)), key=lambda i: segments[i].distance)
+            half = round(segments[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
+            rest = round((segments[longest].distance - half) * MILLIMETRE) / MILLIMETRE
+            one = segments[longest]
+            segments[longest : longest + 1] = [
+                one.model_copy(update={"distance": half}),
+                one.model_copy(update={"distance": rest}),
+            ]
+            at = longest + 1
+        first, second = (
+            element.with_segments(segments[:at]),
+            replace(element, name=f"{element.name} rest", seen=None),
+        )
+        return (first, *self.elements, second.with_segments(segments[at:]))
 
 
 def insertion_candidates(
@@ -159,7 +187,7 @@ def _middle(elements: RoadElements) -> tuple[RoadElement, int]:
 
 def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     """Returns the angle in degrees and the radius in metres of the new turns."""
-    least = least_radius(world)
+    least = world.limits.design_radius
     if change.radius is not None and change.radius < world.limits.min_radius:
         raise EditError(
             f"a radius of {change.radius:g} m is tighter than the {world.limits.min_radius:.1f} m that the "
@@ -175,11 +203,11 @@ def _shape(change: Change, world: World) -> tuple[Wanted, Wanted]:
     angles, radii = meant.degrees or Range(), meant.radius or Range(0, 35.0 if word else 45.0)
     degrees = Wanted(aim, Range(angles.lo + 2, angles.hi - 5))
     if change.degrees is not None:
-        degrees = near(change.degrees, 1.5)
+        degrees = Wanted.near(change.degrees, 1.5)
     radius = max(radius, least)
     wanted = Wanted(radius, Range(max(1.03 * radii.lo, 0.98 * least), max(0.97 * radii.hi, radius)))
     if change.radius is not None:
-        wanted = near(max(change.radius, least), 0.05 * change.radius)
+        wanted = Wanted.near(max(change.radius, least), 0.05 * change.radius)
     return degrees, wanted
 
 
@@ -227,21 +255,19 @@ def _turns(
         first = sum(s.distance for s in own[:index]) if index else elements[at].length / 2
         gap_before, gap_after = gap_before + first, gap_after - first
     incline = _incline(elements, at)
-    new: list[RoadElement] = []
     lead = _lead(turn_before, sides[0], gap_before) + spare
-    if lead:
-        new.append(gap(f"new {number} lead", lead, incline))
+    tail = _lead(turn_after, sides[-1], gap_after) + spare
     (degrees, angles), (radius, radii) = shape
     asked = Feature("turn", "turn", None, angles, radii, None, _grade(change))
+    slope = _incline_asked(change, incline)
     transition = min(max(TRANSITION_SHARE * radius * radians(degrees), 3.0), 12.0)
+    new = [gap(f"new {number} lead", lead, incline)] if lead else []
     for i, side in enumerate(sides):
         if i:
             new.append(gap(f"new {number} gap {i}", SEPARATE if side == sides[i - 1] else JOINT, incline))
         name = f"new {number} turn {i + 1}"
-        slope = _incline_asked(change, incline)
         segments = turn_segments(degrees, 1 if side == "left" else -1, radius, transition, slope)
         new.append(RoadElement(name, "turn", segments, side, asked=asked))
-    tail = _lead(turn_after, sides[-1], gap_after) + spare
     if tail:
         new.append(gap(f"new {number} tail", tail, incline))
     return Insert(before, tuple(new), *split)
@@ -258,7 +284,7 @@ def _incline_asked(change: Change, incline: float) -> float:
     """Returns the incline of a new element in percent: as requested, or else ``incline``."""
     if change.grade is not None:
         return change.grade
-    return SLOPED[change.slope] if change.slope else incline
+    return change.sign * AIMS[change.steepness].grade if change.way else incline
 
 
 def _behind(elements: RoadElements) -> tuple[float, RoadElement | None]:
@@ -295,7 +321,7 @@ def _straight_ways(
     incline = _incline_asked(change, _incline(elements, at))
     beside = elements[at] if before and elements[at].kind == "gap" else elements[at - 1]
     if change.is_whole and change.length is not None and beside.kind == "gap" and beside.seen is not None:
-        return ((Adjust(beside, length=near(change.length, 1.0)),),)
+        return ((Adjust(beside, length=Wanted.near(change.length, 1.0)),),)
     stands_alone = beside.kind == "gap" and beside.seen is None
     out = []
     for split in splits:
@@ -328,6 +354,6 @@ def _without(element: RoadElement, elements: RoadElements, filler: float) -> Edi
             b.side for b in (*elements[max(at - 1, 0) : at], *elements[at + 1 : at + 2]) if b.kind == "turn"
         ]
         if len(sides) == 2 and sides[0] == sides[1]:
-            return Adjust(element, length=near(HIDDEN, 0.6))
+            return Adjust(element, length=Wanted.near(HIDDEN, 0.6))
         return Become(element, bends)
     return Become(element, (straight(filler, element.incline),) if filler else ())

@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+from roadgpt.brief.change.clashes import clash
+from roadgpt.brief.change.request import Change, Way, What
 from roadgpt.check.measures import way
-from roadgpt.design.edit.combinations import clash
-from roadgpt.design.edit.request import Change, Way, What
-from roadgpt.design.edit.slopes import is_outside
 from roadgpt.design.road_elements import RoadElement
 from roadgpt.errors import EditError
 
@@ -65,7 +64,7 @@ def _new_value(
     if other.way == "flat":
         return 0.0, "flat"
     if other.to is not None:
-        if other.bound and not is_outside(other, abs(value)):
+        if other.bound and not other.is_outside(abs(value)):
             return value, direction
         level = None if direction == "flat" else direction
         return other.to, other.way or level

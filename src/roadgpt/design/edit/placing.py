@@ -4,13 +4,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from roadgpt.design.edit.combinations import clash, refuse_clashes
+from roadgpt.brief.change.clashes import clash
+from roadgpt.brief.change.request import OF_SLOPE, Change, Place, Target
 from roadgpt.design.edit.likeness import with_value_of
-from roadgpt.design.edit.pointing import among, named, pointed, turns
-from roadgpt.design.edit.request import OF_SLOPE, Change, Place, Target
+from roadgpt.design.edit.pointing import among, around_middle, named, pointed, turns
 from roadgpt.design.edit.stretches import RoadStretch, stretch_of
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
+
+LEAST_FOR_HILL = 40.0  # m: the shortest straight for a crest or a dip
 
 
 class PlacedChange(NamedTuple):
@@ -18,7 +20,9 @@ class PlacedChange(NamedTuple):
 
     change: Change
     elements: RoadElements
-    """The elements to change, in driving order; none for an addition."""
+    """The elements to change, in driving order; none for an addition, except the straight that gets a crest
+    or a dip.
+    """
     marks: RoadElements = ()
     """The elements after, before or on which something is added."""
     stop: RoadElement | None = None
@@ -35,16 +39,15 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
         elements: the elements of the road before the edit.
 
     Raises:
-        EditError: no element matches, several match although the request means one, or two changes cannot be
-            made at once.
+        EditError: no element matches, several match although the request means one, or the straight for a
+            crest or a dip is too short.
     """
-    refuse_clashes(changes)
     out = []
     for change in changes:
         place = change.place
         if change.like is not None:
             out.append(_like_its_model(change, changes, elements))
-        elif change.what in ("mirror", "reverse"):
+        elif change.what in ("mirror", "reverse") and change.target is None:  # the whole road
             out.append(PlacedChange(change, elements))
         elif change.what == "count":
             out.append(_counted(change, elements))
@@ -62,7 +65,52 @@ def placed(changes: Sequence[Change], elements: RoadElements) -> tuple[PlacedCha
             out.append(PlacedChange(change, own, stretch=stretch))
         else:
             out.append(PlacedChange(change, (), *_marks(place, elements)))
-    return tuple(out)
+    return tuple(_on_straight(placed, elements) if placed.change.is_hill else placed for placed in out)
+
+
+def _on_straight(placed: PlacedChange, elements: RoadElements) -> PlacedChange:
+    """Returns the addition of a crest or a dip, with the straight that gets it.
+
+    Raises:
+        EditError: the straight is too short or bends, or the change does not refer to exactly one straight.
+    """
+    where = _straight_at(placed, elements)
+    if where is None or where.length < LEAST_FOR_HILL or any(s.turn_degrees for s in where.segments):
+        found = f"; there are {where.length:.0f} m" if where else ""
+        raise EditError(
+            f"a {placed.change.kind} needs a straight of {LEAST_FOR_HILL:.0f} m or more{found}; "
+            "lengthen it first"
+        )
+    return placed._replace(elements=(where,))
+
+
+def _straight_at(placed: PlacedChange, elements: RoadElements) -> RoadElement | None:
+    """Returns the straight at the place of a change; None if there is none."""
+    place = placed.change.place
+    how = place.how if place else "end"
+    if how == "on":
+        if len(placed.marks) != 1 or placed.marks[0].is_turn:
+            raise EditError(f"'{placed.change.words}' names no single straight; name one")
+        return placed.marks[0]
+    gaps = [element for element in elements if element.kind == "gap" and element.segments]
+    at = {element.name: index for index, element in enumerate(elements)}
+    match how:
+        case "start" | "end":
+            found = gaps[:1] if how == "start" else gaps[-1:]
+        case "middle":
+            found = [around_middle(gaps, elements)] if gaps else []
+        case "before":
+            found = [gap for gap in gaps if at[gap.name] < at[placed.marks[0].name]][-1:]
+        case "between" if placed.stop is not None:
+            low, high = at[placed.marks[-1].name], at[placed.stop.name]
+            found = [gap for gap in gaps if low < at[gap.name] < high]
+            if len(found) != 1:
+                raise EditError(
+                    f"'{placed.change.words}' names {len(found) or 'no'} straights; name one of them"
+                )
+        case _:
+            found = [gap for gap in gaps if at[gap.name] > at[placed.marks[-1].name]][:1]
+    return found[0] if found else None
 
 
 def _like_its_model(asked: Change, changes: Sequence[Change], elements: RoadElements) -> PlacedChange:
@@ -116,7 +164,7 @@ def _counted(change: Change, elements: RoadElements) -> PlacedChange:
     if change.bound <= 0 and len(there) > wanted:
         return PlacedChange(replace(change, what="remove"), tuple(there[wanted:]))
     if change.bound >= 0 and len(there) < wanted:
-        new = Target("turn", indefinite=True, words=target.words)
+        new = Target("turn", words=target.words)
         more = Change(
             "add",
             new,

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from roadgpt.brief.change.request import OF_SLOPE, Place, Target, Way, What
 from roadgpt.brief.words import KINDS
 from roadgpt.check.measures import way
-from roadgpt.design.edit.request import OF_SLOPE, Place, Target, Way, What
-from roadgpt.design.edit.stretches import is_of_distances, stretch_of, within
+from roadgpt.design.edit.stretches import stretch_of, within
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 
@@ -58,12 +58,12 @@ def straights(elements: RoadElements) -> list[RoadElement]:
 
 def _road(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:
     found, place = list(elements), target.place
-    is_by_distance = is_of_distances(place) or (target.half is not None and what in OF_SLOPE)
-    if is_by_distance and stretch_of(target, elements):
+    is_by_distance = place is not None and place.is_of_distances
+    if (is_by_distance or (target.half is not None and what in OF_SLOPE)) and stretch_of(target, elements):
         found = _of_stretch(target, elements, what)
     elif target.half:
         found = _half(elements, target.half)
-    if place and place.target and place.how != "on" and not is_of_distances(place):
+    if place and place.target and place.how != "on" and not is_by_distance:
         marks = [elements.index(b) for b in pointed(_single(place.target), elements, what)]
         if place.how == "after":
             found = found[marks[-1] + 1 :]
@@ -92,6 +92,17 @@ def _half(elements: RoadElements, half: int) -> list[RoadElement]:
             out.append(element)
         at += element.length
     return out
+
+
+def around_middle(gaps: Sequence[RoadElement], elements: RoadElements) -> RoadElement:
+    """Returns the gap that holds the middle of the road, or else the one nearest to it."""
+    whole = sum(element.length for element in elements)
+
+    def away(gap: RoadElement) -> float:
+        start = sum(element.length for element in elements[: elements.index(gap)])
+        return max(start - whole / 2, whole / 2 - start - gap.length, 0.0)
+
+    return min(gaps, key=away)
 
 
 def _of_stretch(target: Target, elements: RoadElements, what: What) -> list[RoadElement]:

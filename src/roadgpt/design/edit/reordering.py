@@ -2,15 +2,14 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import degrees, pi
 
 from roadgpt.design.edit.placing import PlacedChange
 from roadgpt.design.edit.steps import EditCandidate, flipped
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
-from roadgpt.road import Design, Segment, World, build
+from roadgpt.road import Segment, World
 
-DECIMALS = 6  # of the start and its direction
+REVERSED = "the road leads from its former end to its former start; its parts are named as before"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +102,21 @@ def move_of(placed: PlacedChange, elements: RoadElements) -> tuple[EditCandidate
     return ((Move(tuple(moved), others[index - 1] if index else ""),),)
 
 
+def reordering_sentence(placed: PlacedChange, elements: RoadElements) -> str:
+    """Returns a sentence on a change that only reorders elements."""
+    names = _turn_names(elements)
+    match placed.change.what:
+        case "reverse":
+            return REVERSED
+        case "move":
+            numbers = [str(names.index(element.name) + 1) for element in placed.elements]
+            moved = f"turn {numbers[0]} has" if len(numbers) == 1 else f"turns {' and '.join(numbers)} have"
+            return f"{moved} moved; the turns are named as before"
+        case _:
+            one, other = (names.index(element.name) + 1 for element in placed.elements)
+            return f"turn {one} and turn {other} have changed places; they are named as before"
+
+
 def _turn_names(elements: Sequence[RoadElement]) -> tuple[str, ...]:
     return tuple(element.name for element in elements if element.is_turn)
 
@@ -114,13 +128,3 @@ def _reversed(element: RoadElement) -> RoadElement:
 
 def _falling(segment: Segment) -> Segment:
     return segment.model_copy(update={"incline": 0.0 - segment.incline})
-
-
-def started_at_end(design: Design, segments: tuple[Segment, ...]) -> Design:
-    """Returns a Design with these segments that starts at the end of ``design``'s road and heads the
-    opposite way.
-    """
-    road = build(design)
-    x, y, z = (round(float(value), DECIMALS) for value in road.at(road.length))
-    theta = degrees(float(road.heading(road.length)) + pi) % 360
-    return Design(starting_point=(x, y, z), theta=round(theta, DECIMALS) % 360, segments=segments)

@@ -1,17 +1,18 @@
 """Lists ways to change grades: of one turn or straight, or of many elements at once."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 from typing import NamedTuple
 
+import numpy as np
+
+from roadgpt.brief.change.request import Change, Steepness, Way
 from roadgpt.brief.words import PERCENT_SLACK, Range
 from roadgpt.check.measures import Measures, way
-from roadgpt.design.edit.request import Change, Steepness
-from roadgpt.design.edit.slope_of_all import SlopeOfAll
 from roadgpt.design.edit.steps import Adjust, EditCandidate, EditStep, Wanted
-from roadgpt.design.edit.stretches import RoadStretch, within
-from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.design.edit.stretches import RoadStretch, pieces, within
+from roadgpt.design.road_elements import RoadElement, RoadElements, with_inclines
 from roadgpt.errors import EditError
 from roadgpt.road import World
 
@@ -40,15 +41,54 @@ AIMS: dict[Steepness | None, SlopeAim] = {
 """Aims of "uphill", "gently uphill" and "steeply uphill", inside the meanings in ``brief.words``."""
 
 
-def is_outside(change: Change, now: float) -> bool:
-    """Returns whether a value violates the limit that a change sets."""
-    assert change.to is not None
-    return (now - change.to) * change.bound < 0
+@dataclass(frozen=True, slots=True)
+class SlopeOfAll:
+    """Changes the incline of each segment of several elements; no incline exceeds what the rules allow.
+
+    The size of an incline i becomes |i| * ``times`` + ``more`` percent, limited by ``least`` and ``most``.
+    """
+
+    names: frozenset[str]
+    times: float = 1.0
+    more: float = 0.0
+    least: float = -inf
+    """Lower limit of the size of the new incline."""
+    most: float = inf
+    """Upper limit of the size of the new incline."""
+    sign: int = 0
+    """1 for uphill, -1 for downhill, 0 if each segment keeps its sign."""
+    only: Way | None = None
+    """The segments that change: those uphill, downhill or level before; None for all."""
+    stretch: RoadStretch | None = None
+    """The stretch of the road in which segments change; None for the whole road."""
+
+    def apply(self, elements: RoadElements, world: World) -> RoadElements:
+        """Returns the elements with the new inclines."""
+        at, out = 0.0, list[RoadElement]()
+        for element in elements:
+            out.append(self._applied(element, at, world) if element.name in self.names else element)
+            at += element.length
+        return tuple(out)
+
+    def _applied(self, element: RoadElement, at: float, world: World) -> RoadElement:
+        limit = 100 * world.limits.max_grade - 0.2
+        segments, changes = element.segments, (True,) * len(element.segments)
+        if self.stretch is not None:
+            segments, changes = pieces(element, at, self.stretch)
+        before = np.array([segment.incline for segment in segments])
+        size = np.clip(np.abs(before) * self.times + self.more, self.least, self.most)
+        signs = self.sign or np.where(before >= 0, 1, -1)
+        after = np.clip(signs * size, -limit, limit) + 0.0  # no -0.0
+        if self.only is not None:
+            changes = tuple(
+                there and way(incline) == self.only for there, incline in zip(changes, before, strict=True)
+            )
+        return element.with_segments(with_inclines(segments, np.where(changes, after, before)))
 
 
 def is_too_steep_or_flat(change: Change, element: RoadElement) -> bool:
     """Returns whether a segment of an element violates the limit that a change sets for slopes."""
-    return any(is_outside(change, abs(segment.incline)) for segment in element.segments)
+    return any(change.is_outside(abs(segment.incline)) for segment in element.segments)
 
 
 def bounded_slopes(change: Change, elements: Sequence[RoadElement]) -> SlopeOfAll:
@@ -70,9 +110,7 @@ def slope_steps(change: Change, element: RoadElement, found: Measures, world: Wo
     """
     now = element.seen.grade if element.seen else element.incline
     limit = 100 * world.limits.max_grade
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0) or (
-        1 if now >= LEVEL else -1 if now <= -LEVEL else 0
-    )
+    sign = change.sign or (1 if now >= LEVEL else -1 if now <= -LEVEL else 0)
     sign = sign or (-1 if found.grade <= -LEVEL else 1)
     aim: float | None = None
     if change.to is not None and change.way != "flat":
@@ -132,7 +170,7 @@ def road_slope_candidates(
     """
     names = frozenset(element.name for element in elements)
     limit = 100 * world.limits.max_grade
-    sign = {"up": 1, "down": -1}.get(change.way or "", 0)
+    sign = change.sign
     _refuse_too_steep(change.to or 0.0, limit)
     inclines = [segment.incline for element in elements for segment in element.segments]
     if change.way == "flat" or change.to == 0:

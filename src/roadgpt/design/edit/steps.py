@@ -8,7 +8,7 @@ violate a rule, or if measured values lie outside these ranges.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import ceil, floor, radians
+from math import atan2, ceil, cos, degrees, floor, hypot, pi, radians, sin
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -16,19 +16,21 @@ import numpy as np
 from roadgpt.brief.model import OTHER_SIDE, Side
 from roadgpt.brief.outline import Feature, both
 from roadgpt.brief.words import Range
-from roadgpt.design.elements import cut, turn_element
-from roadgpt.design.road_elements import RoadElement, RoadElements
-from roadgpt.design.vertical import with_inclines
+from roadgpt.design.elements import turn_segments
+from roadgpt.design.road_elements import FREE_STRAIGHT, RoadElement, RoadElements, gap, joined, with_inclines
 from roadgpt.errors import UsageError
-from roadgpt.road import Segment, World
+from roadgpt.road import Design, Segment, World, build
 from roadgpt.road.design import MAX_TURN
 
 MILLIMETRE, CENTIMETRE, TENTH = 1000.0, 100.0, 10.0
+HUNDREDTH = 100.0  # per degree
+DECIMALS = 6  # of the start of a reversed road and its direction
 LEAST = 1.0  # m that a straight segment keeps
 TRANSITION_SHARE = 0.3  # of the arc, of a turn that is written anew without a transition of its own
 SEPARATE = 18.0  # m between turns to the same side, so that they are seen as two
 HIDDEN = 9.0  # m between turns to the same side at which they are measured as two, without a straight
-FREE_STRAIGHT = Feature("straight", "straight")
+WIDEST = 250.0  # m: a turn of a larger radius is hardly seen as one
+CLEARLY, FURTHER = 0.45, 1.6  # least and greatest accepted share of a change without a number ('sharper')
 
 
 class EditStep(Protocol):
@@ -60,10 +62,22 @@ class Wanted(NamedTuple):
         """
         return Wanted((self.aim + min(max(now, self.room.lo), self.room.hi)) / 2, self.room)
 
+    @classmethod
+    def near(cls, aim: float, slack: float) -> "Wanted":
+        """Returns a value to aim at, with a tolerance of ``slack`` in both directions."""
+        return cls(aim, Range(aim - slack, aim + slack))
 
-def near(aim: float, slack: float) -> Wanted:
-    """Returns a value to aim at, with a tolerance of ``slack`` in both directions."""
-    return Wanted(aim, Range(aim - slack, aim + slack))
+    @classmethod
+    def towards(cls, now: float, aim: float) -> "Wanted":
+        """Returns ``aim`` with a range from 0.45 to 1.6 times the change from ``now`` to ``aim``."""
+        ends = now + CLEARLY * (aim - now), now + FURTHER * (aim - now)
+        return cls(aim, Range(min(ends), max(ends)))
+
+    @classmethod
+    def not_away(cls, now: float, aim: float) -> "Wanted":
+        """Returns ``aim`` with a range from no change to 1.6 times the change from ``now`` to ``aim``."""
+        ends = now, now + FURTHER * (aim - now)
+        return cls(aim, Range(0.99 * min(ends), 1.01 * max(ends)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +113,8 @@ class Adjust:
         return changed(elements, self.element.name, lambda now: self._applied(now, world))
 
     def _applied(self, now: RoadElement, world: World) -> RoadElement:
+        if self.element.is_turn and not self.element.degrees:  # a spline bends before and behind its turns
+            raise UsageError(f"{self.element.name} is made by no segment of the road, but by its spline")
         if now.kind != self.element.kind:
             raise UsageError(f"{self.element.name} is to go and to be changed at once")
         if self.grade:
@@ -141,14 +157,6 @@ class Adjust:
         return now.with_segments(scaled(s, more, wider) for s in now.segments)
 
 
-def with_milder(steps: Sequence[EditStep]) -> list[EditStep]:
-    """Returns the alternative steps for one element.
-
-    If the only step is an Adjust, its milder version is appended as a second alternative.
-    """
-    return [*steps, *(step.milder() for step in steps[:1] if isinstance(step, Adjust) and len(steps) == 1)]
-
-
 def with_grade(element: RoadElement, grade: float, world: World) -> RoadElement:
     """Returns the element with another mean grade, in percent.
 
@@ -189,16 +197,6 @@ def scaled(segment: Segment, more: float, wider: float) -> Segment:
     )
 
 
-def straight(length: float, incline: float) -> Segment:
-    """Returns a straight segment with numbers rounded to the precision of design files."""
-    return Segment(distance=round(max(length, 1.0), 1), direction="straight", incline=round(incline, 1))
-
-
-def gap(name: str, length: float, incline: float) -> RoadElement:
-    """Returns a new gap that consists of one straight, whose length may be changed."""
-    return RoadElement(name, "gap", (straight(length, incline),), asked=FREE_STRAIGHT)
-
-
 def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElement:
     """Returns a turn with a new angle and radius; its side and mean incline stay the same."""
     transitions = [s.transition for s in element.segments if s.transition]
@@ -207,14 +205,6 @@ def rewritten(element: RoadElement, degrees: float, radius: float) -> RoadElemen
         degrees, 1 if element.side == "left" else -1, radius, transition, element.incline
     )
     return element.with_segments(segments)
-
-
-def turn_segments(
-    degrees: float, hand: int, radius: float, transition: float, incline: float
-) -> tuple[Segment, ...]:
-    """Returns the segments into which the planner divides a turn with these values."""
-    turn = turn_element(degrees, hand, radius, transition)
-    return tuple(cut(turn._replace(incline=round(incline * TENTH) / TENTH)))
 
 
 def stretched(element: RoadElement, more: float) -> RoadElement:
@@ -298,48 +288,6 @@ class Become:
         return changed(elements, self.element.name, lambda _: gap)
 
 
-@dataclass(frozen=True, slots=True)
-class Insert:
-    """Inserts new elements before the element named ``before``, or at the end if the name is empty."""
-
-    before: str
-    elements: RoadElements
-    split: str = ""
-    """Name of a gap to split in two, so that the new elements are inserted between its halves; empty to
-    split none.
-    """
-    index: int = 0
-    """Number of segments in the first half of the split gap; 0 to split its longest segment in half."""
-
-    def apply(self, elements: RoadElements, world: World) -> RoadElements:
-        """Returns the elements in driving order, with the new ones inserted."""
-        if self.split:
-            return tuple(
-                part for b in elements for part in (self._halves(b) if b.name == self.split else (b,))
-            )
-        names = [element.name for element in elements]
-        at = names.index(self.before) if self.before else len(elements)
-        return (*elements[:at], *self.elements, *elements[at:])
-
-    def _halves(self, element: RoadElement) -> RoadElements:
-        segments, at = list(element.segments), self.index
-        if not at:
-            longest = max(range(len(segments)), key=lambda i: segments[i].distance)
-            half = round(segments[longest].distance / 2 * MILLIMETRE) / MILLIMETRE
-            rest = round((segments[longest].distance - half) * MILLIMETRE) / MILLIMETRE
-            one = segments[longest]
-            segments[longest : longest + 1] = [
-                one.model_copy(update={"distance": half}),
-                one.model_copy(update={"distance": rest}),
-            ]
-            at = longest + 1
-        first, second = (
-            element.with_segments(segments[:at]),
-            replace(element, name=f"{element.name} rest", seen=None),
-        )
-        return (first, *self.elements, second.with_segments(segments[at:]))
-
-
 def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
     """Returns the elements, with straights inserted between turns to the same side that are too close.
 
@@ -363,3 +311,55 @@ def with_room(elements: RoadElements, before: RoadElements) -> RoadElements:
 
 def _pair(one: RoadElement, other: RoadElement) -> tuple[str, Side | None, str, Side | None]:
     return one.name, one.side, other.name, other.side
+
+
+def started(
+    design: Design,
+    after: RoadElements,
+    before: RoadElements,
+    world: World,
+    is_mirrored: bool,
+    is_reversed: bool,
+) -> Design:
+    """Returns the design with the segments of the elements after the steps.
+
+    A reversed road starts where the road ended, and heads the opposite way. If elements were added at the
+    start, the start moves so that the rest of the road stays where it was.
+    """
+    segments = joined(after)
+    if is_reversed:
+        return _started_at_end(design, segments)
+    x, y, z = design.starting_point
+    if is_mirrored:
+        theta = (180 - design.theta) % 360
+        return Design(
+            starting_point=(world.site.map_size - x, y, z), theta=round(theta, 6), segments=segments
+        )
+    old = {element.name for element in before}
+    front: list[Segment] = []
+    for element in after:
+        if element.name in old:
+            break
+        front += element.segments
+    if not front:
+        return design.model_copy(update={"segments": segments})
+    lead = build(Design(starting_point=(0.0, 0.0, 0.0), theta=0.0, segments=tuple(front)))
+    end, turned = lead.at(lead.length), float(lead.heading(lead.length))
+    theta = radians(design.theta) - turned
+    far, way = hypot(end[0], end[1]), atan2(end[1], end[0]) + theta
+    start = (x - far * cos(way), y - far * sin(way), z - float(end[2]))
+    return Design(
+        starting_point=(round(start[0], 2), round(start[1], 2), round(start[2], 2)),
+        theta=round(degrees(theta) * HUNDREDTH) / HUNDREDTH % 360,
+        segments=segments,
+    )
+
+
+def _started_at_end(design: Design, segments: tuple[Segment, ...]) -> Design:
+    """Returns a Design with these segments that starts at the end of ``design``'s road and heads the
+    opposite way.
+    """
+    road = build(design)
+    x, y, z = (round(float(value), DECIMALS) for value in road.at(road.length))
+    theta = degrees(float(road.heading(road.length)) + pi) % 360
+    return Design(starting_point=(x, y, z), theta=round(theta, DECIMALS) % 360, segments=segments)

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from roadgpt.design.edit.request import Place, Target
+from roadgpt.brief.change.request import Target
 from roadgpt.design.road_elements import RoadElement, RoadElements
 from roadgpt.errors import EditError
 from roadgpt.road import Segment
@@ -20,16 +20,6 @@ class RoadStretch(NamedTuple):
 
     start: float
     end: float
-
-
-def is_distance(target: Target | None) -> bool:
-    """Returns whether a target is a distance from an end of the road, as in "the last 80 m"."""
-    return target is not None and target.noun in ("start", "end") and target.length is not None
-
-
-def is_of_distances(place: Place | None) -> bool:
-    """Returns whether a place is named by distances, as in "from station 150 on"."""
-    return place is not None and (is_distance(place.target) or is_distance(place.other))
 
 
 def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch | None:
@@ -56,7 +46,7 @@ def stretch_of(target: Target, elements: Sequence[RoadElement]) -> RoadStretch |
 
 def _named_ends(target: Target, whole: float) -> RoadStretch | None:
     """Returns the stations that a target names, on a road of this length; None if it names none."""
-    if is_distance(target):
+    if target.is_distance:
         station = _station(target, whole)
         return RoadStretch(station, whole) if target.noun == "end" else RoadStretch(0.0, station)
     if target.noun != "road" or target.but or target.way:
@@ -64,7 +54,7 @@ def _named_ends(target: Target, whole: float) -> RoadStretch | None:
     place = target.place
     if place is None and target.half:
         return RoadStretch(whole / 2, whole) if target.half == 2 else RoadStretch(0.0, whole / 2)
-    if place is None or place.target is None or not is_of_distances(place):
+    if place is None or place.target is None or not place.is_of_distances:
         return None
     station = _station(place.target, whole)
     if place.other is not None:

@@ -11,7 +11,6 @@ change, as long as each still climbs, falls or is level. In an edited road, only
 elements with a required grade may change; parabolas are added where two slopes newly meet.
 """
 
-from collections.abc import Iterator, Sequence
 from math import inf
 from typing import NamedTuple
 
@@ -23,10 +22,10 @@ from roadgpt.check.measures import LEVEL, Measures, measure, way
 from roadgpt.check.rules.too_abrupt import inspect as abrupt_places
 from roadgpt.design.heights import Windows, climbing
 from roadgpt.design.road_elements import (
-    RoadElement,
     RoadElements,
     features_of,
     shows_turns,
+    with_inclines,
 )
 from roadgpt.design.vertical import (
     EASES,
@@ -35,7 +34,6 @@ from roadgpt.design.vertical import (
     made_to_fit,
     too_abrupt,
     widened,
-    with_inclines,
     with_new_parabolas,
 )
 from roadgpt.errors import DesignError
@@ -53,16 +51,44 @@ CLASSES = {"up": Range(LEVEL), "down": Range(-inf, -LEVEL), "flat": Range(-LEVEL
 CLEARLY = {name: room.drawn_in(CLEAR, 0.5) for name, room in CLASSES.items()}
 
 
-class _Slope(NamedTuple):
-    """The grades of one element, in percent."""
+class _Slopes(NamedTuple):
+    """The grades of elements and segments, in percent: which are accepted, aimed at and possible."""
 
-    element: RoadElement
-    accepted: Range | None
-    """Mean grades that may be measured; None if the element is not measured."""
-    aim: Range
-    """Mean grades to aim at; they lie inside those that are accepted."""
-    bounds: list[Range]
+    elements: RoadElements
+    accepted: tuple[Range | None, ...]
+    """Mean grades of each element that may be measured; None if the element is not measured."""
+    aims: tuple[Range, ...]
+    """Mean grades to aim at for each element; they lie inside those that are accepted."""
+    bounds: tuple[Range, ...]
     """Inclines that each segment may have."""
+
+    def within_bounds(self, grades: Array) -> Array:
+        """Returns the inclines of all segments, limited to those that are possible."""
+        return np.clip(grades, [bound.lo for bound in self.bounds], [bound.hi for bound in self.bounds])
+
+    def missing(self, found: Measures) -> Array:
+        """Returns, for each segment, the percentage points by which the measured grade of its element must
+        change to reach the aim, ``(n,)``; 0 if the grade is accepted.
+        """
+        out = np.zeros(len(self.bounds))
+        if not shows_turns(found, self.elements):
+            return out
+        seen = features_of(self.elements, found)
+        for element, accepted, aim, one in zip(self.elements, self.accepted, self.aims, seen, strict=True):
+            if accepted and one and one.grade not in accepted:
+                by = float(np.clip(one.grade, aim.lo, aim.hi)) - one.grade
+                out[list(element.members)] = by + np.copysign(SURPLUS, by)
+        return out
+
+    def moved(self, grades: Array, missing: Array) -> Array:
+        """Returns grades changed by ``missing`` within their limits; neighbours change by the remainder."""
+        after = self.within_bounds(grades + missing)
+        rest = grades + missing - after
+        for i in np.flatnonzero(np.abs(rest) > 1e-9):
+            for j in (i - 1, i + 1):
+                if 0 <= j < len(grades) and not missing[j]:
+                    after[j] = np.clip(after[j] + rest[i], self.bounds[j].lo, self.bounds[j].hi)
+        return after
 
 
 def graded(
@@ -80,16 +106,14 @@ def graded(
         world: the limits that the rules check, such as the steepest grade.
         before: the road before an edit; None for a proposal.
     """
-    slopes = list(_slopes(elements, outline, world, before is not None))
-    bounds = [bound for slope in slopes for bound in slope.bounds]
-    lows, highs = np.array([bound.lo for bound in bounds]), np.array([bound.hi for bound in bounds])
+    slopes = _slopes_of_edit(elements, world) if before else _slopes_of_proposal(elements, outline, world)
     lengths, inclines = [s.distance for s in design.segments], [s.incline for s in design.segments]
-    start = np.clip(inclines, lows, highs)
+    start = slopes.within_bounds(np.array(inclines))
     climb = outline.climb.drawn_in(0.3, 0.2) if outline.climb else Range()
     metres = float(start @ lengths) / 100
     if metres not in climb:
         metres = min(max(metres, climb.lo), climb.hi)
-        start = climbing(start, np.array(lengths), bounds, metres)
+        start = climbing(start, np.array(lengths), slopes.bounds, metres)
     road, pace = build(design), Pace.of(design, world)
     points, stations = road.centreline(), road.sample().s
     short = {i for e in elements if not e.is_turn and e.length < SHORTEST_SLOPE for i in e.members}
@@ -103,11 +127,12 @@ def graded(
             else:
                 segments = widened(segments, pace)
                 if too_abrupt(segments, pace):
-                    grades = made_to_fit(grades, lengths, inclines, short, bounds, pace, ROOMIER[attempt])
+                    room = ROOMIER[attempt]
+                    grades = made_to_fit(grades, lengths, inclines, short, slopes.bounds, pace, room)
                     segments = widened(with_inclines(design.segments, grades), pace)
             points[:, 2] = elevation_of(segments, 0.0).height(stations)
-            missing = _missing(slopes, measure(points))
-            moved = _moved(grades, missing, lows, highs)
+            missing = slopes.missing(measure(points))
+            moved = slopes.moved(grades, missing)
             if np.array_equal(moved, grades):
                 break
             grades = moved
@@ -119,19 +144,28 @@ def graded(
     return kept
 
 
-def _slopes(elements: RoadElements, outline: Outline, world: World, is_edited: bool) -> Iterator[_Slope]:
-    """Yields the grades of each element.
+def _slopes_of_edit(elements: RoadElements, world: World) -> _Slopes:
+    """Returns the grades of an edited road: elements without a required grade keep their inclines."""
+    limit = _limit_of(world)
+    asked = [element.asked.grade if element.asked else None for element in elements]
+    aims = (grade.drawn_in(INSIDE, 1 / 3) if grade else limit for grade in asked)
+    bounds = (
+        limit if grade else Range(segment.incline, segment.incline)
+        for element, grade in zip(elements, asked, strict=True)
+        for segment in element.segments
+    )
+    return _Slopes(elements, tuple(asked), tuple(aims), tuple(bounds))
 
-    In an edited road, elements without a required grade keep their inclines. In a proposal, turns go up, down
-    or level as proposed, or as required.
-    """
-    limit = Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+
+def _limit_of(world: World) -> Range:
+    return Range(-100 * world.limits.max_grade, 100 * world.limits.max_grade)
+
+
+def _slopes_of_proposal(elements: RoadElements, outline: Outline, world: World) -> _Slopes:
+    """Returns the grades of a proposal: turns go up, down or level as proposed, or as required."""
+    limit = _limit_of(world)
+    accepted, aims, bounds = list[Range | None](), list[Range](), list[Range]()
     for element in elements:
-        asked = element.asked.grade if element.asked else None
-        if is_edited:
-            bounds = [limit if asked else Range(s.incline, s.incline) for s in element.segments]
-            yield _Slope(element, asked, asked.drawn_in(INSIDE, 1 / 3) if asked else limit, bounds)
-            continue
         class_, *ways = map(way, (element.incline, *(s.incline for s in element.segments)))
         try:
             windows = Windows(outline, world)
@@ -141,37 +175,14 @@ def _slopes(elements: RoadElements, outline: Outline, world: World, is_edited: b
         aim = overlap(CLEARLY[class_], asked) or CLEARLY[class_]
         if asked and aim.lo > aim.hi:
             aim = asked
-        bounds = []
-        for segment, own in zip(element.segments, ways, strict=True):
-            room = Range(min(CLEARLY[own].lo, segment.incline), max(CLEARLY[own].hi, segment.incline))
+        own = []
+        for segment, one in zip(element.segments, ways, strict=True):
+            room = Range(min(CLEARLY[one].lo, segment.incline), max(CLEARLY[one].hi, segment.incline))
             rooms = overlap(overlap(room, limit), asked and aim), overlap(limit, asked and aim)
-            bounds.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
+            own.append(next((room for room in rooms if room and room.lo <= room.hi), limit))
         if not element.is_turn and element.length < SHORTEST_SLOPE:  # it needs no slope of its own
-            bounds = [limit] * len(bounds)
-        accepted = aim if asked else CLASSES[class_]
-        yield _Slope(element, accepted if element.is_turn else None, aim, bounds)
-
-
-def _missing(slopes: Sequence[_Slope], found: Measures) -> Array:
-    """Returns, for each segment, the percentage points by which the measured grade of its element must change
-    to reach the aim, ``(n,)``; 0 if the grade is accepted.
-    """
-    elements = tuple(slope.element for slope in slopes)
-    out = np.zeros(elements[-1].members.stop)
-    if shows_turns(found, elements):
-        for (element, accepted, aim, _), seen in zip(slopes, features_of(elements, found), strict=True):
-            if accepted and seen and seen.grade not in accepted:
-                by = float(np.clip(seen.grade, aim.lo, aim.hi)) - seen.grade
-                out[list(element.members)] = by + np.copysign(SURPLUS, by)
-    return out
-
-
-def _moved(grades: Array, missing: Array, lows: Array, highs: Array) -> Array:
-    """Returns grades changed by ``missing`` within their limits; neighbours are changed by the remainder."""
-    after = np.clip(grades + missing, lows, highs)
-    rest = grades + missing - after
-    for i in np.flatnonzero(np.abs(rest) > 1e-9):
-        for j in (i - 1, i + 1):
-            if 0 <= j < len(grades) and not missing[j]:
-                after[j] = np.clip(after[j] + rest[i], lows[j], highs[j])
-    return np.asarray(after)
+            own = [limit] * len(own)
+        bounds += own
+        aims.append(aim)
+        accepted.append((aim if asked else CLASSES[class_]) if element.is_turn else None)
+    return _Slopes(elements, tuple(accepted), tuple(aims), tuple(bounds))

@@ -1,26 +1,18 @@
-"""Builds, checks and measures the road of a design, and says what is wrong with it.
-
-Main function: ``look``.
-"""
+"""Defines what is required of a road, and a Look: a design with its built road, which says what is wrong."""
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, inf
 from typing import NamedTuple
 
 from roadgpt import check
 from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import Outline
 from roadgpt.brief.words import LEAST_STRAIGHT, Range
-from roadgpt.check.extremes import lowest
 from roadgpt.check.matching import fits, turn_complaints
 from roadgpt.check.measures import MeasuredFeature, Measures, measure
-from roadgpt.check.rules.below_floor import ROUNDING
 from roadgpt.check.rules.promises import complaints
-from roadgpt.design.layout import moved_onto_map
-from roadgpt.design.road_elements import RoadElements, features_of, shows_slopes, shows_turns, with_segments
-from roadgpt.design.writing import ABOVE_GROUND
-from roadgpt.road import Design, Geometry, Road, World, build
+from roadgpt.design.road_elements import RoadElements, features_of, shows_slopes, shows_turns
+from roadgpt.road import Design, Geometry, Road, World
 
 CENTIMETRE = 100.0  # per metre: heights are written in centimetres
 
@@ -107,59 +99,3 @@ class Look:
         return next(
             (complaint.sentence for complaint in complaints(self.found, self.requirements.outline)), ""
         )
-
-
-def look(design: Design, elements: RoadElements, requirements: Requirements) -> Look:
-    """Builds and checks the road of a design, and returns a Look at it.
-
-    The elements of the Look are ``elements`` with the segments of the design. If the road is not inside the
-    map and above the ground, it is moved there if possible.
-    """
-    world, geometry = requirements.world, requirements.geometry
-    elements = with_segments(elements, design.segments)
-    road = world.lay(build(design, geometry))
-    moved = design
-    findings = check.inspect(road, requirements.brief, world)
-    if any(finding.rule == "inside_map" or finding.stops for finding in findings):
-        # a design that becomes a spline is placed as if it were built of arcs, which lie close by
-        moved = moved_onto_map(design, world) or design
-    _, low = lowest(road.elevation, road.length)
-    if low < world.site.z_floor - ROUNDING:
-        x, y, z = moved.starting_point
-        height = ceil((world.site.z_floor + ABOVE_GROUND + z - low) * CENTIMETRE) / CENTIMETRE
-        moved = moved.model_copy(update={"starting_point": (x, y, height)})
-    if moved != design:
-        road = world.lay(build(moved, geometry))
-        findings = check.inspect(road, requirements.brief, world)
-    return Look(moved, elements, road, findings, requirements)
-
-
-def restored(mended: Look, first: Look) -> Look:
-    """Returns the repaired road, with changed values set back to the proposed ones where possible.
-
-    A value is set back if the road then still meets all rules and requirements.
-
-    Args:
-        mended: the repaired road; it must meet all rules and requirements.
-        first: the road as it was proposed.
-    """
-    trials: list[tuple[float, int, str]] = []
-    pairs = zip(first.design.segments, mended.design.segments, strict=True)
-    for index, (one, other) in enumerate(pairs):
-        for name in ("distance", "turn_degrees", "incline", "transition", "vertical_radius", "radius"):
-            before, after = getattr(one, name), getattr(other, name)
-            if before != after:
-                away = abs((before or 12.0) - (after or 12.0)) / max(abs(before or 12.0), 1.0)
-                trials.append((inf if name == "radius" else away, index, name))
-    for _, index, name in sorted(trials):  # the smallest changes first
-        rows = list(mended.design.segments)
-        was, now = first.design.segments[index], rows[index]
-        if name == "radius" and (was.distance, was.turn_degrees) != (now.distance, now.turn_degrees):
-            continue  # the radius belongs to the proposed distance and angle
-        rows[index] = now.model_copy(update={name: getattr(was, name)})
-        segments = tuple(rows)
-        tried = first.design.model_copy(update={"segments": segments})
-        seen = look(tried, first.elements, first.requirements)
-        if not seen.objection:
-            mended = seen
-    return mended

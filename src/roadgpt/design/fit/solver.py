@@ -4,30 +4,20 @@
 The objective is a weighted sum of squared relative changes. Its weights make a few larger changes cost no
 more than many small ones. For each limit that is exceeded, the squared excess in metres is added as a
 penalty, whose weight grows from round to round. Each step solves for all free lengths, all free turns and the
-place on the map at once (Levenberg-Marquardt). The plan is a polyline that follows its lengths and turns:
-
-    step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
-
-``share_m`` is the fraction of the segment's turn that is completed at that step. It is taken from the built
-curve, and kept while lengths and turns change a little.
+place on the map at once (Levenberg-Marquardt).
 """
 
-from collections.abc import Sequence
-from math import radians
+from math import ceil, floor, radians
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from roadgpt.design.layout import Complex, Indices, meeting
-from roadgpt.geometry import PieceCurve
+from roadgpt.design.fit.limits import Aim
+from roadgpt.design.layout import NEIGHBOURS
 from roadgpt.geometry.curve import Array
-from roadgpt.geometry.pieces import joined
-from roadgpt.road import Segment, World
-from roadgpt.road.alignment import pieces_of
+from roadgpt.geometry.nearness import Complex, Indices, meeting
+from roadgpt.road import Segment
 
-SPACING = 2.0  # m between points of the polyline, about
-MOST_POINTS = 500  # of a polyline, about
 LENGTH_WEIGHT, TURN_WEIGHT = 1.0, 1.4  # of a relative change
 LEAST_TURN_COUNTED = radians(15)  # changes of slighter turns are taken as relative to this
 SPARSE = 2  # steps between the points that are held apart
@@ -39,107 +29,9 @@ FEW = 0.04  # relative change; values that change by more get a smaller weight i
 MOST_WORK = 2e7  # points squared, times steps: after this much no further start is tried (about 2 s)
 BROKEN = 0.15  # m: a limit, margins included, may be broken by this much
 CHEAP = 0.05  # cost of a change for each segment, below which no other start is tried
+TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
+SHORTEST_TRANSITION = 0.1  # m
 STARTS = (1.0, 0.8, 0.6, 0.45, 0.3, 0.2)  # shares of all free turns where the search starts
-
-
-class Margins(NamedTuple):
-    """Distances that a repaired road keeps from the limits of the rules."""
-
-    radius: float = 1.045
-    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
-    spline cuts corners.
-    """
-    seen: float = 12.0
-    """Smallest angle of a turn, in degrees."""
-    apart: float = 15.5
-    """Smallest distance between two successive turns that go the same way, in metres."""
-    clear: float = 1.1
-    """Distance in metres between two parts of the road, in addition to its width."""
-    edge: float = 0.6
-    """Distance in metres between the road and the border of the map."""
-    promise: float = 0.04
-    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
-
-
-class PlanPolyline(NamedTuple):
-    """A plan as a polyline."""
-
-    owner: NDArray[np.intp]
-    """Index of the segment to which each step of the polyline belongs, ``(k,)``."""
-    share: Array
-    """Fraction (0 to 1) of its segment's turn that is completed in the middle of each step, ``(k,)``."""
-    peak: Array
-    """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
-
-    def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
-        """Returns the points ``(k + 1,)`` of the polyline as x + iy, starting at the origin, and its steps
-        ``(k,)``.
-
-        Args:
-            lengths: lengths of the segments in metres.
-            turns: turning angles of the segments in radians, left positive.
-            heading: heading at the start in radians.
-        """
-        count = np.bincount(self.owner, minlength=len(lengths))
-        before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
-        angle = heading + before[self.owner] + self.share * turns[self.owner]
-        steps = (lengths / count)[self.owner] * np.exp(1j * angle)
-        return np.concatenate([[0j], np.cumsum(steps)]), steps
-
-    def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
-        """Returns the derivatives of all points with respect to each length and each turn, ``(k + 1, n)``
-        each.
-        """
-        n, k = len(lengths), len(steps)
-        own = self.owner[:, None] == np.arange(n)
-        behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
-        by_length, by_turn = np.zeros((k + 1, n), complex), np.zeros((k + 1, n), complex)
-        np.cumsum(own * (steps[:, None] / lengths), axis=0, out=by_length[1:])
-        np.cumsum(1j * behind * steps[:, None], axis=0, out=by_turn[1:])
-        return by_length, by_turn
-
-
-def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
-    """Returns the polyline of the plan that is built from these segments."""
-    pieces = pieces_of(segments)
-    curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
-    step = max(SPACING, curve.length / MOST_POINTS)
-    owner, share, peak = list[int](), list[Array](), np.zeros(len(segments))
-    at, first = 0.0, 0
-    for index, segment in enumerate(segments):
-        steps = max(2, round(segment.distance / step))
-        owner += [index] * steps
-        middles = at + segment.distance * (np.arange(steps) + 0.5) / steps
-        turn = np.radians(segment.turn_degrees)
-        if abs(turn) < 1e-9:
-            share.append(np.zeros(steps))
-            first += 1
-        else:
-            entry = curve.heading(np.array([at]))
-            share.append((curve.heading(middles) - entry) / turn)
-            bent = max(max(abs(p.k0), abs(p.k1)) for p in pieces[first : first + 5] if p.length > 1e-9)
-            peak[index] = bent * segment.distance / abs(turn)
-            first += 5
-        at += segment.distance
-    return PlanPolyline(np.array(owner), np.concatenate(share), peak)
-
-
-class Aim(NamedTuple):
-    """The lengths and turns that a plan should have, and the limits that it must meet."""
-
-    lengths: Array
-    """Length of each segment in metres."""
-    turns: Array
-    """Turning angle of each segment in radians, left positive."""
-    free: NDArray[np.bool_]
-    """Whether the length and the turn of each segment may change; the others are constants."""
-    figure: PlanPolyline
-    rows: Array
-    """Matrix of the limits of lengths and turns, ``(m, 2 n)``."""
-    most: Array
-    """Right-hand sides of the limits, ``(m,)``."""
-    world: World
-    margins: Margins
 
 
 class Solution(NamedTuple):
@@ -156,8 +48,8 @@ class Solution(NamedTuple):
     """Number of solver steps that were taken."""
 
 
-def least_change(aim: Aim) -> Solution | None:
-    """Returns the cheapest change that was found; None if no change meets the limits.
+def least_change(aim: Aim) -> tuple[Segment, ...] | None:
+    """Returns the segments with the cheapest change that was found; None if no change meets the limits.
 
     Limits that concern only frozen segments are ignored.
     """
@@ -175,7 +67,8 @@ def least_change(aim: Aim) -> Solution | None:
             found.append(one)
             if (share == 1.0 and one.cost < CHEAP * len(aim.lengths)) or len(found) == 2:
                 break
-    return min(found, key=lambda one: one.cost, default=None)
+    best = min(found, key=lambda one: one.cost, default=None)
+    return None if best is None else _written(aim, best.lengths, best.turns)
 
 
 def _descended(aim: Aim, share: float) -> Solution:
@@ -316,6 +209,49 @@ def _meeting(z: Complex, lengths: Array, aim: Aim) -> tuple[Indices, Indices]:
     s = np.concatenate([[0.0], np.cumsum((lengths / count)[owner])])[::SPARSE]
     moved = np.concatenate([[0], np.cumsum(aim.free[owner])])[::SPARSE]
     points, apart = z[::SPARSE], aim.world.section.road_width + aim.margins.clear
-    other, one = meeting(points, s, points, s, apart)
+    other, one = meeting(points, s, points, s, apart, NEIGHBOURS)
     free = moved[other] > moved[one]
     return SPARSE * one[free], SPARSE * other[free]
+
+
+def _written(aim: Aim, lengths: Array, turns: Array) -> tuple[Segment, ...]:
+    """Returns the segments with new lengths and turns, rounded.
+
+    Radii are scaled accordingly. A radius that becomes too small is removed together with its transition, and
+    a transition that becomes too long is shortened.
+    """
+    radius = aim.world.limits.min_radius * aim.margins.radius
+    out = []
+    for segment, length, turn, may_change in zip(aim.proposed, lengths, turns, aim.free, strict=True):
+        if not may_change:
+            out.append(segment)
+            continue
+        distance, degrees = (
+            _rounded(float(length), segment.distance),
+            _rounded(float(np.degrees(turn)), segment.turn_degrees),
+        )
+        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
+        if segment.radius and degrees:
+            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
+            fits_in = grown >= radius
+            update["radius"] = (
+                ceil(grown * CENTIMETRE) / CENTIMETRE
+                if fits_in and grown != segment.radius
+                else segment.radius
+                if fits_in
+                else None
+            )
+            if not fits_in:
+                update["transition"] = None
+        transition = update.get("transition", segment.transition)
+        if degrees and not update.get("radius"):
+            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
+            if (transition or min(distance / 4, 12.0)) > most:
+                update["transition"] = floor(most * TENTH) / TENTH
+        out.append(segment.model_copy(update=update))
+    return tuple(out)
+
+
+def _rounded(value: float, before: float) -> float:
+    """Returns a value rounded to a tenth; the value before, if the difference is at most 0.5 %."""
+    return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH

@@ -2,7 +2,7 @@
 
 A change names a place on the road and what to change there, or adds something new.
 
-Modifiers have the fixed order in which ``design.edit.change_plan`` prints them.
+Modifiers have the fixed order in which ``brief.change.plan`` prints them.
 """
 
 from collections.abc import Sequence

@@ -1,14 +1,22 @@
-"""Finds lengths and turns that meet all requirements. Main function: ``planned``.
+"""States which lengths and turns a plan may have, as an Aim for the solver. Main function: ``aim_of``.
 
 The limits of lengths and turns are rows of a matrix: a . lengths + b . |turns| <= c, all in metres. A minimum
 radius can be written as such a limit: if a segment turns by ``turn`` radians over ``length`` metres, and its
 maximum curvature is ``peak`` times its mean curvature, its minimum radius is length / (peak * turn).
+
+The plan is a polyline that follows its lengths and turns:
+
+    step m of segment i:   z += d_i / steps_i * exp(1j * (heading + turns before i + share_m * turn_i))
+
+``share_m`` is the fraction of the segment's turn that is completed at that step. It is taken from the built
+curve, and kept while lengths and turns change a little.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
-from math import ceil, floor, inf, radians
+from math import inf, radians
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,15 +25,17 @@ from roadgpt.brief.outline import Feature, Outline
 from roadgpt.brief.words import Range
 from roadgpt.check.measures import LEAST_TURN, MeasuredFeature
 from roadgpt.design.fit.look import Look
-from roadgpt.design.fit.solver import Aim, Margins, PlanPolyline, least_change, polyline_of
 from roadgpt.design.road_elements import RoadElement, RoadElements
+from roadgpt.geometry import PieceCurve
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Complex
+from roadgpt.geometry.pieces import joined
 from roadgpt.road import Segment, World
+from roadgpt.road.alignment import pieces_of
 from roadgpt.road.design import MAX_TURN
 
-ROUNDS = 2  # of solving: the second with the transitions that result from the first
-TENTH, CENTIMETRE = 10.0, 100.0  # per degree or metre, per metre: how changed numbers are written
-SHORTEST_TRANSITION = 0.1  # m
+SPACING = 2.0  # m between points of the polyline, about
+MOST_POINTS = 500  # of a polyline, about
 FADES = 3.0, 2.0  # m by which a straight, or a turn, may be measured shorter than it is written
 LEAST_TRANSITION = 0.1  # share of a turning segment to which each of its clothoids may be shortened
 METRES_PER_RADIAN = 30.0  # weight of a missing radian relative to a missing metre
@@ -36,37 +46,136 @@ WIDTH_KEPT_OFF = 0.2  # of a promised range, at either end, besides the margin o
 ANGLE_MARGIN = 0.4  # degrees, off what was promised
 
 
+class Margins(NamedTuple):
+    """Distances that a repaired road keeps from the limits of the rules."""
+
+    radius: float = 1.045
+    """Factor by which the smallest radius that the rules allow is multiplied, because the competition's
+    spline cuts corners.
+    """
+    seen: float = 12.0
+    """Smallest angle of a turn, in degrees."""
+    apart: float = 15.5
+    """Smallest distance between two successive turns that go the same way, in metres."""
+    clear: float = 1.1
+    """Distance in metres between two parts of the road, in addition to its width."""
+    edge: float = 0.6
+    """Distance in metres between the road and the border of the map."""
+    promise: float = 0.04
+    """Margin inside a required range of lengths or radii, as a fraction of each bound of the range."""
+
+
 TIGHT = Margins(1.03, 12.0, 14.0, 0.5, 0.3, 0.02)
 """Margins of an edited road. Most of the road stays as it is, and it may lie close to the limits."""
 MARGINS = (Margins(), Margins(1.07, 13.5, 18.0, 1.5, 1.0, 0.1), Margins(1.12, 15.0, 22.0, 2.5, 1.5, 0.2))
 
 
-def planned(first: Look, last: Look, free: NDArray[np.bool_], margins: Margins) -> tuple[Segment, ...] | None:
-    """Returns the segments with lengths and turns that meet all limits, changed as little as possible.
+class PlanPolyline(NamedTuple):
+    """A plan as a polyline."""
+
+    owner: NDArray[np.intp]
+    """Index of the segment to which each step of the polyline belongs, ``(k,)``."""
+    share: Array
+    """Fraction (0 to 1) of its segment's turn that is completed in the middle of each step, ``(k,)``."""
+    peak: Array
+    """Ratio of the largest to the mean curvature of each segment; 0 for straights."""
+
+    def walk(self, lengths: Array, turns: Array, heading: float) -> tuple[Complex, Complex]:
+        """Returns the points ``(k + 1,)`` of the polyline as x + iy, starting at the origin, and its steps
+        ``(k,)``.
+
+        Args:
+            lengths: lengths of the segments in metres.
+            turns: turning angles of the segments in radians, left positive.
+            heading: heading at the start in radians.
+        """
+        count = np.bincount(self.owner, minlength=len(lengths))
+        before = np.concatenate([[0.0], np.cumsum(turns)[:-1]])
+        angle = heading + before[self.owner] + self.share * turns[self.owner]
+        steps = (lengths / count)[self.owner] * np.exp(1j * angle)
+        return np.concatenate([[0j], np.cumsum(steps)]), steps
+
+    def slopes(self, lengths: Array, steps: Complex) -> tuple[Complex, Complex]:
+        """Returns the derivatives of all points with respect to each length and each turn, ``(k + 1, n)``
+        each.
+        """
+        n, k = len(lengths), len(steps)
+        own = self.owner[:, None] == np.arange(n)
+        behind = np.where(own, self.share[:, None], self.owner[:, None] > np.arange(n))
+        by_length, by_turn = np.zeros((k + 1, n), complex), np.zeros((k + 1, n), complex)
+        np.cumsum(own * (steps[:, None] / lengths), axis=0, out=by_length[1:])
+        np.cumsum(1j * behind * steps[:, None], axis=0, out=by_turn[1:])
+        return by_length, by_turn
+
+
+def polyline_of(segments: Sequence[Segment]) -> PlanPolyline:
+    """Returns the polyline of the plan that is built from these segments."""
+    pieces = pieces_of(segments)
+    curve = PieceCurve(0.0, 0.0, 0.0, joined(pieces))
+    step = max(SPACING, curve.length / MOST_POINTS)
+    owner, share, peak = list[int](), list[Array](), np.zeros(len(segments))
+    at, first = 0.0, 0
+    for index, segment in enumerate(segments):
+        steps = max(2, round(segment.distance / step))
+        owner += [index] * steps
+        middles = at + segment.distance * (np.arange(steps) + 0.5) / steps
+        turn = np.radians(segment.turn_degrees)
+        if abs(turn) < 1e-9:
+            share.append(np.zeros(steps))
+            first += 1
+        else:
+            entry = curve.heading(np.array([at]))
+            share.append((curve.heading(middles) - entry) / turn)
+            bent = max(max(abs(p.k0), abs(p.k1)) for p in pieces[first : first + 5] if p.length > 1e-9)
+            peak[index] = bent * segment.distance / abs(turn)
+            first += 5
+        at += segment.distance
+    return PlanPolyline(np.array(owner), np.concatenate(share), peak)
+
+
+class Aim(NamedTuple):
+    """The lengths and turns that a plan should have, and the limits that it must meet."""
+
+    lengths: Array
+    """Length of each segment in metres."""
+    turns: Array
+    """Turning angle of each segment in radians, left positive."""
+    free: NDArray[np.bool_]
+    """Whether the length and the turn of each segment may change; the others are constants."""
+    proposed: tuple[Segment, ...]
+    """The segments as proposed, with these lengths and turns."""
+    figure: PlanPolyline
+    rows: Array
+    """Matrix of the limits of lengths and turns, ``(m, 2 n)``."""
+    most: Array
+    """Right-hand sides of the limits, ``(m,)``."""
+    world: World
+    margins: Margins
+
+
+def aim_of(
+    first: Look,
+    last: Look,
+    now: tuple[Segment, ...] | None,
+    free: NDArray[np.bool_],
+    margins: Margins,
+) -> Aim:
+    """Returns the lengths and turns that a plan should have, and all limits for them.
 
     Args:
         first: the road as it was proposed.
         last: the last road that was tried; it shows how much measured values differ from written ones.
+        now: the segments found so far, which show where each segment turns; None if there are none yet.
         free: whether the length and the turn of each segment may change, ``(n,)``.
         margins: distances to keep from the limits.
-
-    Returns:
-        The segments, or None if there is no such road.
     """
     world, outline = first.requirements.world, first.requirements.outline
     proposed = first.design.segments
     lengths = np.array([s.distance for s in proposed])
     turns = np.radians([s.turn_degrees for s in proposed])
-    elements = _as_written(first, last)
-    now: tuple[Segment, ...] | None = None
-    for _ in range(ROUNDS):
-        figure = polyline_of(now or proposed)
-        rows, most = _limits_of(proposed, elements, figure.peak, outline, world, margins)
-        found = least_change(Aim(lengths, turns, free, figure, rows, most, world, margins))
-        if found is None:
-            break
-        now = _written(proposed, found.lengths, found.turns, free, world.limits.min_radius * margins.radius)
-    return now
+    figure = polyline_of(now or proposed)
+    rows, most = _limits_of(proposed, _as_written(first, last), figure.peak, outline, world, margins)
+    return Aim(lengths, turns, free, proposed, figure, rows, most, world, margins)
 
 
 def _as_written(first: Look, last: Look) -> RoadElements:
@@ -104,50 +213,6 @@ def _shifted(asked: Feature, now: RoadElement, seen: MeasuredFeature | None, fig
         )
         radius = Range(radius.lo * tightest / seen.radius, radius.hi * tightest / seen.radius)
     return replace(asked, degrees=degrees, radius=radius, length=length)
-
-
-def _written(
-    proposed: tuple[Segment, ...], lengths: Array, turns: Array, free: NDArray[np.bool_], radius: float
-) -> tuple[Segment, ...]:
-    """Returns the segments with new lengths and turns, rounded.
-
-    Radii are scaled accordingly. A radius that becomes too small is removed together with its transition, and
-    a transition that becomes too long is shortened.
-    """
-    out = []
-    for segment, length, turn, may_change in zip(proposed, lengths, turns, free, strict=True):
-        if not may_change:
-            out.append(segment)
-            continue
-        distance, degrees = (
-            _rounded(float(length), segment.distance),
-            _rounded(float(np.degrees(turn)), segment.turn_degrees),
-        )
-        update: dict[str, float | None] = {"distance": distance, "turn_degrees": degrees}
-        if segment.radius and degrees:
-            grown = segment.radius * (distance / segment.distance) * (segment.turn_degrees / degrees)
-            fits_in = grown >= radius
-            update["radius"] = (
-                ceil(grown * CENTIMETRE) / CENTIMETRE
-                if fits_in and grown != segment.radius
-                else segment.radius
-                if fits_in
-                else None
-            )
-            if not fits_in:
-                update["transition"] = None
-        transition = update.get("transition", segment.transition)
-        if degrees and not update.get("radius"):
-            most = max(distance - radius * abs(np.radians(degrees)), SHORTEST_TRANSITION)
-            if (transition or min(distance / 4, 12.0)) > most:
-                update["transition"] = floor(most * TENTH) / TENTH
-        out.append(segment.model_copy(update=update))
-    return tuple(out)
-
-
-def _rounded(value: float, before: float) -> float:
-    """Returns a value rounded to a tenth; the value before, if the difference is at most 0.5 %."""
-    return before if abs(value - before) <= 0.005 * abs(before) else round(value * TENTH) / TENTH
 
 
 class _Rows:

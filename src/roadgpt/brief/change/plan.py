@@ -8,8 +8,8 @@ or it begins with ``add``. The page docs/reference/plans.md describes the langua
 
 from collections.abc import Iterator
 
-from roadgpt.design.edit.change_parser import DOSES, MEASURES, NUMBERS, ChangeParser
-from roadgpt.design.edit.request import HALVES, SUPERLATIVES, Change, EditRequest, Place, Target
+from roadgpt.brief.change.parser import DOSES, MEASURES, NUMBERS, ChangeParser
+from roadgpt.brief.change.request import HALVES, SUPERLATIVES, Change, EditRequest, Place, Target
 from roadgpt.errors import EditError
 
 

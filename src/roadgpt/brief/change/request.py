@@ -5,7 +5,7 @@ from typing import Literal, cast
 
 from roadgpt.brief.model import Kind, Sharpness, Side, Slope
 
-Noun = Literal["turn", "straight", "end", "start", "road", "it"]
+Noun = Literal["turn", "straight", "end", "start", "road"]
 What = Literal[
     "angle",  # sharper, gentler, by or to so many degrees
     "radius",  # tighter, wider, metres
@@ -40,6 +40,10 @@ SUPERLATIVES: dict[str, tuple[Measure, int]] = {
 """The superlatives, each with its measure and 1 for the largest value or -1 for the smallest."""
 HALVES = {"half1": 1, "half2": 2}
 OF_SLOPE: frozenset[What] = frozenset({"slope", "climb"})
+REORDERS: tuple[What, ...] = ("swap", "move")
+"""Changes that put turns in another order."""
+NUMBERING: tuple[What, ...] = ("add", "remove", "count", "straighten")
+"""Changes with which a road gets other turns and straights."""
 HILLS = {"crest": 1, "dip": -1}
 """The kinds of hill that can be added, with the sign of their first slope."""
 
@@ -67,30 +71,20 @@ class Target:
     """The place of the element, as in 'the straight after the second turn'."""
     but: "Target | None" = None
     """The exceptions, as in 'all turns except the first'."""
-    indefinite: bool = False
-    """True for 'a turn': a new element, not one that is on the road."""
     count: int | None = None
     """The number of elements, as in 'two turns' (new ones) or 'the two sharpest turns'."""
     degrees: float | None = None
     """The angle, as in 'the 90 degree bend'."""
     length: float | None = None
     """The length in metres, as in 'the 40 m straight' and 'the last 80 m'."""
-    is_that: bool = False
-    """True for 'that turn': the one that was mentioned last."""
-    is_bare: bool = False
-    """True for a side without a noun, as in 'the third left'."""
     half: int | None = None
     """1 or 2 if only the first or the second half of the road is meant."""
-    is_definite: bool = True
-    """True if 'the', 'every' or a number says which elements are meant; 'left turns' alone is not
-    definite, as in 'make turns 1 and 2 left turns'.
-    """
     words: str = ""
 
     @property
-    def is_new(self) -> bool:
-        """Whether the target is to be added to the road, as in 'a turn'."""
-        return self.indefinite or (self.count is not None and not (self.numbers or self.most))
+    def is_distance(self) -> bool:
+        """Whether the target is a distance from an end of the road, as in 'the last 80 m'."""
+        return self.noun in ("start", "end") and self.length is not None
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +97,16 @@ class Place:
     how: Literal["after", "before", "from", "up_to", "between", "on", "start", "end", "middle"]
     target: Target | None = None
     other: Target | None = None
+
+    @property
+    def ends(self) -> tuple[Target, ...]:
+        """The things that the place names: none, one or two."""
+        return tuple(each for each in (self.target, self.other) if each)
+
+    @property
+    def is_of_distances(self) -> bool:
+        """Whether the place is named by distances, as in 'from station 150 on'."""
+        return any(each.is_distance for each in self.ends)
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,6 +155,41 @@ class Change:
     def slope(self) -> Slope | None:
         """The new slope, with its steepness if the request gives it, as in "steeply_up"."""
         return cast(Slope, f"{self.steepness}_{self.way}") if self.steepness else self.way
+
+    @property
+    def sign(self) -> int:
+        """1 if the new slope goes uphill, -1 if downhill, 0 if level or if the request does not say."""
+        return {"up": 1, "down": -1}.get(self.way or "", 0)
+
+    @property
+    def is_hill(self) -> bool:
+        """Whether the change adds a crest or a dip."""
+        return self.what == "add" and self.kind in HILLS
+
+    @property
+    def is_of_road(self) -> bool:
+        """Whether the change concerns the road as a whole, or a part of it, and no turn or straight."""
+        return self.target is not None and self.target.noun == "road"
+
+    @property
+    def is_state(self) -> bool:
+        """Whether the change asks for one value or direction, and for no limit and no difference."""
+        return not self.bound and not self.more and (self.to is not None or self.way is not None)
+
+    def aim(self, now: float) -> float | None:
+        """Returns the value that is asked for, directly, as a difference or as a factor of the present value
+        ``now``; None if the request gives no number.
+        """
+        if self.to is not None:
+            return self.to
+        if self.by is not None:
+            return now + self.more * self.by
+        return None if self.times is None else now * self.times
+
+    def is_outside(self, now: float) -> bool:
+        """Returns whether a value violates the limit that the change sets."""
+        assert self.to is not None
+        return (now - self.to) * self.bound < 0
 
 
 @dataclass(frozen=True, slots=True)

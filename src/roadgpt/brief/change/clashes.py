@@ -2,14 +2,8 @@
 
 from collections.abc import Sequence
 
-from roadgpt.design.edit.request import HILLS, OF_SLOPE, Change, Place, Target, What
-from roadgpt.design.edit.stretches import is_distance, is_of_distances
+from roadgpt.brief.change.request import NUMBERING, OF_SLOPE, REORDERS, Change, Place, Target
 from roadgpt.errors import EditError
-
-REORDERS: tuple[What, ...] = ("swap", "move")
-"""Changes that put turns in another order."""
-NUMBERING: tuple[What, ...] = ("add", "remove", "count", "straighten")
-"""Changes with which a road gets other turns and straights."""
 
 
 def refuse_clashes(changes: Sequence[Change]) -> None:
@@ -22,10 +16,10 @@ def refuse_clashes(changes: Sequence[Change]) -> None:
         _check_places(change)
         if change.what == "count":
             _check_count(change)
-        if is_hill(change):
+        if change.is_hill:
             _check_hill(change)
     whats = {change.what for change in changes}
-    numbering = [change for change in changes if change.what in NUMBERING and not is_hill(change)]
+    numbering = [change for change in changes if change.what in NUMBERING and not change.is_hill]
     counts = [change for change in changes if change.what == "count"]
     if counts and len(numbering) > 1:
         raise clash(counts[0], next(change for change in numbering if change is not counts[0]))
@@ -36,18 +30,13 @@ def refuse_clashes(changes: Sequence[Change]) -> None:
     far = [change for change in sloped if change.target and _is_by_distance(change.target)]
     if far and (numbering or moves):
         raise clash(far[0], (numbering or moves)[0])
-    hills = [change for change in changes if is_hill(change)]
+    hills = [change for change in changes if change.is_hill]
     if hills and whats & {*OF_SLOPE, *REORDERS}:
         raise clash(hills[0], next(each for each in changes if each.what in (*OF_SLOPE, *REORDERS)))
 
 
 def _is_by_distance(target: Target) -> bool:
-    return is_distance(target) or is_of_distances(target.place)
-
-
-def is_hill(change: Change) -> bool:
-    """Returns whether a change adds a crest or a dip."""
-    return change.what == "add" and change.kind in HILLS
+    return target.is_distance or (target.place is not None and target.place.is_of_distances)
 
 
 def clash(one: Change, other: Change) -> EditError:
@@ -96,30 +85,23 @@ def _check_places(change: Change) -> None:
         _refuse_distances(place)
     if target is None:
         return
-    for distance in (target, *_ends(target.place)):
-        if is_distance(distance) and (distance.length or 0) < 0:
+    for distance in (target, *(target.place.ends if target.place else ())):
+        if distance.is_distance and (distance.length or 0) < 0:
             raise EditError(f"'{distance.words}' is no distance; give metres from 0 on")
-    if is_distance(target) and target != Target(target.noun, length=target.length, words=target.words):
+    if target.is_distance and target != Target(target.noun, length=target.length, words=target.words):
         raise EditError(f"'{target.words}' is a distance, which stands alone; leave the other words out")
-    if target.noun == "road" and is_of_distances(target.place):
-        _check_distances(target)
+    if target.noun == "road" and target.place and target.place.is_of_distances:
+        _check_distances(target, target.place)
     else:
         _refuse_distances(target.place)
     _refuse_distances(Place("on", target.but))
 
 
-def _ends(place: Place | None) -> tuple[Target, ...]:
-    """Returns the targets that a place names."""
-    return tuple(each for each in (place.target, place.other) if each) if place else ()
-
-
-def _check_distances(target: Target) -> None:
+def _check_distances(target: Target, place: Place) -> None:
     """Checks a part of the road whose ends are named by their distances from the start or the end."""
-    place = target.place
-    assert place is not None
-    ends = (place.target, place.other)[: 2 if place.how == "between" else 1]
     is_plain = target == Target("road", place=place, words=target.words)
-    if not is_plain or place.how == "on" or not all(map(is_distance, ends)):
+    is_plain = is_plain and len(place.ends) == (2 if place.how == "between" else 1)
+    if not is_plain or place.how == "on" or not all(end.is_distance for end in place.ends):
         raise EditError(
             f"'{target.words}' mixes distances with other words; write for example: "
             "road between(start len=50, start len=100)"
@@ -132,8 +114,8 @@ def _refuse_distances(place: Place | None) -> None:
     Raises:
         EditError: a distance is named.
     """
-    for target in _ends(place):
-        if is_distance(target):
+    for target in place.ends if place else ():
+        if target.is_distance:
             raise EditError(
                 f"'{target.words}' is a distance, which cannot name a place; name a turn or a straight"
             )

@@ -4,8 +4,7 @@ import re
 from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
-from roadgpt.brief.model import Kind, Sharpness, Side
-from roadgpt.design.edit.request import (
+from roadgpt.brief.change.request import (
     HALVES,
     MUCH,
     SLIGHTLY,
@@ -16,6 +15,7 @@ from roadgpt.design.edit.request import (
     Target,
     Way,
 )
+from roadgpt.brief.model import Kind, Sharpness, Side
 from roadgpt.errors import EditError
 
 TOKEN = re.compile(r"\s*(?:(half[12]|[a-z_]+)|(-?\d+(?:\.\d+)?)|(\.\.|[;:,()=+%-]))")
@@ -178,7 +178,7 @@ class ChangeParser:
             raise self._error(kind)
         noun: Any = "straight" if kind == "straight" else "turn"
         own = cast(Kind, kind) if kind in KINDS else None
-        change = Change("add", Target(noun, indefinite=True, words=kind), kind=own)
+        change = Change("add", Target(noun, words=kind), kind=own)
         fields: dict[str, Any] = {}
         while word := self._next():
             self.at += 1

@@ -1,19 +1,34 @@
-"""Reads change requests with RoadGPT's neural network, and returns each as an EditRequest. Main function:
-``read_request``.
+"""Reads a change request, such as "make the second turn wider", and returns it as an EditRequest.
+
+``read_request`` reads words with RoadGPT's neural network; ``plan.read_change_plan`` reads plans. Which turns
+and straights of a road a request refers to is found by ``design.edit``.
 """
 
 from dataclasses import replace
 from functools import cache
 
+from roadgpt.brief.change.clashes import refuse_clashes
+from roadgpt.brief.change.plan import change_plan, read_change_plan
+from roadgpt.brief.change.request import EditRequest
 from roadgpt.brief.readers.model import ModelReader
 from roadgpt.brief.refusal import MOST_CHARACTERS, causes_of
-from roadgpt.design.edit.change_plan import change_plan, read_change_plan
-from roadgpt.design.edit.request import EditRequest
 from roadgpt.errors import BriefError, EditError
 
 ADVICE = "say for example: make the second turn sharper"
 SHOWN = 60
 """The largest number of letters of a request that a message repeats."""
+
+
+def checked_request(words: str | EditRequest) -> EditRequest:
+    """Returns a change request, read from its words if need be, whose changes can all be made at once.
+
+    Raises:
+        EditError: the words cannot be read, as for ``read_request``; a change does not fit its place; or two
+            changes need separate requests.
+    """
+    request = read_request(words) if isinstance(words, str) else words
+    refuse_clashes(request.changes)
+    return request
 
 
 def read_request(words: str) -> EditRequest:
@@ -64,3 +79,6 @@ def _refusal(words: str, plan: str) -> EditError:
             return EditError(f"'{shown}' does not say what is to change where; {ADVICE}")
         case _:
             return EditError(f"'{shown}' is no change of a road that I know; {ADVICE}")
+
+
+__all__ = ["EditRequest", "checked_request", "read_request"]

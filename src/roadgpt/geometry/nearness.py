@@ -1,0 +1,35 @@
+"""Finds the points at which a line in the plane comes near to itself. Main function: ``meeting``."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from roadgpt.geometry.curve import Array
+
+Complex = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+
+
+def meeting(
+    z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float, neighbours: float
+) -> tuple[Indices, Indices]:
+    """Returns the pairs of points, one on a line and one on its earlier part, that are closer than ``apart``.
+
+    Args:
+        z: points as x + iy in metres, ``(n,)``.
+        s: stations of these points in metres, ``(n,)``.
+        earlier: points of the earlier part, ``(m,)``; ``z`` again to compare a line with itself.
+        earlier_s: stations of the earlier points in metres, ``(m,)``.
+        apart: distance in metres.
+        neighbours: only pairs count in which the point of ``z`` is farther along the line by more than this,
+            in metres.
+
+    Returns:
+        Indices of the points of ``z`` and of the points of ``earlier``, both of shape ``(number of pairs,)``.
+    """
+    x, y = earlier.real, earlier.imag
+    near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
+    here = np.flatnonzero(near_x & (y > z.imag.min() - apart) & (y < z.imag.max() + apart))
+    dx, dy = z.real[:, None] - x[here], z.imag[:, None] - y[here]
+    near = dx * dx + dy * dy < apart * apart
+    of_z, of_earlier = np.nonzero(near & (s[:, None] - earlier_s[here] > neighbours))
+    return of_z, here[of_earlier]
