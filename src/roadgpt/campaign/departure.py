@@ -57,7 +57,7 @@ class RoadStations(NamedTuple):
     """Standard deviation of the wheels' angle from the start to each station, radians, ``(m,)``."""
 
 
-class Departure(NamedTuple):
+class DepartureForecast(NamedTuple):
     """Predictions for n roads."""
 
     chance: Array
@@ -112,7 +112,7 @@ class DepartureModel:
             leaves[-1][-1] = end is not None
         self._weights = logistic(np.concatenate(rows), np.concatenate(leaves))
 
-    def predict(self, roads: Sequence[RoadStations]) -> Departure:
+    def predict(self, roads: Sequence[RoadStations]) -> DepartureForecast:
         """Returns the predictions for n roads."""
         counts = np.array([len(road.s) for road in roads])
         starts = np.cumsum(counts) - counts
@@ -127,7 +127,7 @@ class DepartureModel:
         mean = np.add.reduceat(share * steering, starts) / np.maximum(chance, 1e-12)
         ends = starts + counts
         tops = [a + int(share[a:b].argmax()) for a, b in zip(starts, ends, strict=True)]
-        return Departure(chance, mean, steering[tops])
+        return DepartureForecast(chance, mean, steering[tops])
 
 
 def logistic(rows: Array, leaves: Array) -> Array:

@@ -174,8 +174,8 @@ class QualityDiversity:
         if sum(results[at].failed for at in told) < FEWEST_FAILURES:
             return known, fresh
         places = DepartureModel([looks[at].stations for at in told], [results[at].at_s for at in told])
-        both = (places.predict([one.stations for one in some]).table() for some in (looks, sketches))
-        return tuple(np.concatenate(pair, axis=1) for pair in zip((known, fresh), both, strict=True))
+        here, there = (places.predict([one.stations for one in some]).table() for some in (looks, sketches))
+        return np.concatenate([known, here], axis=1), np.concatenate([fresh, there], axis=1)
 
     def _cells(self, archive: Archive, opinions: Array, sketches: Sequence[Sketch]) -> NDArray[np.intp]:
         """Returns the cells ``(trees, n)`` of a map that the trees predict for n sketches."""
