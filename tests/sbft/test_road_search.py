@@ -34,6 +34,7 @@ class SteeringRecord(NamedTuple):
 
     steering: float
     oob_distance: float
+    pos: tuple[float, float, float] | None = None
 
 
 def tight_right(points: np.ndarray) -> float:
@@ -118,15 +119,17 @@ import json, sys
 sys.path.insert(0, sys.argv[1])
 import roadgpt_client
 from collections import namedtuple
-Record = namedtuple("Record", "steering oob_distance")
+Record = namedtuple("Record", "steering oob_distance pos")
 generator = roadgpt_client.RoadGPTTestGenerator(map_size=200)
 generator.description, generator.reader, generator.seed = sys.argv[2], "plan", 4
 roads = []
 for points in generator.roads():
     roads.append(points)
-    if len(roads) == 7:  # the last two are chosen by outcomes
+    if len(roads) == 12:  # the last two are chosen by outcomes and places
         break
-    generator.tell("FAIL", [Record(30.0 * (i % 7), -1.0) for i in range(30)])
+    x, y = points[len(points) // 2]
+    size, outcome = 10.0 * (1 + len(roads) % 5), "FAIL" if len(roads) % 3 else "PASS"
+    generator.tell(outcome, [Record(size * (i % 7), -1.0 - (i == 20), (x + i - 20, y, 0)) for i in range(30)])
 print(json.dumps(roads))
 """
 
@@ -138,10 +141,24 @@ def test_outcomes_reach_it_from_another_interpreter(tmp_path: Path) -> None:
     env = {**os.environ, "ROADGPT_PYTHON": sys.executable}
     done = subprocess.run(words, env=env, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
+    told, untold = (roads_of_12(with_place) for with_place in (True, False))
+    assert json.loads(done.stdout) == told
+    assert told[:10] == untold[:10]
+    assert told[10:] != untold[10:]  # where the car left its lane is learnt, too
+
+
+def roads_of_12(with_place: bool) -> list[list[list[float]]]:
+    """Roads of a generator here that is told what CLIENT tells, with or without the places."""
     generator = RoadGPTTestGenerator(None, 200)
     generator.description, generator.reader, generator.seed = FLAT, "plan", 4
     roads = []
-    for points in islice(generator.roads(), 7):
+    for points in islice(generator.roads(), 12):
         roads.append([[x, y] for x, y in points])
-        generator.tell("FAIL", [SteeringRecord(30.0 * (i % 7), -1.0) for i in range(30)])
-    assert json.loads(done.stdout) == roads
+        x, y = points[len(points) // 2]
+        size, outcome = 10.0 * (1 + len(roads) % 5), "FAIL" if len(roads) % 3 else "PASS"
+        records = []
+        for i in range(30):
+            place = (x + i - 20, y, 0.0) if with_place else None
+            records.append(SteeringRecord(size * (i % 7), -1.0 - (i == 20), place))
+        generator.tell(outcome, records)
+    return roads

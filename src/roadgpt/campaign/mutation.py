@@ -57,12 +57,10 @@ def mutated(elements: Elements, rng: Rng, world: World, numeric: float = 0.0) ->
         world: determines the limits of radii and grades.
         numeric: probability, 0 to 1, that only lengths, angles, radii and slopes change.
     """
-    names = [name for name, change in MUTATIONS.items() if change.is_numeric]
-    if rng.random() >= numeric:
-        names = list(MUTATIONS)
-    weights = np.array([MUTATIONS[name].weight for name in names])
-    for number in rng.choice(len(names), size=1 + rng.integers(3), p=weights / weights.sum()):
-        elements = MUTATIONS[names[int(number)]].make(elements, rng, world)
+    some = NUMERIC_ONES if rng.random() < numeric else [*MUTATIONS.values()]
+    weights = np.array([one.weight for one in some])
+    for number in rng.choice(len(some), size=1 + rng.integers(3), p=weights / weights.sum()):
+        elements = some[int(number)].make(elements, rng, world)
     return elements
 
 
@@ -279,6 +277,7 @@ MUTATIONS: dict[str, Mutation] = {
     "mirrored": Mutation(lambda elements, rng, world: mirrored(elements), 0.5, False),
     "backwards": Mutation(_backwards, 0.5, False),
 }
+NUMERIC_ONES = [one for one in MUTATIONS.values() if one.is_numeric]
 
 
 def _transition(rng: Rng) -> float:

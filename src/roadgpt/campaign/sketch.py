@@ -6,13 +6,17 @@ A sketch takes about a tenth of the time of a candidate, because no road is buil
 a search can compare many sketches, and build only the roads that it wants to drive.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
 from roadgpt.brief.element import Elements
+from roadgpt.brief.model import Brief
 from roadgpt.brief.outline import outline
+from roadgpt.brief.words import Range
 from roadgpt.campaign.behaviour import behaviour_of_line
+from roadgpt.campaign.departure import RoadStations, stations_of
 from roadgpt.campaign.mutation import redrawn, varied
 from roadgpt.campaign.surrogate_features import RoadSamples, features_of_samples
 from roadgpt.campaign.variation import (
@@ -22,7 +26,7 @@ from roadgpt.campaign.variation import (
     VariationContext,
     VariationTask,
     candidate,
-    drafted,
+    draft,
     room_for,
     validated,
 )
@@ -50,6 +54,8 @@ class Sketch(NamedTuple):
     """Features of the road that are known without a drive, by name."""
     surrogate_features: Array
     """Input features of the surrogate model, ``(n,)``."""
+    stations: RoadStations
+    """The road at the places where the car may leave its lane."""
 
 
 def sketch(task: VariationTask) -> Sketch | None:
@@ -58,13 +64,13 @@ def sketch(task: VariationTask) -> Sketch | None:
     """
     rng = np.random.default_rng(task.seed)
     if task.kind == "wild":
-        found = drafted(task.setting, rng)
-        parents = [elements_of(found[0].segments)] if found else []
+        found = draft(task.setting, rng)
+        parents = [elements_of(found.segments)] if found else []
         if parents and rng.random() < ANEW:
             parents = [redrawn(parents[0], rng, task.setting.world)]
     else:
         parents = [elements_of(design.segments) for design in task.parents]
-    asked = outline(task.setting.brief or NOBODY).turns
+    asked = _turns_of(task.setting.brief or NOBODY)
     for attempt in range(TRIES if parents else 0):
         numeric = task.numeric if attempt < BOLD else NUMERIC[1]
         elements = varied(parents, rng, task.setting.world, numeric, ROUNDS if task.kind == "wild" else 1)
@@ -103,6 +109,11 @@ def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
     return candidate(*found, one.origin) if found else None
 
 
+@lru_cache(maxsize=16)  # every sketch of a cell asks
+def _turns_of(brief: Brief) -> Range:
+    return outline(brief).turns
+
+
 def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: VariationContext) -> Sketch:
     line, where = room.line, room.place
     knots, bends, length = bends_of(room.elements)
@@ -115,4 +126,6 @@ def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: Variat
     climb = np.concatenate([[0.0], np.cumsum(grade[:-1] * np.diff(line.s))])
     points = np.stack([plan.real + where.x, plan.imag + where.y, climb], axis=1)
     features = behaviour_of_line(points, setting.axes, setting.brief)
-    return Sketch(elements, where, origin, features, features_of_samples(samples, setting.world))
+    world = setting.world
+    seen = features_of_samples(samples, world)
+    return Sketch(elements, where, origin, features, seen, stations_of(samples, world))

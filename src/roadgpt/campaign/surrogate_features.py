@@ -90,14 +90,14 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
     kept = (samples.s >= STARTING) & (samples.s <= length - ENDING)
     if np.count_nonzero(kept) < 2:
         kept = np.ones(len(samples.s), bool)
-    all_of_lane = samples.curvature / np.maximum(1 - samples.middle * samples.curvature, TIGHTEST)
+    all_of_lane = lane_curvature(samples)
     lane, grade = all_of_lane[kept], samples.grade[kept]
-    means = [_mean(lane, window) for window in WINDOWS]
-    crest = -np.gradient(_mean(grade, WINDOWS[1]))
+    means = [moving_mean(lane, window) for window in WINDOWS]
+    crest = -np.gradient(moving_mean(grade, WINDOWS[1]))
     tight = int(np.abs(means[1]).argmax())
     there = slice(max(tight - AROUND, 0), tight + AROUND)
     size = np.abs(means[1])
-    steering = _steering(samples.s, all_of_lane, world)
+    steering = steering_so_far(samples.s, all_of_lane, world)
     rush = _rush(samples.s, all_of_lane, world)[kept]
     places = [int(np.flatnonzero(kept)[i]) for i in (*_places(means[2]), rush.argmax(), rush.argmin())]
     return np.array(
@@ -122,6 +122,11 @@ def features_of_samples(samples: RoadSamples, world: World) -> NDArray[np.float6
     )
 
 
+def lane_curvature(samples: RoadSamples) -> Array:
+    """Returns the curvature in 1/m of the middle of the driven lane at each sample."""
+    return samples.curvature / np.maximum(1 - samples.middle * samples.curvature, TIGHTEST)
+
+
 def _places(lane: Array) -> tuple[int, int, int]:
     """Returns where a car may leave its lane: the tightest place to the left and to the right, and the first
     that is nearly as tight as the tightest.
@@ -130,11 +135,11 @@ def _places(lane: Array) -> tuple[int, int, int]:
     return int(lane.argmax()), int(lane.argmin()), int((size >= NEARLY * size.max()).argmax())
 
 
-def _steering(s: Array, lane: Array, world: World) -> Array:
+def steering_so_far(s: Array, lane: Array, world: World) -> Array:
     """Returns the standard deviation over time of the wheels' angle from the start to each sample, in
     radians.
     """
-    speed = np.sqrt(np.maximum(_squared_speed(s, lane, world, SPEEDING_UP), 1.0))
+    speed = np.sqrt(np.maximum(squared_speed(s, lane, world, SPEEDING_UP), 1.0))
     angle = np.arctan(WHEELBASE * lane)
     time = np.cumsum(1 / speed)
     mean, square = np.cumsum(angle / speed) / time, np.cumsum(angle**2 / speed) / time
@@ -145,12 +150,12 @@ def _rush(s: Array, lane: Array, world: World) -> Array:
     """Returns the lateral acceleration in m/s^2, positive to the left, of a car that accelerates gently and
     does not brake before a bend.
     """
-    square = _squared_speed(s, lane, world, GENTLY)
+    square = squared_speed(s, lane, world, GENTLY)
     entering = np.concatenate([np.zeros(min(ENTERING, len(s))), square[:-ENTERING]])
-    return entering * _mean(lane, WINDOWS[1])
+    return entering * moving_mean(lane, WINDOWS[1])
 
 
-def _squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> Array:
+def squared_speed(s: Array, lane: Array, world: World, acceleration: float) -> Array:
     """Returns the square of the speed in m^2/s^2 of a car that starts from rest, accelerates as far as the
     bend at each place allows, and brakes at once.
     """
@@ -173,7 +178,7 @@ def hazard_of(signs: Sequence[Array]) -> Array:
     return np.asarray(table[:, columns].max(axis=1))
 
 
-def _mean(values: Array, window: int) -> Array:
+def moving_mean(values: Array, window: int) -> Array:
     """Returns the moving average over ``window`` values; the first and last values are repeated beyond the
     ends."""
     half = window // 2

@@ -87,7 +87,8 @@ def make_candidate(task: VariationTask) -> Candidate | None:
     if task.kind == "between":
         found = _between(task)
     elif task.kind == "draft":
-        found = drafted(setting, rng)
+        design = draft(setting, rng)
+        found = validated(design, setting) if design else None
     else:
         found = _changed([elements_of(design.segments) for design in task.parents], setting, rng)
     return candidate(*found, task.origin) if found else None
@@ -106,13 +107,12 @@ def _changed(
     return None
 
 
-def drafted(setting: VariationContext, rng: np.random.Generator) -> tuple[Design, Road] | None:
-    """Returns a draft of the planner; None if no valid road could be designed."""
+def draft(setting: VariationContext, rng: np.random.Generator) -> Design | None:
+    """Returns a draft of the planner, which the competition may reject; None if no road could be designed."""
     try:
-        design = draft_road(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
+        return draft_road(setting.brief or NOBODY, setting.world, seed=int(rng.integers(2**53)))
     except DesignError:
         return None
-    return validated(design, setting)
 
 
 def _between(task: VariationTask) -> tuple[Design, Road] | None:

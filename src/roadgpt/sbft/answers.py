@@ -132,12 +132,14 @@ def another() -> Points:
     return [list(point) for point in road]
 
 
-def tell(outcome: str, steering: list[float], distances: list[float]) -> None:
+def tell(
+    outcome: str, steering: list[float], distances: list[float], outside: list[float] | None = None
+) -> None:
     """Reports the outcome of the last road that ``another`` returned, as ``tell_columns`` of
     RoadGPTTestGenerator does. Has no effect before ``begin``.
     """
     if _ASKED:
-        _ASKED[0][0].tell_columns(outcome, steering, distances)
+        _ASKED[0][0].tell_columns(outcome, steering, distances, outside)
 
 
 def distance(one: Any, other: Any) -> float:

@@ -76,7 +76,7 @@ class RoadGPTTestGenerator:
         self.search = _yes_or_no(os.environ.get("ROADGPT_SEARCH"), self.search)
         if self.oob_tolerance is None:
             self.oob_tolerance = getattr(executor, "oob_tolerance", None)
-        self._told: Callable[[str, Sequence[float], Sequence[float]], None] = _unheard
+        self._told: Callable[[str, Sequence[float], Sequence[float], Sequence[float] | None], None] = _unheard
 
     def start(self) -> None:
         """Submits tests to the executor, one after another, until the budget is used up.
@@ -101,20 +101,30 @@ class RoadGPTTestGenerator:
 
         Args:
             outcome: "PASS", "FAIL" or another outcome of the competition.
-            records: the execution data of the drive; each record has ``steering`` and ``oob_distance``.
+            records: the execution data of the drive; each record has ``steering`` and ``oob_distance``, and
+                should have ``pos``.
         """
         steering = [float(record.steering) for record in records or ()]
-        self.tell_columns(outcome, steering, [float(record.oob_distance) for record in records or ()])
+        distances = [float(record.oob_distance) for record in records or ()]
+        outside = min(records, key=lambda record: float(record.oob_distance)) if records else None
+        self.tell_columns(outcome, steering, distances, getattr(outside, "pos", None))
 
-    def tell_columns(self, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+    def tell_columns(
+        self,
+        outcome: str,
+        steering: Sequence[float],
+        distances: Sequence[float],
+        outside: Sequence[float] | None = None,
+    ) -> None:
         """Reports the outcome of the last road as ``tell`` does, with the records as two columns.
 
         Args:
             outcome: as for ``tell``.
             steering: angle of the steering wheel in each record, degrees.
             distances: ``oob_distance`` of each record, metres.
+            outside: position ``[x, y]`` of the record with the smallest ``oob_distance``, if known.
         """
-        self._told(outcome, steering, distances)
+        self._told(outcome, steering, distances, outside)
 
     def roads(self) -> Iterator[Points]:
         """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
@@ -212,6 +222,8 @@ def _chat(made: RoadGPTTestGenerator) -> Any:
     return configured({}) if any(map(asks_a_model, parts)) else None
 
 
-def _unheard(outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+def _unheard(
+    outcome: str, steering: Sequence[float], distances: Sequence[float], outside: Sequence[float] | None
+) -> None:
     """Takes an outcome from which nobody learns."""
-    del outcome, steering, distances
+    del outcome, steering, distances, outside

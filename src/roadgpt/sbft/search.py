@@ -87,7 +87,14 @@ class RoadSearch:
             raise DesignError("no road was found that keeps the description; ask for less")
         self._waiting.extend(found)
 
-    def tell(self, number: int, outcome: str, steering: Sequence[float], distances: Sequence[float]) -> None:
+    def tell(
+        self,
+        number: int,
+        outcome: str,
+        steering: Sequence[float],
+        distances: Sequence[float],
+        outside: Sequence[float] | None = None,
+    ) -> None:
         """Receives the outcome of a test.
 
         Args:
@@ -98,6 +105,8 @@ class RoadSearch:
             steering: angle of the steering wheel in degrees at each record of the drive.
             distances: distance in metres from the car's middle to the edge of its lane at each record,
                 negative outside (``oob_distance`` of the competition).
+            outside: where the car was farthest outside, ``[x, y]`` in metres; None if this is not known, and
+                then the search learns less of where the car fails.
         """
         asked = self._asked.pop(number, None)
         if asked is None or outcome not in ("PASS", "FAIL") or len(distances) < FEWEST_RECORDS:
@@ -112,6 +121,7 @@ class RoadSearch:
                 blank,
                 outcome="FAIL" if outcome == "FAIL" else "PASS",
                 length=road.length,
+                at_s=float(road.locate(*outside[:2])[0]) if outcome == "FAIL" and outside else None,
                 margin=min(margin, -1e-3) if outcome == "FAIL" else max(margin, 1e-3),
                 features=features,
             )

@@ -19,6 +19,7 @@ from roadgpt.campaign.acquisition import Predictions, is_far, select, spread_out
 from roadgpt.campaign.archive import Archive
 from roadgpt.campaign.behaviour import DRIVEN
 from roadgpt.campaign.boundary_pairs import paired
+from roadgpt.campaign.departure import FEWEST_FAILURES, DepartureModel
 from roadgpt.campaign.model import GOALS, Cell, Goal, Pool, Proposal, Result
 from roadgpt.campaign.search import (
     batch_rng,
@@ -30,7 +31,7 @@ from roadgpt.campaign.search import (
 )
 from roadgpt.campaign.sketch import Sketch, candidate_of, sketch, sketch_of
 from roadgpt.campaign.surrogate import FEWEST, MOST, TREES, Surrogate, target_of
-from roadgpt.campaign.surrogate_features import STEERING, hazard_of
+from roadgpt.campaign.surrogate_features import NAMES, STEERING, hazard_of
 from roadgpt.campaign.variation import NUMERIC, Candidate, Kind, VariationTask
 from roadgpt.design.elements import elements_of
 from roadgpt.design.variety import PlanShape
@@ -156,12 +157,25 @@ class QualityDiversity:
 
     def _expected(self, sketches: Sequence[Sketch]) -> Predictions:
         """Returns the predictions of the surrogate's trees for sketches."""
-        outcomes = [self._outcome(self._results[number]) for number in self._looks]
-        guesses = {1 + self._driven.index("STD_SA"): STEERING} if "STD_SA" in self._driven else {}
-        model = Surrogate([one.surrogate_features for one in self._looks.values()], outcomes, guesses)
-        opinions = model.opinions([one.surrogate_features for one in sketches])
+        results = [self._results[number] for number in self._looks]
+        known, fresh = self._seen(results, sketches)
+        columns = (*STEERING, *range(len(NAMES), known.shape[1] - 1))
+        guesses = {1 + self._driven.index("STD_SA"): columns} if "STD_SA" in self._driven else {}
+        model = Surrogate([*known], [self._outcome(result) for result in results], guesses)
+        opinions = model.opinions([*fresh])
         cells = tuple(self._cells(each, opinions, sketches) for each in self._maps)
         return Predictions(opinions[..., 0], cells)
+
+    def _seen(self, results: Sequence[Result], sketches: Sequence[Sketch]) -> tuple[Array, Array]:
+        """Returns what the trees see of the driven roads, and of sketches: a row for each road."""
+        looks = [*self._looks.values()]
+        known, fresh = (np.array([one.surrogate_features for one in some]) for some in (looks, sketches))
+        told = [at for at, one in enumerate(results) if not one.failed or one.at_s is not None]
+        if sum(results[at].failed for at in told) < FEWEST_FAILURES:
+            return known, fresh
+        places = DepartureModel([looks[at].stations for at in told], [results[at].at_s for at in told])
+        here, there = (places.predict([one.stations for one in some]).table() for some in (looks, sketches))
+        return np.concatenate([known, here], axis=1), np.concatenate([fresh, there], axis=1)
 
     def _cells(self, archive: Archive, opinions: Array, sketches: Sequence[Sketch]) -> NDArray[np.intp]:
         """Returns the cells ``(trees, n)`` of a map that the trees predict for n sketches."""

@@ -195,8 +195,13 @@ class ClientTestGenerator:
         """Reports the outcome of the last road and its execution data, so that the search learns from it."""
         steering = [float(record.steering) for record in records or ()]
         distances = [float(record.oob_distance) for record in records or ()]
+        outside = min(records, key=lambda record: float(record.oob_distance)) if records else None
+        place = getattr(outside, "pos", None)
+        told = {"outcome": outcome, "steering": steering, "distances": distances}
+        if place is not None:
+            told["outside"] = [float(value) for value in place[:2]]
         if self._roadgpt is not None:
-            self._roadgpt.ask("tell", outcome=outcome, steering=steering, distances=distances)
+            self._roadgpt.ask("tell", **told)
 
     def roads(self) -> Iterator[Points]:
         """Yields roads without end, each as its control points in metres. The points are at most 2 m apart,
