@@ -2,6 +2,7 @@
 
 import re
 
+from roadgpt.brief.amount import exactly
 from roadgpt.brief.junctions import JunctionClause
 from roadgpt.brief.model import Brief
 from roadgpt.brief.readers.model.numerals import plain
@@ -40,6 +41,21 @@ JOINED = re.compile(
     r"(?:on ?-? ?ramp|slip road|ramp|entry|entrance)[^.;]{0,20}? (?:come|join|merge|run|feed|enter)\w*\b"
 )
 """The route is on the motorway first, and a ramp joins it."""
+COUNTS = {
+    **dict.fromkeys(("2", "two", "zwei", "deux", "dos", "due"), 2),
+    **dict.fromkeys(("3", "three", "drei", "trois", "tres", "tre"), 3),
+    **dict.fromkeys(("4", "four", "vier", "quatre", "cuatro", "quattro"), 4),
+}
+NUMBER = f"({'|'.join(COUNTS)})"
+ONTO_LANES = re.compile(
+    rf"\b(?:on ?to|join\w*|enter\w*|into) (?:an?|the|my) {NUMBER} ?-? ?laned? "
+    r"(?:motorway|freeway|highway|interstate)\b|"
+    rf"\bauf (?:eine|die) {NUMBER}spurige autobahn\b|"
+    rf"\b(?:sur|rejoin\w+) (?:une |l ?' ?)autoroute a {NUMBER} voies\b|"
+    rf"\ba (?:una|la) auto(?:pista|via) de {NUMBER} carriles\b|"
+    rf"\b(?:in|su|nell?'? ?)(?: ?una?'? ?)? ?autostrada a {NUMBER} corsie\b"
+)
+"""Words that give the number of lanes of the motorway that a route joins."""
 LEAVES = re.compile(
     r"\b(?:leav\w*|off|come off|get off|take|taking|turn|exits? (?:there|again|right|left)|verlass\w*|"
     r"(?:fahr\w*|geh\w*) [^.;]*\b(?:ab|raus|runter)|abfahren|ausfahren|herunter|nehm\w*|nimm\w*|genommen|"
@@ -70,11 +86,17 @@ def with_motorway_behind_ramp(brief: Brief, words: str) -> Brief:
     - If the route comes from a ramp, what is said of a motorway before the merge is true of the road behind
       it, unless that road has other lanes.
     - If the route is on the motorway while a ramp joins it, it does not come from the ramp.
+    - If the words give the lanes of the motorway that it joins, the road behind the ramp has them.
     """
     merges = [n for n, each in enumerate(brief.junctions) if each.kind == "merge"]
     if merges != [0]:
         return brief
     merge, (before, behind, *roads) = brief.junctions[0], brief.stretches
+    onto = ONTO_LANES.search(plain(words))
+    if onto is not None and merge.take == "ramp" and not before.motorway and behind.lanes is None:
+        lanes = exactly(COUNTS[next(filter(None, onto.groups()))])
+        behind = behind.model_copy(update={"motorway": True, "lanes": lanes})
+        return brief.model_copy(update={"stretches": (before, behind, *roads)})
     if JOINED.search(plain(words)) and merge.take != "main":
         junctions = (merge.model_copy(update={"take": "main"}), *brief.junctions[1:])
         has_lanes = before.motorway or before.lanes is not None

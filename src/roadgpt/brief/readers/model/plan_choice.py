@@ -24,6 +24,7 @@ from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.other_roads import with_other_roads
 from roadgpt.brief.readers.model.own_lane import with_each_lane, without_own_lane
 from roadgpt.brief.readers.model.ramp_lengths import with_distances_to_exits, with_ramp_lengths
+from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 from roadgpt.brief.readers.model.side_roads import with_sides_of_side_roads
 from roadgpt.brief.readers.model.slots import SlottedText
 from roadgpt.brief.readers.model.test_time_augmentation import ScoredPlan
@@ -110,7 +111,7 @@ def brief_of(line: str, text: SlottedText, words: str) -> Brief:
     brief = with_ramp_lengths(with_distances_to_exits(with_counted_junctions(brief, text), text), text)
     brief = with_whole_length(with_counted_signs(with_counted_map(brief, text), text), text)
     brief = _with_listed_hills(with_each_lane(brief))
-    brief = _with_turns_by_degrees(with_told_arms(brief, text))
+    brief = _with_turns_by_degrees(with_sharp_side(with_told_arms(brief, text), words))
     brief = with_stay_on_motorway(without_own_lane(with_told_letter(brief, text), words), words)
     brief = with_motorway_behind_ramp(brief, words)
     brief = with_distances_from_start(brief, words)

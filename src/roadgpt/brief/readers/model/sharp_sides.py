@@ -1,0 +1,30 @@
+"""Reads "sharp left" and "sharp right" at a skew crossroads."""
+
+import re
+
+from roadgpt.brief.model import Brief
+from roadgpt.brief.readers.model.numerals import plain
+
+SHARP = re.compile(
+    r"\bsharp(?:ly|est)? (left|right)\b(?! (?:bend|curve|corner|hairpin))|"
+    r"\bscharf (?:nach )?(links|rechts)\b|\bspitz (?:nach )?(links|rechts)\b|"
+    r"\b(?:serre|franchement) a (gauche|droite)\b|"
+    r"\bbruscamente a la (izquierda|derecha)\b|\bbruscamente a (sinistra|destra)\b"
+)
+LEFT = ("left", "links", "gauche", "izquierda", "sinistra")
+
+
+def with_sharp_side(brief: Brief, words: str) -> Brief:
+    """Returns the Brief of a route that turns sharply at its only junction, if that is a skew crossroads and
+    the words say "sharp" of the side that the route takes; else the Brief unchanged.
+    """
+    said = SHARP.search(plain(words))
+    if said is None or len(brief.junctions) != 1:
+        return brief
+    junction = brief.junctions[0]
+    side = "left" if next(filter(None, said.groups())) in LEFT else "right"
+    if junction.kind != "crossroads" or not (junction.skew or junction.angle) or junction.take != side:
+        return brief
+    take = "sharp_left" if side == "left" else "sharp_right"
+    sharp = junction.model_copy(update={"take": take})
+    return brief.model_copy(update={"junctions": (sharp,)})

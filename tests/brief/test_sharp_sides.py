@@ -1,0 +1,43 @@
+"""Sharp sides at skew crossroads, and the lanes of the motorway that a route joins."""
+
+import pytest
+
+from roadgpt.brief.plan import read_plan
+from roadgpt.brief.readers.model.exit_words import with_motorway_behind_ramp
+from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
+
+
+@pytest.mark.parametrize(
+    ("words", "plan", "wanted"),
+    [
+        ("turn sharp left at the skew crossroads", "crossroads left skew", "crossroads sharp_left skew"),
+        ("an der schiefen Kreuzung scharf rechts", "crossroads right skew", "crossroads sharp_right skew"),
+        ("sharply right", "crossroads right angle=60", "crossroads sharp_right angle=60"),
+        ("a sharp left bend, left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
+        ("sharp right, then left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
+        ("turn sharp left at the crossroads", "crossroads left", "crossroads left"),
+    ],
+)
+def test_a_sharp_side_at_a_skew_crossroads(words: str, plan: str, wanted: str) -> None:
+    assert with_sharp_side(read_plan(plan), words) == read_plan(wanted)
+
+
+@pytest.mark.parametrize(
+    ("words", "lanes"),
+    [
+        ("on-ramp onto a three-lane motorway", 3),
+        ("join the 2-lane freeway", 2),
+        ("Auffahrt auf eine dreispurige Autobahn", 3),
+        ("rejoindre une autoroute à deux voies", 2),
+        ("me incorporo a una autopista de tres carriles", 3),
+        ("entro in un'autostrada a tre corsie", 3),
+    ],
+)
+def test_the_lanes_of_the_motorway_that_is_joined(words: str, lanes: int) -> None:
+    wanted = read_plan(f"merge ramp // | motorway lanes={lanes}")
+    assert with_motorway_behind_ramp(read_plan("merge ramp"), words) == wanted
+
+
+def test_lanes_that_the_plan_has_are_kept() -> None:
+    brief = read_plan("merge ramp // | motorway lanes=2")
+    assert with_motorway_behind_ramp(brief, "a ramp onto a three-lane motorway") == brief
