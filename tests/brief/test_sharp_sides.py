@@ -10,9 +10,13 @@ from roadgpt.brief.readers.model.sharp_sides import with_sharp_side
 @pytest.mark.parametrize(
     ("words", "plan", "wanted"),
     [
-        ("turn sharp left at the skew crossroads", "crossroads left skew", "crossroads sharp_left skew"),
-        ("an der schiefen Kreuzung scharf rechts", "crossroads right skew", "crossroads sharp_right skew"),
-        ("sharply right", "crossroads right angle=60", "crossroads sharp_right angle=60"),
+        ("turn sharp left at the skew crossroads", "crossroads left skew", "crossroads left skew deg=100.."),
+        (
+            "an der schiefen Kreuzung scharf rechts",
+            "crossroads right skew",
+            "crossroads right skew deg=100..",
+        ),
+        ("sharply right", "crossroads right angle=60", "crossroads right angle=60 deg=100.."),
         ("a sharp left bend, left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
         ("sharp right, then left at a skew crossroads", "crossroads left skew", "crossroads left skew"),
         ("turn sharp left at the crossroads", "crossroads left", "crossroads left"),
