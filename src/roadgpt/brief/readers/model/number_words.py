@@ -18,7 +18,7 @@ THOUSAND, HUNDRED = 1000, 100
 
 
 @dataclass(frozen=True, slots=True)
-class Composition:
+class NumberWords:
     """How a language puts numbers together."""
 
     sizes: Mapping[int, str]
@@ -27,12 +27,12 @@ class Composition:
     """A pattern for what may stand between them and the rest."""
 
 
-COMPOSITIONS: Mapping[str, Composition] = {
-    "en": Composition({THOUSAND: r" ?\bthousand\b", HUNDRED: r" ?\bhundred\b"}, " (?:and )?"),
-    "de": Composition({THOUSAND: " ?tausend", HUNDRED: " ?hundert"}, "(?: |und|)"),
-    "fr": Composition({THOUSAND: r" ?\bmille\b", HUNDRED: r" ?\bcent\b|(?<=.) cents\b"}, " "),
-    "es": Composition({THOUSAND: r" ?\bmil\b"}, " "),
-    "it": Composition({THOUSAND: r"(?<=.) ?mila|\bmille", HUNDRED: " ?cento"}, "(?: e | |)"),
+COMPOSITIONS: Mapping[str, NumberWords] = {
+    "en": NumberWords({THOUSAND: r" ?\bthousand\b", HUNDRED: r" ?\bhundred\b"}, " (?:and )?"),
+    "de": NumberWords({THOUSAND: " ?tausend", HUNDRED: " ?hundert"}, "(?: |und|)"),
+    "fr": NumberWords({THOUSAND: r" ?\bmille\b", HUNDRED: r" ?\bcent\b|(?<=.) cents\b"}, " "),
+    "es": NumberWords({THOUSAND: r" ?\bmil\b"}, " "),
+    "it": NumberWords({THOUSAND: r"(?<=.) ?mila|\bmille", HUNDRED: " ?cento"}, "(?: e | |)"),
 }
 SIZES: Mapping[str, int] = {
     **dict.fromkeys(("hundred", "hundert", "cent", "cents", "cento"), HUNDRED),
@@ -69,8 +69,8 @@ def _value(text: str, language: str) -> int | None:
     found = _small_numbers(language).get(text)
     if found is not None:
         return found
-    composition = COMPOSITIONS[language]
-    for size, name in composition.sizes.items():
+    its = COMPOSITIONS[language]
+    for size, name in its.sizes.items():
         for match in re.finditer(rf"(?:{name})", text):
             many = _many(text[: match.start()].strip(), size, language)
             rest = _rest(text[match.end() :], size, language)
