@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 
-from roadgpt.brief.readers.model.numerals import plain, words
+from roadgpt.brief.readers.model.number_words import numbers_in_words
+from roadgpt.brief.readers.model.numerals import plain
 
 GRAM = 5
 MOST_SHARED = 0.6
@@ -41,7 +42,7 @@ def masked(text: str) -> tuple[str, ...]:
 
 @cache
 def _mask(word: str) -> str:
-    if word[0].isdigit() or (word,) in words():
+    if word[0].isdigit() or numbers_in_words((word,)):
         return "0"
     return MASK_OF.get(word, word)
 

@@ -23,6 +23,7 @@ from roadgpt.brief.readers.model.closed_loops import asks_for_a_closed_loop
 from roadgpt.brief.readers.model.confidence import DOUBT, confidence, features, is_denial
 from roadgpt.brief.readers.model.ensemble import Ensemble, scored_by
 from roadgpt.brief.readers.model.height_words import height_wish, is_doubtful_climb, with_sign
+from roadgpt.brief.readers.model.map_signs import has_unlimited_signs
 from roadgpt.brief.readers.model.mirror import is_of_junctions
 from roadgpt.brief.readers.model.negative_numbers import negative_number
 from roadgpt.brief.readers.model.neural_network import NeuralNetwork
@@ -125,7 +126,8 @@ class ModelReader:
         if not draft.is_refusal and asks_for_a_closed_loop(words):
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
-        if is_of_junctions(draft.line) and not can_be_kept(found[0].line):
+        is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)
+        if is_unclear or has_unlimited_signs(brief, text):
             brief = brief.model_copy(update={"confidence": min(brief.confidence, DOUBT)})
         return brief if brief.confidence >= SURE else brief.model_copy(update={"other": _other(found, brief)})
 
@@ -389,9 +391,8 @@ def _text(words: str) -> SlottedText:
             "the description is empty; say what the road should be like, such as 'two sharp turns'"
         )
     if len(words) > MOST_CHARACTERS:
-        raise BriefError(
-            f"the description has {len(words)} letters; at most {MOST_CHARACTERS} are read, so shorten it"
-        )
+        letters = f"the description has {len(words)} letters"
+        raise BriefError(f"{letters}; at most {MOST_CHARACTERS} are read, so shorten it")
     text = slotted(words)
     below = negative_number(text)
     if below:

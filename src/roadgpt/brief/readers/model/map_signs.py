@@ -20,7 +20,13 @@ from roadgpt.brief.readers.model.map_words import (
     one_number,
     said_of,
 )
-from roadgpt.brief.readers.model.sign_words import SIGN_WORDS, CountedSigns, SignsInWords, signs_in_words
+from roadgpt.brief.readers.model.sign_words import (
+    SIGN_WORDS,
+    CountedSigns,
+    SignsInWords,
+    limited_signs,
+    signs_in_words,
+)
 from roadgpt.brief.readers.model.slots import SlottedText
 
 CROSSING = re.compile(r"cross|inters|kreuz|croisement|carrefour|cruce|incroc")
@@ -44,6 +50,15 @@ def with_counted_signs(brief: Brief, text: SlottedText) -> Brief:
         return brief
     found = _in_village(asked, said, signs) if asked.junctions else _in_grid(asked, said, signs)
     return brief if found is None else brief.model_copy(update={"map": asked.model_copy(update=found)})
+
+
+def has_unlimited_signs(brief: Brief, text: SlottedText) -> bool:
+    """Returns whether a map has a sign at all junctions, or at none, that the words limit to some of them."""
+    asked = brief.map
+    if asked is None:
+        return False
+    placed = {each.control for each in (*asked.junctions, *asked.signed)} - {None}
+    return not placed and bool(limited_signs(said_of(text)))
 
 
 def _others(asked: MapClause, said: str, signs: SignsInWords) -> Control | None:

@@ -1,17 +1,9 @@
-"""Number words in five languages: writes them and reads them back.
-
-``spell`` writes a number as words. ``words`` is the table for reading numbers: 0 and 2 to 1500, above 200
-only multiples of 5. It maps each spelling, a tuple of words in lower case without accents and hyphens, to its
-number.
-"""
+"""Number words in five languages: ``spell`` writes a number as words; ``number_words`` reads them."""
 
 import unicodedata
-from collections.abc import Iterator
 from functools import cache
 
 LANGUAGES = ("en", "de", "fr", "es", "it")
-MOST = 1500
-"""The largest number that is read from words; no road is longer than 1500 m."""
 
 ENGLISH = [
     "zero",
@@ -197,7 +189,7 @@ def _plain_letter(letter: str) -> str:
 
 
 def spell(number: int, language: str) -> str:
-    """Returns a whole number from 0 to 1999 in words."""
+    """Returns a whole number from 0 to 9999 in words."""
     return _SPELL[language](number)
 
 
@@ -246,7 +238,11 @@ def _spanish(n: int) -> str:
         return "cien"
     if n < 1000:
         return SPANISH_HUNDREDS[n // 100] + (f" {_spanish(n % 100)}" if n % 100 else "")
-    return ("" if n < 2000 else SPANISH[n // 1000]) + "mil" + (f" {_spanish(n % 1000)}" if n % 1000 else "")
+    return (
+        ("" if n < 2000 else f"{SPANISH[n // 1000]} ")
+        + "mil"
+        + (f" {_spanish(n % 1000)}" if n % 1000 else "")
+    )
 
 
 def _italian(n: int) -> str:
@@ -262,44 +258,3 @@ def _italian(n: int) -> str:
 
 
 _SPELL = {"en": _english, "de": _german, "fr": _french, "es": _spanish, "it": _italian}
-
-
-def _spellings(number: int, language: str) -> Iterator[str]:
-    text = spell(number, language)
-    yield text
-    yield text.replace(" and ", " ")
-    if language == "en" and number == 40:
-        yield "fourty"
-    if language == "en" and text.startswith("one "):
-        yield "a" + text[3:]
-        yield text[4:] if number in (100, 1000) else text
-    if language == "es" and number >= 200:
-        yield text.replace("cientos", "cientas").replace("quinientos", "quinientas")
-    if language == "de":
-        yield text.replace("ß", "ss")
-        yield text.replace("ü", "ue").replace("ö", "oe").replace("ß", "ss")
-        if text.startswith(("hundert", "tausend")):
-            yield "ein" + text
-        if number == 2:
-            yield "zwo"
-    if language == "fr" and 100 < number < 1000:
-        yield text.replace("cent ", "cents ")
-    if language == "fr":
-        yield text.replace("soixante-dix", "septante").replace("quatre-vingt-dix", "nonante")
-
-
-@cache
-def words() -> dict[tuple[str, ...], dict[str, int]]:
-    """Returns a table from each spelling (a tuple of words) to the number that it means in each language.
-
-    The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
-    """
-    table: dict[tuple[str, ...], dict[str, int]] = {}
-    for language in LANGUAGES:
-        for number in (0, *range(2, MOST + 1)):
-            if number > 200 and number % 5:
-                continue
-            for text in _spellings(number, language):
-                key = tuple(plain(text).replace("-", " ").split())
-                table.setdefault(key, {}).setdefault(language, number)
-    return table

@@ -85,6 +85,14 @@ NO_NUMBER = re.compile(rf"(?<!, )\b(?:{BUT}(?: (?:{AT}|the))?|x|by|mal|sur|por|p
 """Words before a number with which it does not count the junctions that have a sign."""
 OTHERS_HAVE_NONE = re.compile(rf"\b{REST}\b(?: \w+){{0,3}} {NONE}\b[^.;]*")
 
+LIMITED = (
+    rf"(?:only|just|nur|lediglich|seulement|uniquement|solo|solamente|soltanto|"
+    rf"{BUT} (?:{AT}|\d+|{ONE}|the|in|der|dem|den|le|la|el|il|alla|nella)|half|halfte|moitie|mitad|"
+    r"meta|some|einige\w*|manche\w*|certains?|certaines|quelques|algun[ao]s|alcun[ie]|qualche|most|meisten|"
+    r"plupart|mayoria|maggior parte|middle|mitte|mittleren?|milieu|centro|mezzo|davon|dont)"
+)
+"""Words that limit signs to some of the junctions."""
+
 
 @dataclass(frozen=True)
 class CountedSigns:
@@ -120,7 +128,7 @@ def signs_in_words(said: str) -> SignsInWords:
     """
     if TAKEN_BACK.search(said):
         return SignsInWords()
-    said = OTHERS_HAVE_NONE.sub(" ", said)
+    said = OTHERS_HAVE_NONE.sub(" ", _without_double_denial(said))
     all_but = [each for control in SIGN_WORDS if (each := _all_but(control, said)) is not None]
     named = {each.control for each in all_but}
     counted = [
@@ -135,6 +143,27 @@ def signs_in_words(said: str) -> SignsInWords:
         all_but[0] if len(all_but) == 1 else None,
         others[0] if len(others) == 1 and not named & {*others} else None,
     )
+
+
+def limited_signs(said: str) -> frozenset[Control]:
+    """Returns the signs that some words seem to limit to a part of the junctions: "only the roundabout has
+    lights", "stop signs at half of them".
+    """
+    if EVERYWHERE.search(said) and re.search(rf"\b{BUT}\b", said) is None:
+        return frozenset()
+    return frozenset(
+        control
+        for control, sign in SIGN_WORDS.items()
+        if re.search(rf"\b{LIMITED}\b[^.;:]{{0,40}}\b{sign}\b|\b{sign}\b[^.;:]{{0,25}}\b{LIMITED}\b", said)
+    )
+
+
+def _without_double_denial(said: str) -> str:
+    """Returns "lights at two of them" for "no lights except at two of them"."""
+    for sign in SIGN_WORDS.values():
+        denied = rf"\b{NONE} (?:\w+ )?({sign}) ?,? {BUT} (?={AT} )"
+        said = re.sub(denied, r"\1 ", said)
+    return said
 
 
 @cache
@@ -154,6 +183,7 @@ def _is_of_all(control: Control) -> re.Pattern[str]:
         rf"\b{ALL}\b[^.;:,]{{0,40}}? {but} ?,? {HAVE} {ARTICLE}{sign}\b|"
         rf"\b{sign}\b[^.;:,]{{0,25}}? {ALL}\b[^.;:,]{{0,40}}? {but}|"
         rf"\b{AT} {ALL}\b[^.;:,]{{0,40}}? {but} {ARE} {ARTICLE}{sign}\b"
+        + (rf"|\b{ALL}\b[^.;:,]{{0,40}}? {but} ?,? (?:\w+ )?{SIGNALLED}\b" if control == "lights" else "")
     )
 
 

@@ -12,6 +12,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from roadgpt.brief.readers.model.decimals_in_words import one_with_decimals, with_decimals
 from roadgpt.brief.readers.model.measures import (
     Number,
     is_count,
@@ -21,13 +22,13 @@ from roadgpt.brief.readers.model.measures import (
     unit_at,
 )
 from roadgpt.brief.readers.model.multiples import with_multiples
-from roadgpt.brief.readers.model.numerals import plain, words
+from roadgpt.brief.readers.model.number_words import LONGEST, SIZES, number_word, numbers_in_words
+from roadgpt.brief.readers.model.numerals import plain
 from roadgpt.brief.readers.model.slope_angles import as_grade
 from roadgpt.brief.readers.model.tolerances import tolerances_first, with_tolerances
-from roadgpt.brief.readers.model.unit_fractions import FAR, unit_fraction
+from roadgpt.brief.readers.model.unit_fractions import FAR, take_share, unit_fraction, whole_and_share
 from roadgpt.brief.readers.model.units import (
     AMBIGUOUS,
-    AND_A_HALF,
     FUNCTION_WORDS,
     MILLIONS,
     ONES,
@@ -102,6 +103,8 @@ def slotted(text: str, is_change: bool = False) -> SlottedText:
     numbers = _numbers(tokens)
     for number in numbers:
         take_unit(number, tokens)
+        take_share(number, tokens)
+    numbers = [each for n, each in enumerate(numbers) if not n or each.first > numbers[n - 1].last]
     share_units(numbers, tokens)
     take_unit_of_all(numbers, tokens)
     numbers = with_tolerances(numbers, tokens)
@@ -137,10 +140,12 @@ def _numbers(tokens: list[str]) -> list[Number]:
     at = 0
     while at < len(tokens):
         number = (
-            unit_fraction(tokens, at) or _ratio(tokens, at) or _millions(tokens, at) or _part(tokens, at)
-            or _digits(tokens, at) or _set(tokens, at) or _spelled(tokens, at, language)
+            unit_fraction(tokens, at) or whole_and_share(tokens, at) or _ratio(tokens, at)
+            or _millions(tokens, at) or _part(tokens, at) or _digits(tokens, at) or _set(tokens, at)
+            or _spelled(tokens, at, language) or one_with_decimals(tokens, at)
         )  # fmt: skip
         if number:
+            number = with_decimals(number, tokens)
             numbers.append(number)
             at = number.last
         at += 1
@@ -164,8 +169,7 @@ def _ratio(tokens: list[str], at: int) -> Number | None:
     here = [tokens[place] for place in places]
     if len(here) < 3 or here[0] not in {"1", *ONES} - {"a", "an"} or here[1] not in RATIO:
         return None
-    spelled = next(iter((words().get((here[2],)) or {"": 0}).values()))
-    below = _digit_value(here[2]) or spelled
+    below = _digit_value(here[2]) or number_word(here[2])
     if not 3 <= below <= 100 or unit_at(tokens, places[2] + 1):
         return None
     return Number(round(100 / below, 1), at, places[2], "percent", False)
@@ -175,7 +179,7 @@ def _millions(tokens: list[str], at: int) -> Number | None:
     """Reads "a million", "two billion" and the like as one million, which is too many for any road."""
     if tokens[at] in MILLIONS:
         return Number(MILLION, at, at)
-    many = tokens[at] in ONES or tokens[at].isdecimal() or (tokens[at],) in words()
+    many = tokens[at] in ONES or tokens[at].isdecimal() or number_word(tokens[at]) > 0
     return (
         Number(MILLION, at, at + 1)
         if many and tokens[at + 1 : at + 2] and tokens[at + 1] in MILLIONS
@@ -199,8 +203,10 @@ def _digits(tokens: list[str], at: int) -> Number | None:
     after = tokens[at + 1 : at + 3]
     if len(after) == 2 and value < 10 and _is_fraction(tokens, at):
         return None
-    if after and after[0] in ("hundred", "thousand") and value < 20:
-        return Number(value * (100 if after[0] == "hundred" else 1000), at, at + 1)
+    size = SIZES.get(after[0], 0) if after and after[1:] != ["marin"] else 0
+    is_clear = bool(after) and (after[0] in ("hundred", "thousand") or unit_at(tokens, at + 2) is not None)
+    if is_clear and value * size <= MILLION and value < size:
+        return Number(round(value * size, 1), at, at + 1)
     return Number(value, at, at)
 
 
@@ -208,7 +214,7 @@ def _point(tokens: list[str], at: int) -> Number | None:
     """Reads "point two" as 0.2."""
     if tokens[at] != "point" or at + 1 >= len(tokens):
         return None
-    tenths = next(iter((words().get((tokens[at + 1],)) or {"": 0}).values()))
+    tenths = number_word(tokens[at + 1])
     return Number(tenths / 10, at, at + 1) if 0 < tenths < 10 else None
 
 
@@ -235,12 +241,8 @@ def _set(tokens: list[str], at: int) -> Number | None:
 
 def _part(tokens: list[str], at: int) -> Number | None:
     """Reads "half a mile", "three quarters of a kilometre", "one and a half miles", if a unit follows."""
-    if tokens[at] in AND_A_HALF:
-        return Number(AND_A_HALF[tokens[at]], at, at, "", False)
-    many = _digit_value(tokens[at]) or next(iter((words().get((tokens[at],)) or {"": 0}).values()))
+    many = _digit_value(tokens[at]) or number_word(tokens[at])
     many = 1.0 if tokens[at] in ONES else many
-    if tokens[at + 1 : at + 4] == ["and", "a", "half"] and many and unit_at(tokens, at + 4):
-        return Number(many + 0.5, at, at + 3, "", False)
     share_at = at + 1 if many else at
     while share_at < len(tokens) and tokens[share_at] == "-" and share_at > at:
         share_at += 1
@@ -265,16 +267,17 @@ def _spelled(tokens: list[str], at: int, language: str) -> Number | None:
     best: Number | None = None
     key: list[str] = []
     place = at
-    while place < len(tokens) and len(key) < 6:
+    while place < len(tokens) and len(key) < LONGEST:
         if tokens[place] == "-" and key:
             place += 1
             continue
         if not tokens[place].isalpha():
             break
         key.append(tokens[place])
-        found = words().get(tuple(key))
+        found = numbers_in_words(tuple(key))
         is_doubtful = key[0] in AMBIGUOUS and len(key) == 1 and unit_at(tokens, place + 1) is None
-        if found and (language in found or not is_doubtful):
+        is_part = len(key) > 1 and next((each for each in tokens[place + 1 :] if each != "-"), "") in SIZES
+        if found and (language in found or not is_doubtful) and not is_part:
             best = Number(found.get(language, next(iter(found.values()))), at, place)
         place += 1
     if best and best.value == 0 and tokens[at] == "null" and language != "de":

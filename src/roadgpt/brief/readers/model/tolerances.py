@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 from roadgpt.brief.readers.model.measures import Number, is_count, unit_at
 from roadgpt.brief.readers.model.nouns import COUNTED
+from roadgpt.brief.readers.model.number_words import numbers_in_words
 from roadgpt.brief.readers.model.numerals import plain
-from roadgpt.brief.readers.model.numerals import words as spellings
 from roadgpt.brief.readers.model.units import ONES
 
 SIGNS = frozenset(
@@ -40,7 +40,9 @@ def tolerances_first(said: Sequence[str]) -> list[str]:
 
 def _is_count(tokens: Sequence[str], at: int) -> bool:
     token = tokens[at]
-    return (token.isdecimal() or token in ONES or (token,) in spellings()) and not unit_at(tokens, at + 1)
+    return (token.isdecimal() or token in ONES or numbers_in_words((token,)) != {}) and not unit_at(
+        tokens, at + 1
+    )
 
 
 def with_tolerances(numbers: Sequence[Number], tokens: Sequence[str]) -> list[Number]:

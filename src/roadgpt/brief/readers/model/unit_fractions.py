@@ -1,10 +1,13 @@
-"""Reads fractions of a unit of length in the words of a text, such as "3/4 mile"."""
+"""Reads fractions of a unit of length in the words of a text, such as "3/4 mile", "two and a half miles" and
+"deux kilomètres et demi".
+"""
 
 import re
 
 from roadgpt.brief.readers.model.measures import Number, unit_at
 from roadgpt.brief.readers.model.nouns import COUNTED, ONE_TURN
-from roadgpt.brief.readers.model.units import SHARE_FILLERS
+from roadgpt.brief.readers.model.number_words import SIZES, number_word
+from roadgpt.brief.readers.model.units import ONES, SHARE_FILLERS, SHARES
 
 FAR = 100
 """A unit of at least this many metres means one such unit if it has no number, as in "mile and a half"."""
@@ -14,6 +17,13 @@ SHARE = re.compile(r"0[.,]\d+")
 """A share of a unit in decimals: "0.3 of a mile"."""
 WHOLE_AND = frozenset({"-", "and", "und", "et", "y", "e"})
 """Words between a whole number and a fraction: "1 and 1/2 miles"."""
+GERMAN_HALF = re.compile(r"(ander|\w*?)(?:ein|und|t)?(halb|viertel)(tausend)?")
+"""A German number with its fraction in one word: "zweieinhalb", "dreieinviertel"."""
+OF_A_CIRCLE = frozenset(
+    {"circle", "loop", "kreis", "kehre", "drehung", "cercle", "tour", "boucle", "vuelta", "circulo", "giro"}
+    | {"cerchio", "hour", "minute", "hora", "ora", "heure", "stunde", "-"}
+)
+"""Words behind a fraction that is not one of the unit before it: "two kilometres and a half turn"."""
 
 
 def unit_fraction(tokens: list[str], at: int) -> Number | None:
@@ -47,3 +57,64 @@ def _of_unit(value: float, tokens: list[str], at: int, last: int) -> Number | No
     unit = unit_at(tokens, last + 1)
     is_small = unit is not None and unit[1] < FAR and (value < 1 or last - at < 3)
     return None if unit is None or unit[0] != "metres" or is_small else Number(value, at, last, "", False)
+
+
+def whole_and_share(tokens: list[str], at: int) -> Number | None:
+    """Reads "two and a half kilometres", "three and a quarter miles", "zweieinhalb Kilometer" and "one and a
+    half thousand metres".
+    """
+    value = _german_half(tokens[at])
+    if value is not None:
+        return _before_unit(value, tokens, at, at)
+    whole = float(tokens[at]) if tokens[at].isdecimal() else float(number_word(tokens[at]))
+    whole = 1.0 if tokens[at] in ONES else whole
+    if not whole or tokens[at + 1 : at + 2] == [] or tokens[at + 1] not in WHOLE_AND - {"-"}:
+        return None
+    share, last = _share_in_words(tokens, at + 2)
+    return _before_unit(whole + share, tokens, at, last) if share else None
+
+
+def take_share(number: Number, tokens: list[str]) -> None:
+    """Adds to "two kilometres" the half of a kilometre in "two kilometres and a half"."""
+    joint = tokens[number.last + 1 : number.last + 2]
+    if number.unit != "metres" or number.factor < FAR or not joint or joint[0] not in WHOLE_AND - {"-"}:
+        return
+    share, last = _share_in_words(tokens, number.last + 2)
+    behind = [token for token in tokens[last + 1 :] if token not in SHARE_FILLERS - {"-"}][:1]
+    if not share or (behind and (behind[0] in OF_A_CIRCLE | ONE_TURN | COUNTED or unit_at(behind, 0))):
+        return
+    number.value, number.last = round(number.value + share * number.factor, 1), last
+
+
+def _share_in_words(tokens: list[str], at: int) -> tuple[float, int]:
+    """Returns the fraction that begins at a token, and its last token; 0 if there is none."""
+    many, place = 1, at
+    if tokens[at : at + 1] and (tokens[at] in ONES or number_word(tokens[at]) == 3):  # three quarters
+        many, place = (1 if tokens[at] in ONES else 3), at + 1
+    share = SHARES.get(tokens[place], 0.0) if place < len(tokens) else 0.0
+    return (many * share, place) if many * share < 1 else (0.0, place)
+
+
+def _german_half(word: str) -> float | None:
+    """Returns the value of "zweieinhalb", "anderthalb" or "dreieinhalbtausend"; None for any other word."""
+    found = GERMAN_HALF.fullmatch(word)
+    if found is None:
+        return None
+    whole, share, thousand = found.groups()
+    many = {"ander": 1, "ein": 1}.get(whole) or number_word(whole)
+    if not many or (whole == "ander" and share != "halb"):
+        return None
+    if share == "viertel" and "ein" not in word.removeprefix(whole):
+        value = many / 4 if many == 3 else 0.0  # "dreiviertel" is 3/4
+    else:
+        value = many + (0.5 if share == "halb" else 0.25)
+    return value * (1000 if thousand else 1) or None
+
+
+def _before_unit(value: float, tokens: list[str], at: int, last: int) -> Number | None:
+    """Returns a number from token ``at`` to ``last``, or to "thousand" behind it; None if no unit follows."""
+    size = SIZES.get(tokens[last + 1], 1) if tokens[last + 1 : last + 2] else 1
+    last += size > 1
+    while tokens[last + 1 : last + 2] and tokens[last + 1] in SHARE_FILLERS - {"-"}:
+        last += 1
+    return Number(value * size, at, last, "", False) if unit_at(tokens, last + 1) else None

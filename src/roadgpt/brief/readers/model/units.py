@@ -63,7 +63,6 @@ SHARES: dict[str, float] = {
 }
 """Fractions of a unit: "half a mile", "drei viertel Kilometer"."""
 MILLIONS = word_set("million millions millionen millones millon milione milioni billion milliarde")
-AND_A_HALF: dict[str, float] = {"anderthalb": 1.5, "eineinhalb": 1.5, "zweieinhalb": 2.5}
 SHARE_FILLERS = frozenset(
     {"of", "a", "an", "de", "d", "'", "un", "di", "eines", "einem", "-", "full", "whole", "ganzer"}
 )
@@ -117,6 +116,8 @@ SETS: dict[tuple[str, ...], int] = {
         100: "une centaine de|centaine de|un centinaio di|centinaio di|un centenar de|centenar de",
         24: "a couple of dozen|couple of dozen|a couple dozen|couple dozen",
         200: "a couple of hundred|couple of hundred|a couple hundred|couple hundred",
+        1000: "un millier de|millier de|un millar de|millar de|un migliaio di|migliaio di",
+        2000: "a couple of thousand|couple of thousand|a couple thousand|couple thousand",
         12: "a dozen|dozen|ein dutzend|dutzend|une douzaine|une douzaine de|una docena|una docena de"
         "|una dozzina|una dozzina di",
     }.items()

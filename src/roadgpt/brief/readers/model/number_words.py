@@ -1,0 +1,146 @@
+"""Reads whole numbers that are written in words, in five languages, up to 999,999.
+
+"two thousand five hundred", "zweitausendfünfhundert", "quinze cents", "dos mil", "duemila": a number is so
+many thousands, so many hundreds, and the rest. Only the numbers below 100 are looked up, and the Spanish
+hundreds.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cache
+
+from roadgpt.brief.readers.model.numerals import LANGUAGES, SPANISH_HUNDREDS, plain, spell
+
+LONGEST = 10
+"""The most words that one number has: "nine thousand nine hundred and ninety-nine" has seven."""
+THOUSAND, HUNDRED = 1000, 100
+
+
+@dataclass(frozen=True, slots=True)
+class NumberWords:
+    """How a language puts numbers together."""
+
+    sizes: Mapping[int, str]
+    """The words for a thousand and for a hundred, as a pattern, the larger first."""
+    joint: str
+    """A pattern for what may stand between them and the rest."""
+
+
+COMPOSITIONS: Mapping[str, NumberWords] = {
+    "en": NumberWords({THOUSAND: r" ?\bthousand\b", HUNDRED: r" ?\bhundred\b"}, " (?:and )?"),
+    "de": NumberWords({THOUSAND: " ?tausend", HUNDRED: " ?hundert"}, "(?: |und|)"),
+    "fr": NumberWords({THOUSAND: r" ?\bmille\b", HUNDRED: r" ?\bcent\b|(?<=.) cents\b"}, " "),
+    "es": NumberWords({THOUSAND: r" ?\bmil\b"}, " "),
+    "it": NumberWords({THOUSAND: r"(?<=.) ?mila|\bmille", HUNDRED: " ?cento"}, "(?: e | |)"),
+}
+SIZES: Mapping[str, int] = {
+    **dict.fromkeys(("hundred", "hundert", "cent", "cents", "cento"), HUNDRED),
+    **dict.fromkeys(("thousand", "tausend", "mille", "mil", "mila"), THOUSAND),
+}
+"""Words that multiply the number before them."""
+FRENCH_TENS = {70: ("septante",), 80: ("huitante", "octante"), 90: ("nonante",)}
+"""The tens of Switzerland and Belgium."""
+
+
+@cache
+def numbers_in_words(key: tuple[str, ...]) -> Mapping[str, int]:
+    """Returns the number that some words mean, in each language in which they mean one.
+
+    The number 1 is left out: as a word it is mostly an article or a pronoun ("un virage", "the last one").
+
+    Args:
+        key: the words in lower case, without accents and hyphens; all of them belong to the number.
+    """
+    text = " ".join(key)
+    found = {language: _value(text, language) for language in LANGUAGES}
+    return {language: value for language, value in found.items() if value is not None and value != 1}
+
+
+@cache
+def number_word(word: str) -> int:
+    """Returns the number that one word means in the first language in which it means one; 0 if in none."""
+    return next(iter(numbers_in_words((word,)).values()), 0)
+
+
+def _value(text: str, language: str) -> int | None:
+    """Returns the value of a number in words; None if they are no number."""
+    text = _one_spelling(text, language)
+    found = _small_numbers(language).get(text)
+    if found is not None:
+        return found
+    its = COMPOSITIONS[language]
+    for size, name in its.sizes.items():
+        for match in re.finditer(rf"(?:{name})", text):
+            many = _many(text[: match.start()].strip(), size, language)
+            rest = _rest(text[match.end() :], size, language)
+            if many is not None and rest is not None:
+                return many * size + rest
+    return None
+
+
+def _many(text: str, size: int, language: str) -> int | None:
+    """Returns how many thousands or hundreds there are: "twenty-five hundred" has 25."""
+    is_one = text == "" or (text == "a" and language == "en")
+    many = 1 if is_one else _value(text, language)
+    if not many or many >= THOUSAND or (size == HUNDRED and (many >= HUNDRED or many % 10 == 0)):
+        return None
+    return many
+
+
+def _rest(text: str, size: int, language: str) -> int | None:
+    """Returns what is added to thousands or hundreds; None if it is no number below one of them."""
+    if not text:
+        return 0
+    joint = re.match(COMPOSITIONS[language].joint, text)
+    rest = _value(text[joint.end() :], language) if joint else None
+    is_round = rest is not None and size == THOUSAND and rest % HUNDRED == 0
+    is_list = joint is not None and joint[0] == " e " and not is_round  # "mille e cinquecento" is 1500
+    return rest if rest and rest < size and not is_list else None
+
+
+@cache
+def _small_numbers(language: str) -> Mapping[str, int]:
+    """Returns the numbers of a language that are looked up, by their words."""
+    small = {
+        _one_spelling(plain(text).replace("-", " "), language): number
+        for number in range(HUNDRED)
+        for text in _spellings(number, language)
+    }
+    return small | _spanish_hundreds(small) if language == "es" else small
+
+
+def _spellings(number: int, language: str) -> Iterator[str]:
+    text = spell(number, language)
+    yield text
+    if language == "en" and number // 10 == 4:
+        yield text.replace("forty", "fourty")
+    if language == "de" and number in (1, 2):
+        yield ("eins", "zwo")[number - 1]
+    if language == "fr" and number % 10 == 1:
+        yield text + "e"
+    if language == "fr" and number >= 70:
+        for tens in FRENCH_TENS[number // 10 * 10]:
+            ones = number % 10
+            yield tens + (" et un" if ones == 1 else f" {spell(ones, 'fr')}" if ones else "")
+    if language == "es" and number % 10 == 1:
+        yield text.removesuffix("o")
+        yield text.removesuffix("o") + "a"
+    if language == "it" and number % 10 == 1 and number > 20:
+        yield text.removesuffix("o")
+
+
+def _spanish_hundreds(small: Mapping[str, int]) -> dict[str, int]:
+    """Returns the numbers from 100 to 999 by their words; the hundreds have a feminine."""
+    out = {"cien": HUNDRED}
+    for hundreds, name in enumerate(SPANISH_HUNDREDS[1:], 1):
+        for head in {name, re.sub("tos$", "tas", name)}:
+            out |= {f"{head} {rest}".strip(): hundreds * HUNDRED + n for rest, n in {"": 0, **small}.items()}
+    return out
+
+
+def _one_spelling(text: str, language: str) -> str:
+    """Returns a number without umlauts and "ß", however these are written; an Italian one with all vowels."""
+    if language == "de":
+        return text.replace("fuenf", "funf").replace("zwoelf", "zwolf").replace("ß", "ss")
+    return text.replace("centott", "centoott") if language == "it" else text
