@@ -21,6 +21,7 @@ FLIPPED = {
     "spiral": ("curvStart", "curvEnd"),
     "signal": ("t",),
     "object": ("t",),
+    "cornerLocal": ("v",),
     "laneOffset": ("a", "b", "c", "d"),
     "lane": ("id",),
     "predecessor": ("id",),

@@ -30,7 +30,8 @@ def line_object(member: NetworkRoad, line: Array, arm: Arm, number: int) -> XmlE
         outwards = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
         line = np.stack([line[0], line[1] + LINE * outwards])
     corners = _outline(line)
-    x, y = line[:, :2].mean(axis=0) if is_across else line[len(line) // 2, :2]
+    middle = line if is_across else line[[(len(line) - 1) // 2, len(line) // 2]]  # also from its other end
+    x, y = middle[:, :2].mean(axis=0)
     s, t = (float(each) for each in member.road.locate(x, y))
     heading = float(member.road.heading(s))
     # u along the road, v to its left
