@@ -16,7 +16,7 @@ from roadgpt.geometry.curve import Array
 from roadgpt.network.building import width_at
 from roadgpt.network.network import Arm, Contact, Junction, Network, NetworkRoad, RoadEnd, Roundabout
 from roadgpt.network.passages import CROSSED, CROSSWALK, STOP_LINE, line_before
-from roadgpt.network.paved import ribbon, stations_of
+from roadgpt.network.paved import ribbons, stations_of
 from roadgpt.network.polygon import Area
 from roadgpt.road.profile import DASH, GAP, LINE
 
@@ -193,15 +193,23 @@ def road_of_line(network: Network, junction: Junction, arm: Arm) -> int:
     return next(each.road for each in junction.connections if each.incoming == arm.end)
 
 
-def _across(network: Network, arm: Arm) -> Array:
-    """Returns the two ends ``(2, 3)`` of the middle of the line at an arm, from mid-road outwards."""
+def line_across(network: Network, arm: Arm) -> tuple[float, float, float]:
+    """Returns the station in metres of the line across an arm, and the offsets in metres of its ends: of the
+    end at mid-road, and of the end at the edge of the lanes.
+    """
     member, at_end = network.road(arm.end.road), arm.end.contact == "end"
     half = min(line_before(arm) + STOP_LINE / 2, member.road.length)
     s = member.road.length - half if at_end else half
-    edges, inner = member.profile.edges(s), member.begin_towards(arm.end.contact, s)
+    edges = member.profile.edges(s)
     is_left = member.side_towards(arm.end.contact) > 0
-    outer = float(edges.left) - LINE if is_left else float(edges.right) + LINE
-    return member.road.at(np.full(2, s), np.array([inner, outer]))
+    return s, member.begin_towards(arm.end.contact, s), float(edges.left if is_left else edges.right)
+
+
+def _across(network: Network, arm: Arm) -> Array:
+    """Returns the two ends ``(2, 3)`` of the middle of the line at an arm, from mid-road to the edge line."""
+    s, inner, edge = line_across(network, arm)
+    outer = edge - LINE if edge > inner else edge + LINE
+    return network.road(arm.end.road).road.at(np.full(2, s), np.array([inner, outer]))
 
 
 def _stripes(member: NetworkRoad, contact: Contact) -> Iterator[Array]:
@@ -229,9 +237,9 @@ def _around(network: Network, junction: Junction, arm: Arm, ring: Roundabout) ->
     x, y, z = ring.centre
     circle = shapely.Point(x, y).buffer(ring.radius + ring.width + STOP_LINE / 2, quad_segs=CIRCLE).exterior
     # traffic keeps to its side of the arm: only the part there is crossed by entering traffic
-    lane = ribbon(network.road(onto[0].road).road)
-    for each in off:
-        lane = shapely.difference(lane, ribbon(network.road(each.road).road))
+    lane, *others = ribbons([network.road(each.road).road for each in (onto[0], *off)])
+    for other in others:
+        lane = shapely.difference(lane, other)
     pieces = _pieces(shapely.intersection(circle, lane.buffer(-STOP_LINE / 2)))
     if not pieces:
         return None

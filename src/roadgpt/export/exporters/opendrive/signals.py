@@ -13,7 +13,7 @@ from roadgpt.export.exporters.opendrive.stop_lines import line_object
 from roadgpt.export.markup import XmlElement
 from roadgpt.network import Arm, Network, RoadEnd
 from roadgpt.network.arrows import PaintedArrow, arrows
-from roadgpt.network.markings import line_to_stop_at, place_of_sign, road_of_line
+from roadgpt.network.markings import place_of_sign
 from roadgpt.network.passages import CROSSWALK
 
 TYPES = {"stop": "206", "yield": "205", "priority": "306", "lights": "1000001"}
@@ -86,11 +86,9 @@ class Signals:
         found: dict[int, list[XmlElement]] = {}
         for signal in self.them:
             junction = self.network.junction(signal.junction)
-            line = line_to_stop_at(self.network, junction, signal.arm)
+            line = line_object(self.network, junction, signal.arm, signal.id)
             if line is not None:
-                road = road_of_line(self.network, junction, signal.arm)
-                made = line_object(self.network.road(road), line, signal.arm, signal.id)
-                found.setdefault(road, []).append(made)
+                found.setdefault(line[0], []).append(line[1])
         arms = [arm for junction in self.network.junctions for arm in junction.arms]
         crossed = [arm.end for arm in arms if arm.crosswalk]
         for number, end in enumerate(crossed, self.first_free):

@@ -8,60 +8,78 @@ import numpy as np
 
 from roadgpt.export.markup import XmlElement
 from roadgpt.geometry.curve import Array
-from roadgpt.network import Arm, NetworkRoad
+from roadgpt.network import Arm, Junction, Network, NetworkRoad
+from roadgpt.network.markings import gives_way_to_ring, line_across, line_to_stop_at, road_of_line
 from roadgpt.network.passages import STOP_LINE
-from roadgpt.road.profile import LINE
 
 HIGH = 0.01  # m
 
 
-def line_object(member: NetworkRoad, line: Array, arm: Arm, number: int) -> XmlElement:
-    """Returns the element ``object`` of a line, with the id ``number``.
+def line_object(network: Network, junction: Junction, arm: Arm, number: int) -> tuple[int, XmlElement] | None:
+    """Returns the id of the road on which an arm's line lies, and the element ``object`` of the line.
+
+    None if traffic from the arm has no line.
 
     Args:
-        member: The road on which the line lies.
-        line: Points ``(n, 3)`` in metres along the middle of the line.
-        arm: The arm whose traffic stops or gives way there.
-        number: The id.
+        network: The network.
+        junction: The junction, which may be one of a roundabout.
+        arm: The arm whose traffic stops or gives way.
+        number: The id of the object.
     """
-    is_across = member.id == arm.end.road
-    is_along = not is_across or arm.end.contact == "end"
-    if is_across:  # the paint ends at the edge line, which is part of the lane
-        outwards = (line[1] - line[0]) / np.linalg.norm(line[1] - line[0])
-        line = np.stack([line[0], line[1] + LINE * outwards])
-    corners = _outline(line)
-    middle = line if is_across else line[[(len(line) - 1) // 2, len(line) // 2]]  # also from its other end
-    x, y = middle[:, :2].mean(axis=0)
+    if arm.control in ("priority", "none"):
+        return None
+    if not gives_way_to_ring(network, junction, arm):
+        s, inner, edge = line_across(network, arm)
+        size = STOP_LINE, abs(edge - inner)
+        return arm.end.road, _object(arm, number, (s, (inner + edge) / 2), size, arm.end.contact == "end")
+    line = line_to_stop_at(network, junction, arm)
+    if line is None:
+        return None
+    road = road_of_line(network, junction, arm)
+    return road, _curved(network.road(road), line, arm, number)
+
+
+def _curved(member: NetworkRoad, line: Array, arm: Arm, number: int) -> XmlElement:
+    """Returns the object of a line with the points ``line``, ``(n, 3)``, on the road into a ring."""
+    x, y = line[[(len(line) - 1) // 2, len(line) // 2], :2].mean(axis=0)  # the same from the other end
     s, t = (float(each) for each in member.road.locate(x, y))
     heading = float(member.road.heading(s))
     # u along the road, v to its left
-    turned = (corners - [x, y]) @ np.array(
+    turned = (_outline(line) - [x, y]) @ np.array(
         [[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]]
     )
     length, width = np.ptp(turned, axis=0).tolist()
-    made = XmlElement(
+    made = _object(arm, number, (s, t), (length, width), is_along=True)
+    outline = made.add("outlines").add("outline", {"id": 0, "closed": "true", "outer": "true"})
+    for u, v in turned.tolist():
+        outline.add("cornerLocal", {"u": u, "v": v, "z": 0.0, "height": HIGH})
+    return made
+
+
+def _object(
+    arm: Arm, number: int, place: tuple[float, float], size: tuple[float, float], is_along: bool
+) -> XmlElement:
+    """Returns the object of a line with its middle at ``place`` (s, t) and of this ``size`` (length, width),
+    both in metres.
+    """
+    return XmlElement(
         "object",
         {
             "id": str(number),
             "name": "give-way line" if arm.control == "yield" else "stop line",
             "type": "roadMark",
             "subtype": "signalLines",
-            "s": s,
-            "t": t,
+            "s": place[0],
+            "t": place[1],
             "zOffset": 0.0,
             "hdg": 0.0,
             "orientation": "+" if is_along else "-",
-            "length": length,
-            "width": width,
+            "length": size[0],
+            "width": size[1],
             "height": HIGH,
             "dynamic": "no",
         },
     )
-    if not is_across:
-        outline = made.add("outlines").add("outline", {"id": 0, "closed": "true", "outer": "true"})
-        for u, v in turned.tolist():
-            outline.add("cornerLocal", {"u": u, "v": v, "z": 0.0, "height": HIGH})
-    return made
 
 
 def _outline(line: Array) -> Array:
