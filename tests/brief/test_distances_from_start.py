@@ -19,10 +19,18 @@ APART = "| len=150 // crossroads straight // | len=200 // t_junction right // | 
         "un carrefour à 150 m du départ, puis un croisement en T à 350 m du départ",
         "cruce a 150 m y cruce en T a 350 m desde la salida",
         "incrocio a 150 m dalla partenza, a 350 m dalla partenza un incrocio a T",
+        "a crossroads at 150 m, straight over, and a T-junction at 350 m, right",
+        "Kreuzung bei 150 m und Einmündung bei 350 m; die Straße endet 50 m dahinter",
     ],
 )
 def test_they_become_the_lengths_of_the_roads_between(words: str) -> None:
     assert plan(with_distances_from_start(read_plan(TWO), words)) == APART
+
+
+def test_places_of_lanes_that_end_count_from_the_start() -> None:
+    said = "| lanes=3 len=200 // lane_drop // | lanes=2 len=500 // lane_drop // | lanes=1"
+    words = "the lanes drop from three to two at 200 m and from two to one at 500 m"
+    assert plan(with_distances_from_start(read_plan(said), words)) == said.replace("500", "300")
 
 
 @pytest.mark.parametrize(
@@ -35,6 +43,8 @@ def test_they_become_the_lengths_of_the_roads_between(words: str) -> None:
         "45 m, glorieta (2.ª salida), 95 m de enlace, glorieta; cuestión de distancias",
         "un incrocio a 150 m dalla partenza, a 350 m dal primo il secondo",
         "a crossroads after 150 m and a T-junction after 350 m",
+        "at 150 m a crossroads and at 350 m after that a T-junction",
+        "un carrefour à 150 m, un T à 350 m",
     ],
 )
 def test_distances_from_one_junction_to_the_next_stay(words: str) -> None:

@@ -12,6 +12,7 @@ from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.change import parser as language
 from roadgpt.brief.change.plan import change_plan, read_change_plan
 from roadgpt.brief.change.request import HALVES, SUPERLATIVES
+from roadgpt.brief.plan import plan, read_plan
 from roadgpt.brief.readers.model.plan_automaton import END, PlanAutomaton
 from roadgpt.brief.readers.model.slots import slotted
 from roadgpt.brief.readers.model.token_grammar import InOrder, ListTail, OneOf, Sequel, allowed, pushed
@@ -144,3 +145,28 @@ def test_the_network_has_a_token_for_every_word_of_changes() -> None:
 
 def test_a_cause_that_is_written_twice_is_said_once() -> None:
     assert str(refused("!contradiction turns turns")) == str(refused("!contradiction turns"))
+
+
+@pytest.mark.parametrize(
+    ("line", "text"),
+    [
+        ("map columns=2 rows=3 route=left+right+straight+left", "a grid of 2 by 3 blocks"),
+        ("map columns=2 rows=3; junction x2 lights", "a grid of 2 by 3 blocks, lights at 2 junctions"),
+        (
+            "map columns=2 rows=3 len=120 dead_ends=4 stop route=left; junction none || left_hand",
+            "2 by 3, 120 m, 4",
+        ),
+        ("map crossroads x2 lights; crossroads x3 none", "2 crossroads with lights and 3 without signs"),
+        ("map t_junction blocks=1 dead_ends=1 route=straight+straight", "a loop with one road into it"),
+        ("map t_junction x2; roundabout || len=900", "2 T-junctions and a roundabout, 900 m of streets"),
+    ],
+)
+def test_the_network_can_write_the_signs_and_the_ways_of_a_map(line: str, text: str) -> None:
+    said = slotted(text)
+    tokens = tokens_of(line, said.slots)
+    assert tokens is not None
+    assert plan_of(tokens, said.slots) == plan(read_plan(line)) == line
+    writer = PlanAutomaton(said.slots, frozenset(word.text for word in said.words))
+    for token in (*tokens, END):
+        assert NUMBER_OF[token] in writer.allowed()
+        writer.push(token)

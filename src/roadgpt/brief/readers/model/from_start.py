@@ -28,10 +28,13 @@ OF_ALL = re.compile(
 )
 """Words that say that several distances are counted from the start."""
 AT = re.compile(rf"\b(?:at|bei|a)(?: (?:m|metre|meter))? {MEASURE}")
+STATION = re.compile(r"\b(?:at|bei) \d+(?:[.,]\d+)? ?(?:m|met\w+)\b")
+"""A place on the road in English or German. Two of them count from the start, even if nothing says so."""
 FROM_ELSEWHERE = re.compile(
     r"\b(?:further|farther|another|more|later|next|onwards?|apart|weiter\w*|spater|nachste\w*|danach|davon|"
     r"plus loin|encore|suivante?|mas (?:adelante|alla)|otros|siguiente|piu avanti|altri|altre)\b|"
-    r"\b(?:after|past|beyond|behind|from) (?!\d|(?:the )?(?:left|right)\b|which)[a-z]+|"
+    r"\b(?:after|past|beyond|behind|from) (?!\d|(?:the )?(?:left|right)\b|which|(?:one|two|three|four) (?:lanes?|to)\b)"
+    r"[a-z]+|"
     r"\bnach (?!links|rechts|\d)[a-z]+|\bapres (?!\d)[a-z]+|\bdespues de (?!\d)[a-z]+|"
     r"\bdopo (?!\d)[a-z]+|\bdal?l? (?:prim|second|terz|bivi|incroci|quest|precedent)\w*|"
     r"\bdu (?:premier|second|precedent)"
@@ -47,8 +50,10 @@ def with_distances_from_start(brief: Brief, words: str) -> Brief:
     parts = re.split(r"[.;](?!\d)", plain(words))
     said = ";".join(part for part in parts if not IS_END.search(part))
     found = FROM_START.findall(said)
+    are_stations = len(STATION.findall(said)) > 1
     is_of_all = len(found) > 1 or OF_ALL.search(said) or len(AT.findall(said)) > 1
-    if not brief.junctions or not found or not is_of_all or FROM_ELSEWHERE.search(FROM_START.sub("", said)):
+    is_from_start = are_stations or (found and is_of_all)
+    if not brief.junctions or not is_from_start or FROM_ELSEWHERE.search(FROM_START.sub("", said)):
         return brief
     roads = brief.stretches[: len(brief.junctions)]
     lengths = [road.length.lo if road.length and road.length.exact else None for road in roads]

@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from roadgpt.brief.beside import BESIDE
 from roadgpt.brief.halfway import HALFWAY
+from roadgpt.brief.map_clause import LONGEST_ROUTE, ROUTE
 from roadgpt.brief.plan import ONE_WAY, ROAD_KEYS
 from roadgpt.brief.readers.model.change_grammar import change_request
 from roadgpt.brief.readers.model.evidence import Evidence
@@ -184,14 +185,26 @@ def junction_tokens(numbers: Numbers) -> Symbol:
 
 
 def _map(numbers: Numbers) -> Symbol:
-    count = InOrder((Keyed("x", numbers),))
-    kinds = OneOf((*JUNCTIONS, "roundabout"))
-    listed = Sequel(kinds, (count, ListTail(";", Sequel(kinds, (count,)), MOST_KINDS - 1)))
-    grid = Sequel(Keyed("columns=", numbers), (Keyed("rows=", numbers),))
-    keys = ("len=", "blocks=", "dead_ends=")
-    tail = InOrder((*(Keyed(key, numbers) for key in keys), OneOf(CONTROLS)))
-    whole = Sequel(OneOf(("||",)), (InOrder((OneOf(("left_hand",)), _beside()), least=1),), is_open=True)
-    return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), tail, whole))
+    kinds, count = OneOf((*JUNCTIONS, "roundabout")), Keyed("x", numbers)
+    keys = tuple(Keyed(key, numbers) for key in ("len=", "blocks=", "dead_ends="))
+    tail = InOrder((*keys, OneOf(CONTROLS), Sequel(OneOf((f"{ROUTE}=",)), (_ways(LONGEST_ROUTE),))))
+    kind = Sequel(kinds, (InOrder((count, OneOf(CONTROLS))),))
+    listed = Sequel(kind, (ListTail(";", kind, MOST_KINDS - 1), tail))
+    signed = Sequel(kinds, (InOrder((count,)), OneOf(CONTROLS)))
+    grid = Sequel(
+        Keyed("columns=", numbers), (Keyed("rows=", numbers), tail, ListTail(";", signed, MOST_KINDS))
+    )
+    length = Keyed("len=", numbers)
+    whole = Sequel(
+        OneOf(("||",)), (InOrder((OneOf(("left_hand",)), length, _beside()), least=1),), is_open=True
+    )
+    return Sequel(OneOf(("map",)), (AnyOf((listed, grid)), whole))
+
+
+def _ways(most: int) -> Symbol:
+    """Returns one to ``most`` ways of a route through a map."""
+    more = Later(lambda: _ways(most - 1), may_be_empty=True)
+    return Sequel(OneOf((*SIDES, "straight")) if most else OneOf(()), (more,))
 
 
 def _clause(numbers: Numbers) -> Symbol:

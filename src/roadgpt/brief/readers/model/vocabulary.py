@@ -98,7 +98,7 @@ NETWORKS = [
     *RING_SIZES, *CONTROLS, *FLAGS, "side=", "ways=", *LISTED_WAYS, "exit=", "arms=", "lanes=", "against=",
     "oneway", "divided", "centre=", *CENTRES, "left_hand", "motorway", "map", "columns=", "rows=", "halfway",
     "d=", *NEWER_FLAGS, "angle=", "in=", "out=", "dead_ends=", "taper=",
-    "blocks=",
+    "blocks=", "route=",
 ]  # fmt: skip
 """Tokens of routes with junctions and of maps."""
 OF_ROADS: tuple[str, ...] = tuple(dict.fromkeys([*OLDEST, *CHANGES]))
@@ -111,6 +111,8 @@ NUMBER_OF = {token: index for index, token in enumerate(TOKENS)}
 PIECE = re.compile(
     r"//|\|\||![a-z]+|(?:left|right)(?:\+(?:right|straight))+|[a-z_]+\(|[a-z_]+=|x(?=-?[\d.])|half[12]|\.\.|-?\d+(?:\.\d+)?|[a-z_]+|[;|):,=+]|-(?=\d)"
 )
+WAYS = re.compile(r"(?<=route=)(?:left|right|straight)(?:[+ ](?:left|right|straight))*")
+"""The ways of a route through a map. As tokens they follow each other without a "+"."""
 LISTED = re.compile(r",(?=\s*-?\d)")
 """A comma between numbers of a list; it has no token, so the numbers directly follow each other."""
 NUMERIC = re.compile(r"-?\d+(?:\.\d+)?")
@@ -131,7 +133,8 @@ def tokens_of(plan: str, slots: Sequence[NumberSlot]) -> list[str] | None:
     out: list[str] = []
     key = ""
     taken: set[int] = set()
-    for piece in PIECE.findall(LISTED.sub(" ", with_halfway(plan))):
+    line = WAYS.sub(lambda ways: ways[0].replace("+", " "), with_halfway(plan))
+    for piece in PIECE.findall(LISTED.sub(" ", line)):
         if NUMERIC.fullmatch(piece):
             if out[-1] == "x" and key in MEASURED:
                 found = _factor_tokens(float(piece), slots)
@@ -212,7 +215,8 @@ def plan_of(tokens: Iterable[str], slots: Sequence[NumberSlot]) -> str:
         if text[-1:].isdigit() and (word.isdigit() or word == "-"):
             text += ","  # numbers of a list
         text += word if follows or is_bound or word[0] in ";),:" else f" {word}"
-    return re.sub(r"\s+", " ", text).strip()
+    text = re.sub(r"\s+", " ", text).strip()
+    return WAYS.sub(lambda ways: ways[0].replace(" ", "+"), text)
 
 
 def _is_filled(word: str, slots: Sequence[NumberSlot]) -> bool:
