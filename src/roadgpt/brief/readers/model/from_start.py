@@ -33,8 +33,8 @@ STATION = re.compile(r"\b(?:at|bei) \d+(?:[.,]\d+)? ?(?:m|met\w+)\b")
 FROM_ELSEWHERE = re.compile(
     r"\b(?:further|farther|another|more|later|next|onwards?|apart|weiter\w*|spater|nachste\w*|danach|davon|"
     r"plus loin|encore|suivante?|mas (?:adelante|alla)|otros|siguiente|piu avanti|altri|altre)\b|"
-    r"\b(?:after|past|beyond|behind|from) (?!\d|(?:the )?(?:left|right)\b|which|(?:one|two|three|four) (?:lanes?|to)\b)"
-    r"[a-z]+|"
+    r"\b(?:after|past|beyond|behind|from) "
+    r"(?!\d|(?:the )?(?:left|right)\b|which|(?:one|two|three|four) (?:lanes?|to)\b)[a-z]+|"
     r"\bnach (?!links|rechts|\d)[a-z]+|\bapres (?!\d)[a-z]+|\bdespues de (?!\d)[a-z]+|"
     r"\bdopo (?!\d)[a-z]+|\bdal?l? (?:prim|second|terz|bivi|incroci|quest|precedent)\w*|"
     r"\bdu (?:premier|second|precedent)"
