@@ -166,4 +166,8 @@ def test_degrees_decide_how_sharply_a_route_turns(written: str, right: str) -> N
     ],
 )
 def test_closed_circuits_are_recognised_unless_denied(words: str, asks: bool) -> None:
-    assert asks_for_a_closed_loop(words) is asks
+    assert asks_for_a_closed_loop(words, "turn x3") is asks
+
+
+def test_the_roads_of_a_map_may_be_a_closed_loop() -> None:
+    assert not asks_for_a_closed_loop("a closed loop with two roads into it", "map t_junction x2 blocks=1")

@@ -123,7 +123,7 @@ class ModelReader:
         if not found:
             raise BriefError(NOT_ONE_ROAD)
         draft = most_plausible(found, text)
-        if not draft.is_refusal and asks_for_a_closed_loop(words):
+        if not draft.is_refusal and asks_for_a_closed_loop(words, draft.line):
             raise refused("!impossible loop")
         brief = self._brief(words, text, draft, ensemble)
         is_unclear = is_of_junctions(draft.line) and not can_be_kept(found[0].line)

@@ -2,6 +2,7 @@
 
 import re
 
+from roadgpt.brief.map_clause import is_map
 from roadgpt.brief.readers.model.denial import is_denied
 from roadgpt.brief.readers.model.numerals import plain
 
@@ -26,8 +27,15 @@ NOT_ASKED = re.compile(
 """Words before such a phrase with which it is no wish: "instead of a closed loop", "part of a circuit"."""
 
 
-def asks_for_a_closed_loop(words: str) -> bool:
-    """Returns whether the words ask for a road that ends where it starts, and do not deny it."""
+def asks_for_a_closed_loop(words: str, line: str) -> bool:
+    """Returns whether the words ask for a road that ends where it starts, and do not deny it.
+
+    Args:
+        words: the description.
+        line: the plan that was read from it. The roads of a map may be closed loops.
+    """
+    if is_map(line):
+        return False
     said = " ".join(map(plain, words.split()))
     return any(
         not is_denied(said[: found.start()]) and not NOT_ASKED.search(said[: found.start()])
