@@ -7,6 +7,7 @@ from roadgpt.geometry.curve import Array
 
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
+BLOCK = 128  # points that are compared at once
 
 
 def meeting(
@@ -25,6 +26,20 @@ def meeting(
 
     Returns:
         Indices of the points of ``z`` and of the points of ``earlier``, both of shape ``(number of pairs,)``.
+    """
+    blocks = [
+        _near_block(z[first : first + BLOCK], s[first : first + BLOCK], earlier, earlier_s, apart, neighbours)
+        for first in range(0, len(z), BLOCK)
+    ]
+    of_z = [at + number * BLOCK for number, (at, _) in enumerate(blocks)]
+    return np.concatenate(of_z), np.concatenate([at for _, at in blocks])
+
+
+def _near_block(
+    z: Complex, s: Array, earlier: Complex, earlier_s: Array, apart: float, neighbours: float
+) -> tuple[Indices, Indices]:
+    """Returns the pairs as ``meeting`` does, for a few points that follow each other: only earlier points in
+    the rectangle around them are compared with them.
     """
     x, y = earlier.real, earlier.imag
     near_x = (x > z.real.min() - apart) & (x < z.real.max() + apart)
