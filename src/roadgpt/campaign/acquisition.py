@@ -3,7 +3,8 @@
 The search's goal decides how valuable a candidate is:
 
 failures   the higher its predicted probability of failing, the more valuable; cells with few failures so
-           far have a higher weight
+           far have a higher weight. Every fourth candidate explores: the square root of the probability
+           counts, so that roads of a new kind are driven although they will probably pass
 coverage   the fewer tests its predicted cell has, the more valuable
 hardest    the smaller the mean of the predicted margins minus their standard deviation, the more valuable
 boundary   as for failures, but the value peaks near a predicted probability of failing of 0.5
@@ -22,6 +23,9 @@ from roadgpt.geometry.curve import Array
 
 ANYWHERE = 0.008  # weight of a failure in a cell with many failures; a first failure weighs about 1
 NOVELTY = 3  # where there are k failures, one more is worth 1 / (1 + k) to this power
+EXPLORING = 4  # every so many-th candidate explores
+DARING = 0.5  # power of the probability of failing for those that explore
+LEAST_TREES = 0.5  # trees that are taken to predict a failure where none does
 
 
 class Predictions(NamedTuple):
@@ -54,6 +58,9 @@ def select(goal: Goal, n: int, expected: Predictions, counts: Sequence[Counter[i
             floor = 0.0 if goal == "coverage" else ANYWHERE
             worth = sum(1 / (1 + one.known[one.cells]) ** NOVELTY for one in maps) / len(maps)
             value = (weight * (floor + worth)).mean(axis=0)
+            if goal == "failures" and len(out) % EXPLORING == EXPLORING - 1:
+                chance = np.maximum(weight.mean(axis=0), LEAST_TREES / len(weight))
+                value = chance**DARING * np.mean(worth, axis=0)
             if goal == "boundary":
                 value *= 1 - weight.mean(axis=0)
         best = int(np.argmax(np.where(is_left, value, -np.inf)))
