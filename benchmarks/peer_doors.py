@@ -139,7 +139,7 @@ TOOLS = {
         "Frenetic",
         "frenetic-sbst21/src",
         files=("simulations/beamng_executor/none.json",),
-        adaptation="An empty file stands for the simulator's, whose name it notes; it wants pandas < 1.5.",
+        adaptation="An empty file stands for the simulator's, whose name it notes; it wants pandas 1.3.",
     ),
     "wogan2023": Tool(
         "WOGAN 2023",
