@@ -36,8 +36,8 @@ SHARES: Mapping[str, float] = {
 }
 """The share of each series of pairs in the training of the networks for single roads and changes."""
 SHARES_OF_ROUTES: Mapping[str, float] = {
-    "networks": 0.43,
-    "generated routes": 0.27,
+    "networks": 0.37,
+    "generated routes": 0.33,
     "routes": 0.08,
     "hand": 0.09,
     "free": 0.06,
