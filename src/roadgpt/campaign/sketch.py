@@ -34,12 +34,18 @@ from roadgpt.design.elements import as_written, elements_of
 from roadgpt.design.layout import MapPose, PlacedPlan, bends_of, walk
 from roadgpt.design.variety import PlanShape, shape_of
 from roadgpt.design.writing import design_of
+from roadgpt.geometry import interpolate
 from roadgpt.geometry.curve import Array
+from roadgpt.geometry.nearness import Complex
 from roadgpt.road import Design
+from roadgpt.road.road import control_stations
 
 TRIES = 6  # mutations that are tried for one sketch, until one fits on the map
 ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
 ANEW = 0.5  # probability that the turns of a draft are redrawn before these rounds
+FINER = (
+    6  # steps from one control point to the next, so that the points lie on the road where it bends at once
+)
 BOLD = 2  # of TRIES; later tries mostly change only numbers, which violates fewer requirements
 
 
@@ -109,6 +115,19 @@ def candidate_of(work: tuple[Sketch, VariationContext]) -> Candidate | None:
     return candidate(*found, one.origin) if found else None
 
 
+def _driven_line(room: PlacedPlan, setting: VariationContext) -> Complex:
+    """Returns points of the line that is driven, about one per metre, as x + iy before the road is placed.
+
+    Where the curvature changes at once, the spline through a road's control points is tighter than the road.
+    """
+    if not setting.is_interpolated:
+        return room.line.z
+    between = len(control_stations(float(room.line.s[-1]))) - 1
+    points = walk(room.elements, FINER * between).z[::FINER]
+    x, y = interpolate(np.stack([points.real, points.imag], axis=1)).T
+    return np.asarray(x + 1j * y)
+
+
 @lru_cache(maxsize=16)  # every sketch of a cell asks
 def _turns_of(brief: Brief) -> Range:
     return outline(brief).turns
@@ -122,9 +141,10 @@ def _sketched(elements: Elements, room: PlacedPlan, origin: str, setting: Variat
     grade = inclines[np.minimum(np.searchsorted(ends, line.s), len(elements) - 1)] / 100
     middle = setting.world.section.profile(max(length, 1.0)).middle(line.s)
     samples = RoadSamples(line.s, np.interp(line.s, knots, bends, right=0.0), grade, middle)
-    plan = line.z * np.exp(1j * np.radians(where.theta))
+    plan = _driven_line(room, setting) * np.exp(1j * np.radians(where.theta))
     climb = np.concatenate([[0.0], np.cumsum(grade[:-1] * np.diff(line.s))])
-    points = np.stack([plan.real + where.x, plan.imag + where.y, climb], axis=1)
+    heights = np.interp(np.linspace(0.0, line.s[-1], len(plan)), line.s, climb)
+    points = np.stack([plan.real + where.x, plan.imag + where.y, heights], axis=1)
     features = behaviour_of_line(points, setting.axes, setting.brief)
     world = setting.world
     seen = features_of_samples(samples, world)

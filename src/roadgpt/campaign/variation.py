@@ -43,6 +43,8 @@ class VariationContext(NamedTuple):
     """With "sbft", a road must also pass the validator of the competition."""
     axes: tuple[str, ...] = ()
     """Names of the features that a sketch needs."""
+    is_interpolated: bool = False
+    """Whether roads are driven as the competition interpolates them, by a spline through points 2 m apart."""
 
 
 class VariationTask(NamedTuple):

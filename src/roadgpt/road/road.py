@@ -223,8 +223,7 @@ class Road:
             return self.road_points
         if self.nodes is not None:
             return self.nodes[:, :2]
-        count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(self.length / CONTROL_SPACING)) + 1))
-        return self.plan.at(np.linspace(0.0, self.length, count))
+        return self.plan.at(control_stations(self.length))
 
     def to_json(self) -> dict[str, Any]:
         """Returns the road as JSON data, from which ``Road.from_json`` restores it exactly."""
@@ -286,6 +285,12 @@ class Road:
             raise UsageError(
                 f"the road cannot be read: {error}; it needs start, pieces, height, stations, grades"
             ) from error
+
+
+def control_stations(length: float) -> Array:
+    """Returns the stations in metres of a road's control points, for a road of this length in metres."""
+    count = min(MOST_CONTROL_POINTS, max(4, int(np.ceil(length / CONTROL_SPACING)) + 1))
+    return np.linspace(0.0, length, count)
 
 
 def _profile(data: Mapping[str, Any]) -> tuple[ElevationProfile, list[float]]:

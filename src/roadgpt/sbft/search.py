@@ -11,6 +11,7 @@ from roadgpt.campaign.generators.quality_diversity import QualityDiversity
 from roadgpt.campaign.model import Cell, Proposal, Result
 from roadgpt.design import draft_road
 from roadgpt.errors import DesignError
+from roadgpt.geometry import interpolate
 from roadgpt.road import Design, Road, World, build
 from roadgpt.run import Request, Setup
 from roadgpt.run.features import FEWEST_RECORDS, features_of, features_of_drive
@@ -51,7 +52,7 @@ class RoadSearch:
         """
         request = Request(words=words, seed=seed, world=world, setup=setup)
         self._cell = Cell("c01", request, brief, "quality_diversity", "failures")
-        self._search = QualityDiversity(self._cell)
+        self._search = QualityDiversity(self._cell, is_interpolated=True)
         self._waiting: deque[Proposal] = deque()
         self._asked: dict[int, tuple[Road, Result]] = {}
         self._told: list[Result] = []
@@ -114,7 +115,7 @@ class RoadSearch:
         road, blank = asked
         tolerance = self._cell.request.world.limits.oob_tolerance
         margin = min(distances) + (tolerance - 0.5) * CAR_WIDTH
-        features = features_of(road.sample().points) | behaviour_of(road, self._cell.brief)
+        features = behaviour_of(road, self._cell.brief) | features_of(interpolate(road.control_points()))
         features |= features_of_drive(steering, distances)
         self._told.append(
             replace(

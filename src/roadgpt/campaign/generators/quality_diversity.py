@@ -54,13 +54,18 @@ class QualityDiversity:
 
     goals = GOALS
 
-    def __init__(self, cell: Cell) -> None:
+    def __init__(self, cell: Cell, is_interpolated: bool = False) -> None:
         """Begins with empty maps.
+
+        Args:
+            cell: words, requirements and settings.
+            is_interpolated: whether the roads are driven as the competition interpolates them.
 
         Raises:
             UsageError: a setting cannot be used.
         """
-        self._cell, self._setting = cell, context_of(cell)
+        self._cell = cell
+        self._setting = context_of(cell)._replace(is_interpolated=is_interpolated)
         self._wanted = settings_of(cell)
         self._goal: Goal = cell.goal or "failures"
         self.batch_size = self._wanted.batch
