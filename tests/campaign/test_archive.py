@@ -169,7 +169,7 @@ def test_what_is_driven_is_what_a_slow_choice_would_drive(n: int, wanted: int, s
 
 
 def test_every_fourth_road_may_be_unlikely_to_fail_if_its_cell_is_new() -> None:
-    """Six roads are sure to fail in one cell; one fails in another, but only one tree of a hundred says so."""
+    """Six roads are sure to fail in one cell; another fails in a new one by one tree of 100."""
     margins = np.full((100, 7), -1.0)
     margins[1:, 6] = 1.0
     cells = np.array([[0, 0, 0, 0, 0, 0, 1]] * 100)

@@ -15,6 +15,7 @@ from roadgpt.campaign.surrogate_features import NAMES, STEERING, surrogate_featu
 from roadgpt.campaign.variation import Kind, VariationContext, VariationTask
 from roadgpt.check import sbft_verdict
 from roadgpt.design import draft
+from roadgpt.geometry import interpolate
 from roadgpt.road import Design, Road, Site, World, build
 from roadgpt.run import prove
 from roadgpt.run.features import features_of
@@ -80,6 +81,25 @@ def test_a_sketch_says_what_the_built_road_has(kind: Kind, seed: int) -> None:
     )  # a bend that begins where the car is no longer slow counts whole or in part
     assert apart.max() < 0.3
     assert seen[STEERING[0]] == pytest.approx(real[STEERING[0]], rel=0.05, abs=0.02)
+
+
+def test_for_the_competition_a_sketch_has_the_curvature_of_the_spline() -> None:
+    """Where the curvature changes at once, the spline that is driven is tighter than the road."""
+    official = setting(PLANS[0])._replace(is_interpolated=True)
+    missed, tighter = [], []
+    for seed in range(24):
+        one = sketched(PLANS[0], "wild", seed)
+        made = candidate_of((one, official)) if one else None
+        if made is None:
+            continue
+        road = build(made.design)
+        driven = features_of(interpolate(road.control_points()))
+        seen = sketch_of((made.design, official))[0].features
+        assert seen["DIR_COV"] == pytest.approx(driven["DIR_COV"], abs=1.5 / 26)
+        missed.append(abs(seen["MAX_CURV"] - driven["MAX_CURV"]))
+        tighter.append(driven["MAX_CURV"] - features_of(road.sample().points)["MAX_CURV"])
+    assert np.quantile(missed, 0.9) < 0.0014  # half of a cell of the feature map
+    assert max(tighter) > 0.001
 
 
 def test_a_design_is_sketched_as_it_was() -> None:
