@@ -43,9 +43,7 @@ from roadgpt.road.road import control_stations
 TRIES = 6  # mutations that are tried for one sketch, until one fits on the map
 ROUNDS = 3  # rounds of mutations that turn a draft into a wild one
 ANEW = 0.5  # probability that the turns of a draft are redrawn before these rounds
-FINER = (
-    6  # steps from one control point to the next, so that the points lie on the road where it bends at once
-)
+FINER = 6  # steps between control points; fewer would miss the road where its curvature changes at once
 BOLD = 2  # of TRIES; later tries mostly change only numbers, which violates fewer requirements
 
 

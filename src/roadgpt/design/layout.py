@@ -60,7 +60,7 @@ class PlacedPlan(NamedTuple):
 
 
 def walk(elements: Sequence[Element], steps: int | None = None) -> PlanLine:
-    """Returns the centre line of elements, in so many steps; None: in steps of about 1 m."""
+    """Returns the centre line of elements, in ``steps`` equal steps; None: in steps of about 1 m."""
     knots, bends, length = bends_of(elements)
     s = np.linspace(0.0, length, (steps or max(2, round(length / STEP))) + 1)
     steps = np.exp(1j * _headings(s[:-1] + s[1] / 2, knots, bends)) * s[1]
